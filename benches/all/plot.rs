@@ -50,13 +50,13 @@ pub(crate) fn run(parts: &[String]) {
         ("3 samples a pixel", 3e-4),
         ("1 sample in 2 pixels", 5e-5),
     ] {
-        let took = bench.rounds(&mut recorder, |recorder, round| recorder.act(stretch(share, round)));
+        let took = bench.rounds(&mut recorder, |recorder, round| recorder.handle_action(stretch(share, round)));
         println!("  {label:<26} {took}");
     }
-    recorder.act(recorder::RecorderAction::Look(all.0, all.1));
+    recorder.handle_action(recorder::RecorderAction::Look(all.0, all.1));
     println!("  {:<26} {}", "standing still", bench.rounds(&mut recorder, |_, _| {}));
-    recorder.act(recorder::RecorderAction::Fit);
-    recorder.act(recorder::RecorderAction::Follow);
+    recorder.handle_action(recorder::RecorderAction::Fit);
+    recorder.handle_action(recorder::RecorderAction::Follow);
     let mut next = SAMPLES;
     let took = bench.rounds(&mut recorder, |recorder, _| {
         // Two thousand samples between two frames, as at 100 kHz.
@@ -69,7 +69,7 @@ pub(crate) fn run(parts: &[String]) {
     for at in (0..SAMPLES).step_by(100_000) {
         append(&mut marked, group, at, 100_000, true);
     }
-    let took = bench.rounds(&mut marked, |recorder, round| recorder.act(stretch(1.0, round)));
+    let took = bench.rounds(&mut marked, |recorder, round| recorder.handle_action(stretch(1.0, round)));
     println!("  {:<26} {took}", "all, a flag in each block");
     if naive {
         println!("  {:<26} {}", "egui_plot, all visible", egui_plot_frame());
@@ -82,7 +82,7 @@ fn lines(recorder: &mut Recorder) -> GroupId {
     let group = recorder.add_group(&[Kind::Real; SIGNALS], SAMPLES + 1_000_000, Some(PERIOD * 10));
     for column in 0..SIGNALS {
         let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
-        recorder.add_line(Series::of(group, column, Text::new("recorder.position"), "value", scales));
+        recorder.add_line(Series::new(group, column, Text::new("recorder.position"), "value", scales));
     }
     group
 }

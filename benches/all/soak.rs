@@ -91,9 +91,9 @@ pub(crate) fn run(parts: &[String]) {
 
 /// Returns a window in which all virtual devices are polled.
 fn connected(folder: &Path) -> Screen {
-    let environment = StudioEnvironment::real(Store::at(folder), program().studio);
+    let environment = StudioEnvironment::production(Store::at(folder), program().studio);
     let mut studio = Studio::new(environment, Arc::new(|| {}));
-    studio.begin(None, None);
+    studio.start_with(None, None);
     let mut screen: Screen = Harness::builder().with_size([1280.0, 800.0]).build_eframe(|cc| {
         install_fonts(&cc.egui_ctx);
         Shown(Window::new(studio, ThemeData::built_in().unwrap(), program().tabs))

@@ -134,12 +134,12 @@ fn stream() {
             install_fonts(&cc.egui_ctx);
             let ctx = cc.egui_ctx.clone();
             let mut studio = Studio::new(
-                StudioEnvironment::real(Store::at(&folder), program().studio),
+                StudioEnvironment::production(Store::at(&folder), program().studio),
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
-            studio.act(Action::ShowTab(Tab::named("Biss")));
+            studio.handle_action(Action::ShowTab(Tab::named("Biss")));
             // 2 MHz: a frame of 43 clocks takes 21.5 µs plus 27 µs of waiting.
-            studio.begin(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
+            studio.start_with(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
             let window = Window::new(studio, ThemeData::built_in()?, program().tabs);
             Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
         }),
@@ -181,7 +181,7 @@ fn plot() {
     impl eframe::App for Plotting {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
-            if studio.tool::<Signals>().and_then(Signals::measurement).is_some() {
+            if studio.tool_as::<Signals>().and_then(Signals::measurement).is_some() {
                 self.times.push(Instant::now());
                 let span = SAMPLES as i64 * 1000;
                 let share = [1.0, 0.5, 0.1, 1e-3][self.times.len() % 4];
@@ -194,7 +194,7 @@ fn plot() {
                     recorder::RecorderAction::Look(from, to),
                 ));
                 if self.times.len() == 1 {
-                    let lines = studio.tool::<Signals>().expect("there is a Signals tab").scope().recorder.lines();
+                    let lines = studio.tool_as::<Signals>().expect("there is a Signals tab").scope().recorder.series();
                     for (at, line) in lines.iter().enumerate() {
                         // Sine, cosine, and both references.
                         let shown = [0, 1, 4, 6].contains(&at);
@@ -225,9 +225,9 @@ fn plot() {
     }
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
     let mut studio =
-        Studio::new(StudioEnvironment::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
-    studio.begin(None, None);
-    studio.act(Action::tool(signals::SignalsAction::Open(folder.join("capture.csv"))));
+        Studio::new(StudioEnvironment::production(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
+    studio.start_with(None, None);
+    studio.handle_action(Action::tool(signals::SignalsAction::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]),
         renderer: eframe::Renderer::Glow,

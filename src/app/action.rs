@@ -89,7 +89,7 @@ pub enum Action {
     New(Tab),
     /// Execute an action of a tool. See [`Action::tool`].
     Tool(Tab, Payload),
-    Done(Done),
+    Done(TaskResult),
     /// Report that the system could not start a thread for a task.
     NoThread(String),
 }
@@ -105,7 +105,7 @@ pub enum ReviewAction {
     Close,
 }
 
-pub enum Done {
+pub enum TaskResult {
     /// The task that checked whether the target file of a save exists has ended.
     Looked {
         question: FileQuestion,
@@ -113,8 +113,8 @@ pub enum Done {
         exists: bool,
     },
     /// The attempt to open a link for a session has succeeded or failed.
-    OpenedConnection(Attempt),
-    /// A search in the connection form of a tab has a result. See [`TaskResult::finder`].
+    OpenedConnection(ConnectAttempt),
+    /// A search in the connection form of a tab has a result. See [`TaskResult::from_finder`].
     Finder(Tab, Payload),
     /// A task that belongs to no session has ended. Contains the function that handles its result.
     Shared(SharedResultHandler),
@@ -166,11 +166,11 @@ pub enum Done {
     },
     /// A task of one kind of device has ended, for one session. See `Done::device`.
     Device(SessionId, Payload),
-    /// A task of a tool has ended. See [`TaskResult::tool`].
+    /// A task of a tool has ended. See [`TaskResult::from_tool`].
     Tool(Tab, Payload),
 }
 
-pub struct Attempt {
+pub struct ConnectAttempt {
     pub session: SessionId,
     /// Number of the attempt. Only the latest attempt of a session counts.
     pub attempt: u32,
@@ -202,7 +202,7 @@ impl<D: Kind> OpenedSession for OpenedConnection<D> {
     fn close_unused(self: Box<Self>, session: SessionId, services: &mut Services) {
         let OpenedConnection { worker, url, turn, .. } = *self;
         let about = services.world.kinds.display_link(&url);
-        services.leave(worker, ClosingSessionInfo { session, about, url, write: None }, Some(turn));
+        services.release_worker(worker, ClosingSessionInfo { session, about, url, write: None }, Some(turn));
     }
 
     fn into_any(self: Box<Self>) -> Box<dyn Any> {

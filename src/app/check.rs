@@ -11,7 +11,7 @@ pub struct CheckLine {
 }
 
 impl CheckLine {
-    pub(crate) fn of<S: Copy, F>(line: &StepResult<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
+    pub(crate) fn from_step<S: Copy, F>(line: &StepResult<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
         CheckLine {
             step: step(line.step),
             verdict: line.verdict,
@@ -20,7 +20,7 @@ impl CheckLine {
     }
 }
 
-pub fn verdict(verdict: Verdict) -> Text {
+pub fn verdict_text(verdict: Verdict) -> Text {
     Text::new(match verdict {
         Verdict::Skipped => "check.skipped",
         Verdict::Good => "check.good",

@@ -1,20 +1,20 @@
 //! Closing of a session or the window. The user is asked once if data would be lost or a job interrupted. Everything
 //! else is waited for.
 
-use super::action::{Action, Done, ShutdownWait};
+use super::action::{Action, ShutdownWait, TaskResult};
 use super::brakes::DriveStopHandles;
-use super::question::{Question, Then};
+use super::question::{FollowUpAction, Question};
 use super::services::JobState;
 use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
 /// Minimum duration of a recording in nanoseconds for which the user is asked before it is discarded.
-pub(super) const MUCH: i64 = 120_000_000_000;
+pub(super) const LONG_RECORDING_NS: i64 = 120_000_000_000;
 
 impl Studio {
     /// Returns the stop handles for the drives of all sessions, for use when the program ends.
-    pub fn brakes(&self) -> DriveStopHandles {
+    pub fn drive_stop_handles(&self) -> DriveStopHandles {
         self.services.brakes.clone()
     }
 
@@ -53,7 +53,7 @@ impl Studio {
             };
             let text = Text::new(text).with("name", device.name());
             let confirm = Text::new("question.close_session");
-            self.question = Some(Question::before(text, confirm, Then::CloseSession(id)));
+            self.question = Some(Question::new(text, confirm, FollowUpAction::CloseSession(id)));
         } else {
             self.remove(id);
         }
@@ -62,7 +62,7 @@ impl Studio {
     fn remove(&mut self, id: SessionId) {
         self.with_device(id, |device, services| {
             device.release_draft(services);
-            device.let_go(JobState::Cancelled, services);
+            device.release_thread(JobState::Cancelled, services);
         });
         self.diverged.take_if(|diverged| diverged.session() == id);
         self.devices.retain(|device| device.id() != id);
@@ -82,7 +82,7 @@ impl Studio {
                 None => Text::new(if edits { "question.edits" } else { "question.recording" }),
             };
             let confirm = Text::new("question.close_window");
-            self.question = Some(Question::before(text, confirm, Then::CloseWindow));
+            self.question = Some(Question::new(text, confirm, FollowUpAction::CloseWindow));
         } else {
             self.begin_closing();
         }
@@ -112,7 +112,7 @@ impl Studio {
         for (what, limit) in limits {
             self.services.tasks.run("close", move || {
                 std::thread::sleep(limit);
-                Action::Done(Done::Waited(what))
+                Action::Done(TaskResult::Waited(what))
             });
         }
     }
@@ -121,35 +121,39 @@ impl Studio {
     pub(super) fn dismiss_question(&mut self) -> bool {
         let Some(question) = self.question.take() else { return false };
         match question.then {
-            Then::OpenLink(id) => {
+            FollowUpAction::OpenLink(id) => {
                 let why = Text::new("session.maybe_drive");
                 self.with_device(id, |device, services| device.connection_lost(why, services));
             }
-            Then::Find(_) => {
+            FollowUpAction::Find(_) => {
                 if let Some(connect) = &mut self.connect {
                     connect.problem = Some(Text::new("session.maybe_drive"));
                 }
             }
-            Then::CloseWindow | Then::CloseSession(_) | Then::Write(..) | Then::Forget(_) | Then::Save(_) => {}
+            FollowUpAction::CloseWindow
+            | FollowUpAction::CloseSession(_)
+            | FollowUpAction::Write(..)
+            | FollowUpAction::Forget(_)
+            | FollowUpAction::Save(_) => {}
         }
         true
     }
 
-    pub(super) fn confirm(&mut self) {
+    pub(super) fn confirm_question(&mut self) {
         match self.question.take().map(|question| question.then) {
-            Some(Then::CloseWindow) => {
+            Some(FollowUpAction::CloseWindow) => {
                 self.stop();
                 self.begin_closing();
             }
-            Some(Then::CloseSession(id)) => self.remove(id),
-            Some(Then::Write(question, path)) => self.chosen(question, path),
-            Some(Then::Save(saving)) => {
+            Some(FollowUpAction::CloseSession(id)) => self.remove(id),
+            Some(FollowUpAction::Write(question, path)) => self.handle_chosen_path(question, path),
+            Some(FollowUpAction::Save(saving)) => {
                 let kinds = self.services.world.kinds;
                 self.services.tasks.run("save", move || saving.run(kinds));
             }
-            Some(Then::OpenLink(id)) => self.open_confirmed(id),
-            Some(Then::Find(tab)) => self.start_confirmed_search(tab),
-            Some(Then::Forget(owner)) => self.apply_recorder_action(owner, recorder::RecorderAction::Clear),
+            Some(FollowUpAction::OpenLink(id)) => self.open_confirmed(id),
+            Some(FollowUpAction::Find(tab)) => self.start_confirmed_search(tab),
+            Some(FollowUpAction::Forget(owner)) => self.apply_recorder_action(owner, recorder::RecorderAction::Clear),
             None => {}
         }
     }

@@ -11,7 +11,7 @@ use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
 
 /// Polling interval of live values that start automatically.
-const LIVE: Duration = Duration::from_millis(50);
+const LIVE_INTERVAL: Duration = Duration::from_millis(50);
 
 impl Studio {
     /// Executes a command that every device supports, including those that open a link or involve two sessions.
@@ -49,7 +49,7 @@ impl Studio {
             if self.settings.live_stopped {
                 self.with_device(id, |device, _| device.state_mut().live_due = false);
             } else {
-                self.poll_device(id, Some(LIVE));
+                self.poll_device(id, Some(LIVE_INTERVAL));
             }
         }
     }
@@ -66,7 +66,7 @@ impl Studio {
         let Some(at) = self.devices.iter().position(|device| device.id() == target) else { return };
         let taken = self.devices.get_mut(at).map(|device| device.apply_profile(body, &mut self.services));
         if let Some(Err(error)) = taken {
-            let place = self.device(id).map(AnyDevice::place).unwrap_or_default();
+            let place = self.device(id).map(AnyDevice::data_source).unwrap_or_default();
             let text = read_error(place.as_ref(), &ReadError::Profile(error), self.services.world.kinds);
             self.services.notify(Severity::Error, vec![text], None);
         }
@@ -76,7 +76,7 @@ impl Studio {
         let Some(at) = self.devices.iter().position(|device| device.id() == id) else { return };
         let mut device = self.devices.remove(at);
         let mut context = ActionContext::new(&mut self.services, &self.devices);
-        let done = device.act(action, &mut context);
+        let done = device.handle_action(action, &mut context);
         let next = context.into_requests();
         self.devices.insert(at, device);
         self.report_wrong_kind(done, id);
@@ -87,7 +87,7 @@ impl Studio {
 
     pub(super) fn finish_device_action(&mut self, id: SessionId, done: Payload) {
         let mut taken = Ok(());
-        self.with_device(id, |device, services| taken = device.done(done, services));
+        self.with_device(id, |device, services| taken = device.handle_result(done, services));
         self.report_wrong_kind(taken, id);
     }
 

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Done, ReadError};
+use super::action::{Action, ReadError, TaskResult};
 use super::documents::{read_error, read_profile};
 use super::studio::{SessionId, Studio};
 use super::{Severity, Text};
@@ -46,7 +46,7 @@ impl Studio {
         let formats = self.services.world.kinds.formats;
         self.services.tasks.run("compare", move || {
             let result = read_profile(&path, formats).map(Box::new);
-            Action::Done(Done::Compare { session, path, result })
+            Action::Done(TaskResult::Compare { session, path, result })
         });
     }
 

@@ -10,7 +10,7 @@ mod selection;
 pub use command::DeviceCommand;
 pub(crate) use kind::OpenProfile;
 pub use kind::{DeviceKind, DeviceType};
-pub(crate) use model::Prepare;
+pub(crate) use model::PrepareFn;
 pub use model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
 pub use open_device::{AnyDevice, OpenDevice};
 pub(super) use selection::Selection;

@@ -4,7 +4,7 @@
 use super::KindRegistry;
 use super::action::ReadError;
 use super::documents::read_error;
-use super::question::{Question, Then};
+use super::question::{FollowUpAction, Question};
 use super::session::{DivergedFile, FileSnapshot, ProfileFile, SaveRequest, Source};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
@@ -48,7 +48,7 @@ pub enum ConflictResolution {
 
 impl Row {
     /// Returns the location of the entry in the profile.
-    pub fn place(&self) -> String {
+    pub fn location(&self) -> String {
         self.change.place()
     }
 
@@ -100,7 +100,7 @@ impl ProfileConflict {
         &self.rows
     }
 
-    pub fn problem(&self) -> Option<Text> {
+    pub fn problem_text(&self) -> Option<Text> {
         self.problem.clone()
     }
 
@@ -153,7 +153,7 @@ impl Studio {
             }
             Source::Link(_) | Source::New { .. } => {
                 let ask = device.command(DeviceCommand::AskSave);
-                self.act(ask);
+                self.handle_action(ask);
             }
         }
     }
@@ -173,10 +173,10 @@ impl Studio {
         let text =
             Text::new("question.comments").with("path", saving.path.display()).with("comments", lost.join(" · "));
         let confirm = Text::new("question.comments_go");
-        self.question = Some(Question::before(text, confirm, Then::Save(Box::new(saving))));
+        self.question = Some(Question::new(text, confirm, FollowUpAction::Save(Box::new(saving))));
     }
 
-    pub(super) fn resolve(&mut self, resolve: ConflictResolution) {
+    pub(super) fn resolve_conflict(&mut self, resolve: ConflictResolution) {
         let Some(mut diverged) = self.diverged.take() else { return };
         let saving = match resolve {
             ConflictResolution::Close => return,
@@ -188,7 +188,7 @@ impl Studio {
                 self.diverged = Some(diverged);
                 return;
             }
-            ConflictResolution::Reload => return self.reload(diverged),
+            ConflictResolution::Reload => return self.reload_profile(diverged),
             ConflictResolution::KeepMine if diverged.can_overwrite_file() => diverged.overwrite_file(None),
             ConflictResolution::Merge if diverged.can_merge() => {
                 match diverged.merged_document(self.services.world.kinds) {
@@ -209,7 +209,7 @@ impl Studio {
         self.services.tasks.run("save", move || saving.run(kinds));
     }
 
-    fn reload(&mut self, diverged: ProfileConflict) {
+    fn reload_profile(&mut self, diverged: ProfileConflict) {
         let ProfileConflict { saving, theirs, text, .. } = diverged;
         let (Ok(document), Some(opened)) = (theirs, saving.opened) else { return };
         let file = ProfileFile { path: saving.path, key: opened.key, text };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 
-use super::action::{Action, Done, ReadError};
+use super::action::{Action, ReadError, TaskResult};
 use super::devices::OpenProfile;
 use super::kinds::KindRegistry;
 use super::session::{DraftOutcome, ProfileFile, Source, file_key};
@@ -71,7 +71,7 @@ impl Studio {
             if let Err(error) = result
                 && self.device(id).is_none()
             {
-                let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
+                let text = Text::new("session.draft_not_kept").with_text("why", explain::file_error_text(error));
                 self.services.notify(Severity::Warning, vec![text], None);
             }
         }
@@ -95,7 +95,7 @@ pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
 }
 
 /// Creates a document for a profile that was read just now.
-pub(crate) fn document_of(body: Body) -> ProfileDocument {
+pub(crate) fn new_document(body: Body) -> ProfileDocument {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
     ProfileDocument::new(seconds.to_string(), body)
@@ -110,7 +110,7 @@ pub(super) fn read_document(path: PathBuf, store: &Store, kinds: KindRegistry) -
     // If there is no profile, no tables are needed.
     let kind = result.as_ref().ok().and_then(|document| kinds.for_profile(document.body.kind()));
     let open = kind.map(|kind| kind.read_tables(store));
-    Action::Done(Done::Read { file, result, open })
+    Action::Done(TaskResult::Read { file, result, open })
 }
 
 pub(super) fn read_profile(path: &Path, formats: ProfileFormats) -> Result<ProfileDocument, ReadError> {
@@ -125,7 +125,7 @@ fn read_text_and_profile(path: &Path, formats: ProfileFormats) -> Result<(String
 
 pub(super) fn read_error(path: &Path, error: &ReadError, kinds: KindRegistry) -> Text {
     match error {
-        ReadError::File(error) => explain::file(error),
+        ReadError::File(error) => explain::file_error_text(error),
         ReadError::Profile(error) => explain::profile(path, error, kinds),
     }
 }

@@ -79,7 +79,7 @@ pub trait StoredDriveData {
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings were read after control was taken.
-    fn marks(&self) -> SettingsReadState;
+    fn read_state(&self) -> SettingsReadState;
 
     /// Sets whether the settings were read after control was taken. Nothing moves before this.
     fn set_read_state(&mut self, marks: SettingsReadState);
@@ -93,11 +93,11 @@ impl From<PartialDriveEntry> for RememberedDrives {
 
 impl RememberedDrives {
     /// Creates drive data without unconfirmed limits.
-    pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: PositionUnit, unsaved: BTreeMap<u16, i64>) -> Self {
+    pub fn without_limits(pitches: BTreeMap<u8, u64>, measure: PositionUnit, unsaved: BTreeMap<u16, i64>) -> Self {
         RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
     }
 
-    pub(crate) fn marks(&self, drive: u8) -> u64 {
+    pub(crate) fn control_count(&self, drive: u8) -> u64 {
         self.marks.get(&drive).copied().unwrap_or_default()
     }
 
@@ -113,9 +113,9 @@ impl RememberedDrives {
         }
     }
 
-    pub(crate) fn mark(&mut self, drive: u8, times: u64) {
+    pub(crate) fn set_control_count(&mut self, drive: u8, times: u64) {
         self.set_unconfirmed(drive, true);
-        self.marks.insert(drive, self.marks(drive).wrapping_add(times));
+        self.marks.insert(drive, self.control_count(drive).wrapping_add(times));
     }
 
     /// Returns the drives whose limits were marked since `before`.
@@ -124,8 +124,8 @@ impl RememberedDrives {
     /// leave out the numbers.
     pub(crate) fn newly_marked_drives(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
-            let number = self.marks(*drive);
-            number != before.marks(*drive) || number == 0 && !before.is_unconfirmed(*drive)
+            let number = self.control_count(*drive);
+            number != before.control_count(*drive) || number == 0 && !before.is_unconfirmed(*drive)
         };
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
@@ -137,19 +137,19 @@ impl RememberedDrives {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
             maps.into_iter().flat_map(BTreeMap::keys).copied().collect()
         };
-        change(&mut self.pitches, &known.pitches, &ours.pitches);
-        change(&mut self.unsaved, &known.unsaved, &ours.unsaved);
+        apply_changes(&mut self.pitches, &known.pitches, &ours.pitches);
+        apply_changes(&mut self.unsaved, &known.unsaved, &ours.unsaved);
         if ours.measure != known.measure {
             self.measure = ours.measure;
         }
         let locked = known.unconfirmed.iter().chain(&ours.unconfirmed).copied();
         for drive in drives([&known.marks, &ours.marks]).into_iter().chain(locked).collect::<BTreeSet<_>>() {
-            let marked_here = ours.marks(drive).wrapping_sub(known.marks(drive));
+            let marked_here = ours.control_count(drive).wrapping_sub(known.control_count(drive));
             let is_marked = ours.is_unconfirmed(drive) && (marked_here > 0 || !known.is_unconfirmed(drive));
             let is_confirmed = known.is_unconfirmed(drive) && !ours.is_unconfirmed(drive);
-            let is_same = self.marks(drive) == known.marks(drive);
+            let is_same = self.control_count(drive) == known.control_count(drive);
             if is_marked {
-                self.mark(drive, marked_here);
+                self.set_control_count(drive, marked_here);
             } else if is_confirmed && is_same {
                 self.set_unconfirmed(drive, false);
             }
@@ -159,7 +159,7 @@ impl RememberedDrives {
 }
 
 /// Applies the changes from `known` to `ours`, key by key.
-fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
+fn apply_changes<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
     for key in known.keys().chain(ours.keys()) {
         match (known.get(key), ours.get(key)) {
             (before, now) if before == now => {}

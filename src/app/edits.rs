@@ -8,19 +8,19 @@ use super::history::History;
 
 /// The content of a memory as last read.
 pub trait EditBase: Default {
-    type Place: Ord + Copy;
+    type Location: Ord + Copy;
     type Value: Copy + PartialEq;
 
     /// Returns whether a value is an edit. It is if it differs from the value that was read.
-    fn is_edit(&self, at: Self::Place, value: Self::Value) -> bool;
+    fn is_edit(&self, at: Self::Location, value: Self::Value) -> bool;
 }
 
 /// The content of a memory as last read, with the edited values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edits<B: EditBase> {
     base: B,
-    edits: BTreeMap<B::Place, B::Value>,
-    history: History<BTreeMap<B::Place, B::Value>>,
+    edits: BTreeMap<B::Location, B::Value>,
+    history: History<BTreeMap<B::Location, B::Value>>,
 }
 
 impl<B: EditBase> Default for Edits<B> {
@@ -35,17 +35,17 @@ impl<B: EditBase> Edits<B> {
     }
 
     /// Returns the edited value, or `None` if the value is not edited.
-    pub fn get(&self, at: B::Place) -> Option<B::Value> {
+    pub fn get(&self, at: B::Location) -> Option<B::Value> {
         self.edits.get(&at).copied()
     }
 
     /// Returns all edits, ordered by location.
-    pub fn iter(&self) -> impl Iterator<Item = (B::Place, B::Value)> {
+    pub fn iter(&self) -> impl Iterator<Item = (B::Location, B::Value)> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
     /// Edits values as one undo step. A value that equals the value of the device is not an edit.
-    pub fn set(&mut self, values: impl IntoIterator<Item = (B::Place, B::Value)>) {
+    pub fn edit_values(&mut self, values: impl IntoIterator<Item = (B::Location, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
             if self.base.is_edit(at, value) {
@@ -54,20 +54,20 @@ impl<B: EditBase> Edits<B> {
                 after.remove(&at);
             }
         }
-        self.history.step(&mut self.edits, after);
+        self.history.apply_step(&mut self.edits, after);
     }
 
     /// Reverts the edits for which `is_meant` is true, as one undo step. Returns `false` if there are none.
-    pub fn revert_matching(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
+    pub fn revert_matching(&mut self, is_meant: impl Fn(B::Location) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
-        self.history.step(&mut self.edits, after)
+        self.history.apply_step(&mut self.edits, after)
     }
 
     /// Adopts values that were read again. Edits are kept unless the device now contains their values.
-    pub fn reread(&mut self, read: impl FnOnce(&mut B)) {
+    pub fn update_base(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
-        self.settle();
+        self.remove_redundant();
         self.history.discard_undone_steps();
     }
 
@@ -77,7 +77,7 @@ impl<B: EditBase> Edits<B> {
     }
 
     /// Removes edits that equal the value of the device. An undo step can bring such edits back.
-    fn settle(&mut self) {
+    fn remove_redundant(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));
     }
@@ -102,21 +102,21 @@ impl<B: EditBase> PendingEdits for Edits<B> {
 
     fn undo(&mut self) -> bool {
         let done = self.history.undo(&mut self.edits);
-        self.settle();
+        self.remove_redundant();
         done
     }
 
     fn redo(&mut self) -> bool {
         let done = self.history.redo(&mut self.edits);
-        self.settle();
+        self.remove_redundant();
         done
     }
 
-    fn revert(&mut self) -> bool {
+    fn discard_all(&mut self) -> bool {
         self.revert_matching(|_| true)
     }
 
     fn clear_undo_steps(&mut self) {
-        self.history.forget();
+        self.history.clear_steps();
     }
 }

@@ -44,7 +44,7 @@ impl DeviceFile {
         endings: &'static [&'static str],
         then: impl Fn(PathBuf) -> A + Send + Sync + 'static,
     ) -> Self {
-        let then = move |path, _| Payload::of(then(path));
+        let then = move |path, _| Payload::new(then(path));
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
@@ -57,7 +57,7 @@ impl DeviceFile {
         suggested: PathBuf,
         then: impl Fn(PathBuf, Language) -> A + Send + Sync + 'static,
     ) -> Self {
-        let then = move |path, language| Payload::of(then(path, language));
+        let then = move |path, language| Payload::new(then(path, language));
         DeviceFile { session, title, kind, endings, suggested: Some(suggested), then: Arc::new(then) }
     }
 
@@ -74,7 +74,7 @@ impl DeviceFile {
     }
 
     /// Returns the action to execute once a file has been chosen.
-    pub(super) fn chosen(&self, path: PathBuf, language: Language) -> Payload {
+    pub(super) fn action_for_path(&self, path: PathBuf, language: Language) -> Payload {
         (self.then)(path, language)
     }
 }

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Done, RecorderOwner};
-use super::closing::MUCH;
+use super::action::{Action, RecorderOwner, TaskResult};
+use super::closing::LONG_RECORDING_NS;
 use super::file_question::FileQuestion;
-use super::question::{Question, Then};
+use super::question::{FollowUpAction, Question};
 use super::recorder::{self, ExportResult, Recorder};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Picture, Severity, Text, connect, explain};
@@ -37,32 +37,36 @@ impl Studio {
     }
 
     /// Handles a typed path. The user is asked before an existing file is replaced.
-    pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
+    pub(super) fn handle_typed_path(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested_path().is_none() {
-            return self.chosen(question, path);
+            return self.handle_chosen_path(question, path);
         }
         self.services.tasks.run("look", move || {
             let exists = path.exists();
-            Action::Done(Done::Looked { question, path, exists })
+            Action::Done(TaskResult::Looked { question, path, exists })
         });
     }
 
-    pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
+    pub(super) fn handle_chosen_path(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
-            FileQuestion::Open => self.act(Action::Open(path)),
-            FileQuestion::Restore(session) => self.act(Action::Command(session, DeviceCommand::Restore(path))),
-            FileQuestion::Compare(session) => self.act(Action::Command(session, DeviceCommand::Compare(path))),
+            FileQuestion::Open => self.handle_action(Action::Open(path)),
+            FileQuestion::Restore(session) => {
+                self.handle_action(Action::Command(session, DeviceCommand::Restore(path)))
+            }
+            FileQuestion::Compare(session) => {
+                self.handle_action(Action::Command(session, DeviceCommand::Compare(path)))
+            }
             FileQuestion::OpenCapture => self.open_capture(path),
-            FileQuestion::Recording => self.act(Action::Connect(connect::ConnectAction::Recording(path))),
+            FileQuestion::Recording => self.handle_action(Action::Connect(connect::ConnectAction::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
             FileQuestion::OfDevice(file) => {
-                let action = file.chosen(path, self.settings.language);
-                self.act(Action::Device(file.session(), action));
+                let action = file.action_for_path(path, self.settings.language);
+                self.handle_action(Action::Device(file.session(), action));
             }
             FileQuestion::Table { owner, visible, .. } => self.write_table(owner, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
                 let result = picture.save(&path);
-                Action::Done(Done::FileSaved { message: Text::new("picture.saved"), path, result })
+                Action::Done(TaskResult::FileSaved { message: Text::new("picture.saved"), path, result })
             }),
             FileQuestion::Trace { session, .. } => self.save_trace(session, path),
         }
@@ -72,7 +76,7 @@ impl Studio {
         self.with_device(session, |device, services| device.save(path, services));
     }
 
-    pub fn recorder(&self, owner: RecorderOwner) -> Option<&Recorder> {
+    pub fn recorder_of(&self, owner: RecorderOwner) -> Option<&Recorder> {
         match owner {
             RecorderOwner::Device(id) => self.device(id).map(|device| device.recorder()),
             RecorderOwner::Tool(tab) => self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder()),
@@ -90,14 +94,14 @@ impl Studio {
 
     pub(super) fn apply_recorder_action(&mut self, owner: RecorderOwner, action: recorder::RecorderAction) {
         if let Some(recorder) = self.recorder_mut(owner) {
-            recorder.act(action);
+            recorder.handle_action(action);
         }
     }
 
     pub(super) fn confirm_discard_recording(&mut self, owner: RecorderOwner) {
-        if self.recorder(owner).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
+        if self.recorder_of(owner).is_some_and(|recorder| recorder.unexported_duration() >= LONG_RECORDING_NS) {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
-            self.question = Some(Question::before(text, confirm, Then::Forget(owner)));
+            self.question = Some(Question::new(text, confirm, FollowUpAction::Forget(owner)));
         } else {
             self.apply_recorder_action(owner, recorder::RecorderAction::Clear);
         }
@@ -128,7 +132,7 @@ impl Studio {
         let Some(content) = self.device(session).map(|device| device.trace().file_content()) else { return };
         self.services.tasks.run("trace", move || {
             let result = write_atomically(&path, content.as_bytes());
-            Action::Done(Done::FileSaved { message: Text::new("trace.saved"), path, result })
+            Action::Done(TaskResult::FileSaved { message: Text::new("trace.saved"), path, result })
         });
     }
 
@@ -141,7 +145,7 @@ impl Studio {
         };
         let stem = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
         let stem = stem.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
-        PathBuf::from(format!("{stem}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
+        PathBuf::from(format!("{stem}-{}.{ending}", self.services.current_time().strftime("%Y%m%d-%H%M%S")))
     }
 
     fn write_table(&mut self, owner: RecorderOwner, visible: bool, path: &Path) {
@@ -149,10 +153,9 @@ impl Studio {
         let Some(recorder) = self.recorder_mut(owner) else { return };
         let busy = recorder.export().is_some();
         match recorder.begin_export(path, visible) {
-            Some(writing) => self
-                .services
-                .tasks
-                .run("table", move || Action::Done(Done::TableWritten(owner, writing.run(&|| mailbox.wake())))),
+            Some(writing) => self.services.tasks.run("table", move || {
+                Action::Done(TaskResult::TableWritten(owner, writing.run(&|| mailbox.wake_window())))
+            }),
             None => {
                 let text = Text::new(if busy { "recorder.still_writing" } else { "recorder.nothing_to_write" });
                 self.services.notify(Severity::Warning, vec![text], None);
@@ -175,7 +178,7 @@ impl Studio {
                 (Severity::Good, vec![Text::new("recorder.written").with("rows", rows).with("path", path)])
             }
             Ok(None) => (Severity::Note, vec![Text::new("recorder.given_up").with("path", path)]),
-            Err(error) => (Severity::Error, vec![explain::file(error)]),
+            Err(error) => (Severity::Error, vec![explain::file_error_text(error)]),
         };
         if lost > 0 {
             texts.push(Text::new("recorder.lost").with("count", lost));
@@ -194,7 +197,7 @@ impl Studio {
                 self.services.log.remove_file_notices(path);
                 (Severity::Good, message.with("path", path.display()))
             }
-            Err(error) => (Severity::Error, explain::file(&error)),
+            Err(error) => (Severity::Error, explain::file_error_text(&error)),
         };
         self.services.notify(severity, vec![text], None);
     }

@@ -12,12 +12,12 @@ use crate::worker::{Device, OpenError, Session};
 
 /// Values for kinds of devices, at most one of each type.
 #[derive(Clone, Default)]
-pub struct Given(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
+pub struct TypeMap(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
 
-impl Given {
+impl TypeMap {
     /// Adds a value, replacing any earlier value of the same type.
     #[must_use]
-    pub fn with<T: Send + Sync + 'static>(mut self, value: T) -> Self {
+    pub fn with_value<T: Send + Sync + 'static>(mut self, value: T) -> Self {
         self.0.insert(TypeId::of::<T>(), Arc::new(value));
         self
     }
@@ -28,16 +28,16 @@ impl Given {
 }
 
 /// Prints only the number of values, because a value can be secret.
-impl fmt::Debug for Given {
+impl fmt::Debug for TypeMap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
     }
 }
 
-type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
+type OpenFn<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
 /// A function that replaces the one with which a kind of device opens links, for tests.
-pub struct LinkOpener<D: Device>(Box<Open<D>>);
+pub struct LinkOpener<D: Device>(Box<OpenFn<D>>);
 
 impl<D: Device> LinkOpener<D> {
     pub fn new(open: impl Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync + 'static) -> Self {
@@ -68,7 +68,10 @@ mod tests {
 
     #[test]
     fn one_value_per_type_is_kept_and_none_is_printed() {
-        let given = Given::default().with(Secret(0x9D)).with(String::from("first")).with(String::from("second"));
+        let given = TypeMap::default()
+            .with_value(Secret(0x9D))
+            .with_value(String::from("first"))
+            .with_value(String::from("second"));
         assert_eq!(given.get::<Secret>(), Some(&Secret(0x9D)));
         assert_eq!(given.get::<String>().map(String::as_str), Some("second"));
         assert_eq!(given.get::<u8>(), None);

@@ -26,7 +26,7 @@ impl<T> History<T> {
     }
 
     /// Records a step from the state `before`. Undone steps are discarded.
-    pub(crate) fn note(&mut self, before: T) {
+    pub(crate) fn record_step(&mut self, before: T) {
         self.redo.clear();
         self.undo.push(before);
         if self.undo.len() > Self::STEPS {
@@ -47,7 +47,7 @@ impl<T> History<T> {
         true
     }
 
-    pub(crate) fn forget(&mut self) {
+    pub(crate) fn clear_steps(&mut self) {
         *self = History::default();
     }
 
@@ -58,17 +58,17 @@ impl<T> History<T> {
 
 impl<T: PartialEq> History<T> {
     /// Changes `now` to `after` and records the step. Returns `false` if the two are equal.
-    pub(crate) fn step(&mut self, now: &mut T, after: T) -> bool {
+    pub(crate) fn apply_step(&mut self, now: &mut T, after: T) -> bool {
         if *now == after {
             return false;
         }
-        self.note(std::mem::replace(now, after));
+        self.record_step(std::mem::replace(now, after));
         true
     }
 
     /// Applies `follow` to the present state and all earlier ones, because the data below them have changed. Steps that
     /// no longer change anything are removed.
-    pub(crate) fn rebase(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
+    pub(crate) fn update_all_states(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);
         self.redo.clear();
@@ -84,19 +84,19 @@ mod tests {
     #[test]
     fn a_new_step_ends_redo() {
         let (mut history, mut now) = (History::default(), 1);
-        assert!(history.step(&mut now, 2) && history.step(&mut now, 3) && !history.step(&mut now, 3));
+        assert!(history.apply_step(&mut now, 2) && history.apply_step(&mut now, 3) && !history.apply_step(&mut now, 3));
         assert!(history.undo(&mut now) && now == 2 && history.can_redo());
         assert!(history.redo(&mut now) && now == 3 && !history.can_redo());
         assert!(history.undo(&mut now) && history.undo(&mut now) && now == 1 && !history.undo(&mut now));
-        assert!(history.step(&mut now, 4) && !history.redo(&mut now), "another way was taken");
-        history.forget();
+        assert!(history.apply_step(&mut now, 4) && !history.redo(&mut now), "another way was taken");
+        history.clear_steps();
         assert!(!history.can_undo() && now == 4);
     }
 
     #[test]
     fn the_last_two_hundred_steps_can_be_undone() {
         let (mut history, mut now) = (History::default(), 0);
-        (1..=250).for_each(|after| assert!(history.step(&mut now, after)));
+        (1..=250).for_each(|after| assert!(history.apply_step(&mut now, after)));
         while history.undo(&mut now) {}
         assert_eq!(now, 50);
     }
@@ -105,11 +105,11 @@ mod tests {
     fn steps_removed_by_a_rebase_cannot_be_undone() {
         let (mut history, mut now) = (History::default(), 1);
         for after in [2, 3, 14] {
-            history.step(&mut now, after);
+            history.apply_step(&mut now, after);
         }
         history.undo(&mut now);
         // Of 1, 2 and 3, three times 0 remains.
-        history.rebase(&mut now, |own| *own /= 10);
+        history.update_all_states(&mut now, |own| *own /= 10);
         assert!(now == 0 && !history.can_undo() && !history.can_redo());
     }
 }

@@ -39,13 +39,16 @@ impl KindRegistry {
     }
 
     pub(super) fn for_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
-        self.devices.iter().copied().find(|kind| kind.word() == word)
+        self.devices.iter().copied().find(|kind| kind.keyword() == word)
     }
 
     /// Returns the reason why a kind of device refuses a profile. If no kind knows the cause, its English message is
     /// returned.
-    pub(super) fn explain(self, cause: &Cause) -> Text {
-        self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
+    pub(super) fn explain_rejection(self, cause: &Cause) -> Text {
+        self.devices
+            .iter()
+            .find_map(|kind| kind.explain_rejection(cause))
+            .unwrap_or_else(|| explain::literal_text(cause))
     }
 
     /// Returns a link as it may be displayed and stored. Parameters that are secret for any kind of device are removed,

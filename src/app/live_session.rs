@@ -58,12 +58,12 @@ impl<D: Kind> LiveSession<D> {
         Ok(id)
     }
 
-    pub fn running(&self) -> Option<&RunningJob<D::JobStep>> {
+    pub fn running_job(&self) -> Option<&RunningJob<D::JobStep>> {
         self.running.as_ref()
     }
 
     /// Returns the polling interval, or `None` if polling is off.
-    pub fn polling(&self) -> Option<Duration> {
+    pub fn polling_interval(&self) -> Option<Duration> {
         self.worker.polling()
     }
 
@@ -72,7 +72,7 @@ impl<D: Kind> LiveSession<D> {
     }
 
     /// Starts to read the given values in addition to the samples.
-    pub(crate) fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
+    pub(crate) fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
         self.worker.watch(watched);
     }
 
@@ -84,7 +84,7 @@ impl<D: Kind> LiveSession<D> {
     }
 
     pub(super) fn stop_job(&mut self) {
-        let pace = self.polling();
+        let pace = self.polling_interval();
         self.stop();
         self.poll(pace);
     }
@@ -111,12 +111,12 @@ impl<D: Kind> LiveSession<D> {
     }
 
     /// Returns the samples since the previous call, and the number of dropped samples.
-    pub(super) fn samples(&mut self) -> (Vec<D::Sample>, u64) {
+    pub(super) fn take_samples(&mut self) -> (Vec<D::Sample>, u64) {
         self.worker.samples().drain()
     }
 
     /// Returns the frames since the previous call, and the number of dropped frames.
-    pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
+    pub(super) fn take_frames(&mut self) -> (Vec<TraceEntry>, u64) {
         self.trace.drain()
     }
 

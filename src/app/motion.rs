@@ -18,7 +18,7 @@ impl Studio {
     }
 
     /// Returns whether a drive is moving or about to move, as far as this is known.
-    pub fn moves(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         self.motion_controls().any(MotionControl::is_moving)
     }
 
@@ -49,7 +49,7 @@ impl Studio {
 
     /// Ends all held motions and runs without an end, because the window has lost the keyboard or a dialog covers it.
     pub(super) fn release_jogs(&mut self) {
-        self.motions_mut().for_each(MotionControl::let_go);
+        self.motions_mut().for_each(MotionControl::release_motion);
     }
 
     /// Ends a jog or run whose panel is no longer visible. Another tab or device, a dialog or a question can hide
@@ -58,12 +58,12 @@ impl Studio {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
         let tab = self.settings.tab;
-        let seen = self.shown.of(tab).filter(|_| !is_covered);
+        let seen = self.shown.session_of(tab).filter(|_| !is_covered);
         for device in &mut self.devices {
             let is_seen = seen == Some(device.id()) && !device.is_reviewing();
             if let Some(motion) = device.motion_mut().filter(|_| !is_seen) {
                 // A run in speed mode does not end by itself, so it must be ended as well.
-                motion.let_go();
+                motion.release_motion();
             }
         }
     }

@@ -40,7 +40,7 @@ pub struct Notice {
 
 impl Notice {
     /// Returns a prefix with the names of the device and the part. It is empty if there are none.
-    pub fn prefix(&self, words: impl Fn(&Text) -> String) -> String {
+    pub fn device_prefix(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
         if names.is_empty() { String::new() } else { format!("{}: ", names.join(", ")) }
@@ -85,12 +85,12 @@ impl NoticeLog {
         self.notices.iter()
     }
 
-    pub fn standing(&self) -> Option<&Notice> {
+    pub fn current(&self) -> Option<&Notice> {
         self.standing.as_ref()
     }
 
     /// Removes a notice about a session from the window, because it is no longer true.
-    pub(crate) fn settle(&mut self, id: &str, about: Option<&str>) {
+    pub(crate) fn remove_from_window(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);
         if self.standing.as_ref().is_some_and(is_it) {
@@ -113,7 +113,7 @@ impl NoticeLog {
 
 fn terminal_text(notice: &Notice) -> String {
     let words: Vec<String> = notice.texts.iter().map(Text::terminal_text).collect();
-    format!("{}{}", notice.prefix(Text::terminal_text), words.join(" "))
+    format!("{}{}", notice.device_prefix(Text::terminal_text), words.join(" "))
 }
 
 #[cfg(test)]
@@ -143,7 +143,7 @@ mod tests {
             log.add(notice(old));
             log.add(notice(new));
             assert_eq!(
-                log.standing().map(|own| own.severity),
+                log.current().map(|own| own.severity),
                 Some(if replaced { new } else { old }),
                 "{old:?} {new:?}"
             );
@@ -169,9 +169,9 @@ mod tests {
         let texts = vec![full, Text::new("session.not_saved")];
         log.add(Notice { at: Zoned::now(), severity: Severity::Error, texts, about: None, part: None });
         log.remove_file_notices(Path::new("/a/c.csv"));
-        assert!(log.standing().is_some());
+        assert!(log.current().is_some());
         log.remove_file_notices(Path::new("/a/b.csv"));
-        assert!(log.standing().is_none() && log.notices().len() == 1);
+        assert!(log.current().is_none() && log.notices().len() == 1);
     }
 
     #[test]
@@ -185,10 +185,10 @@ mod tests {
             about: Some("one".to_owned()),
             part: None,
         });
-        log.settle("session.busy", Some("one"));
-        log.settle("session.not_connected", Some("other"));
-        assert!(log.standing().is_some());
-        log.settle("session.not_connected", Some("one"));
-        assert!(log.standing().is_none() && log.notices().len() == 1);
+        log.remove_from_window("session.busy", Some("one"));
+        log.remove_from_window("session.not_connected", Some("other"));
+        assert!(log.current().is_some());
+        log.remove_from_window("session.not_connected", Some("one"));
+        assert!(log.current().is_none() && log.notices().len() == 1);
     }
 }

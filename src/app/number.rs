@@ -4,10 +4,10 @@
 use super::Text;
 
 /// Maximum number of signal periods per revolution that can be entered. Encoders do not have more.
-pub(crate) const MOST_PERIODS: u32 = 65_536;
+pub(crate) const MAX_PERIODS: u32 = 65_536;
 
 /// Parses a decimal number with an optional exponent. Returns `None` if the text is invalid.
-pub fn number(text: &str) -> Option<f64> {
+pub fn parse_decimal(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".").replace('−', "-");
     // The parser would accept words such as `inf`.
     let plain = text.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E'));
@@ -18,23 +18,23 @@ pub fn number(text: &str) -> Option<f64> {
 ///
 /// # Errors
 /// Returns the reason why the entry is invalid.
-pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
+pub(crate) fn parse_in_range(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     let what = what.into();
-    filled(&what, text)?;
+    check_not_empty(&what, text)?;
     let refused = || {
         let refusal = Text::new("entry.number").with_text("what", what.clone()).with("entry", text.trim());
-        refusal.with_number("least", least, decimals(least)).with_number("most", most, decimals(most))
+        refusal.with_number("least", least, decimal_places(least)).with_number("most", most, decimal_places(most))
     };
-    number(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
+    parse_decimal(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
 /// Parses a whole number from `least` to `most`, in decimal or in hexadecimal with the prefix `0x`.
 ///
 /// # Errors
 /// Returns the reason why the entry is invalid.
-pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) -> Result<u32, Text> {
+pub(crate) fn parse_integer(what: impl Into<Text>, text: &str, least: u32, most: u32) -> Result<u32, Text> {
     let what = what.into();
-    filled(&what, text)?;
+    check_not_empty(&what, text)?;
     let digits = text.trim();
     let value = match digits.strip_prefix("0x") {
         Some(hex) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => u32::from_str_radix(hex, 16).ok(),
@@ -54,7 +54,7 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
 /// Returns the reason why the entry is invalid.
 pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
-    filled(&what, text)?;
+    check_not_empty(&what, text)?;
     let digits = text.trim();
     let hex = digits.strip_prefix("0x").or_else(|| digits.strip_suffix(['h', 'H']));
     let value = match hex {
@@ -73,7 +73,7 @@ pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) 
 ///
 /// A prefix from f to G may follow the number or replace its decimal point, and the unit may be left out: `10k`, `10
 /// kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`. An exponent is possible as well: `22e-12`.
-fn quantity(text: &str) -> Option<f64> {
+fn parse_component_value(text: &str) -> Option<f64> {
     const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
     const PREFIXES: [(char, f64); 10] = [
         ('f', 1e-15),
@@ -91,14 +91,14 @@ fn quantity(text: &str) -> Option<f64> {
     let text = UNITS.iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
     let prefix = PREFIXES.iter().find_map(|(prefix, factor)| Some((text.split_once(*prefix)?, factor)));
     match prefix {
-        Some(((before, ""), factor)) => number(before).map(|value| value * factor),
+        Some(((before, ""), factor)) => parse_decimal(before).map(|value| value * factor),
         // In `4k7` the prefix replaces the decimal point, so there must not be another one.
         Some(((before, behind), factor)) => {
             let whole = |digits: &str| !digits.is_empty() && digits.bytes().all(|c| c.is_ascii_digit());
-            let value = number(&format!("{before}.{behind}")).filter(|_| whole(before) && whole(behind))?;
+            let value = parse_decimal(&format!("{before}.{behind}")).filter(|_| whole(before) && whole(behind))?;
             Some(value * factor)
         }
-        None => number(text),
+        None => parse_decimal(text),
     }
 }
 
@@ -113,20 +113,20 @@ pub(crate) fn parse_quantity(
     range: (&'static str, &'static str),
 ) -> Result<f64, Text> {
     let what = what.into();
-    filled(&what, text)?;
+    check_not_empty(&what, text)?;
     let refused = || {
         let refusal = Text::new("entry.quantity").with_text("what", what.clone()).with("entry", text.trim());
         refusal.with("least", range.0).with("most", range.1)
     };
-    quantity(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
+    parse_component_value(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-fn filled(what: &Text, text: &str) -> Result<(), Text> {
+fn check_not_empty(what: &Text, text: &str) -> Result<(), Text> {
     if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", what.clone())) } else { Ok(()) }
 }
 
 /// Returns the number of decimals needed to show a limit, at most three.
-pub(crate) fn decimals(value: f64) -> usize {
+pub(crate) fn decimal_places(value: f64) -> usize {
     decimals_of(value, 3)
 }
 
@@ -152,14 +152,14 @@ mod tests {
             ("3.", 3.0),
             ("1e3", 1000.0),
         ] {
-            assert_eq!(number(text), Some(value), "{text}");
+            assert_eq!(parse_decimal(text), Some(value), "{text}");
         }
         let endless = "9".repeat(400);
         for text in [
             "", " ", "-", ".", "e3", "1e999", "NaN", "nan", "inf", "-inf", "--1", "+-1", "1.2.3", "1 2", "0x10", "½",
             &endless,
         ] {
-            assert_eq!(number(text), None, "{text}");
+            assert_eq!(parse_decimal(text), None, "{text}");
         }
     }
 
@@ -183,7 +183,7 @@ mod tests {
             ("2n2", 2.2e-9),
             ("5m", 5e-3),
         ] {
-            let read = quantity(text).unwrap_or(f64::NAN);
+            let read = parse_component_value(text).unwrap_or(f64::NAN);
             assert!((read - value).abs() <= value * 1e-12, "{text}: {read}");
         }
         let none = [
@@ -191,20 +191,20 @@ mod tests {
             "1pn",
         ];
         for text in none {
-            assert_eq!(quantity(text), None, "{text}");
+            assert_eq!(parse_component_value(text), None, "{text}");
         }
     }
 
     #[test]
     fn a_refusal_names_the_entry_and_the_range() {
-        let refusal = within("connect.tcp_port", "91", 0.1, 90.0).unwrap_err();
-        assert_eq!(refusal.words(Language::English), "TCP port: \"91\" is not a number from 0.1 to 90.");
-        assert!(refusal.words(Language::German).ends_with("keine Zahl von 0,1 bis 90."));
-        assert_eq!(within("connect.tcp_port", "90", 0.1, 90.0), Ok(90.0));
-        assert_eq!(within("connect.tcp_port", "  ", 0.1, 90.0).unwrap_err().id(), "entry.missing");
+        let refusal = parse_in_range("connect.tcp_port", "91", 0.1, 90.0).unwrap_err();
+        assert_eq!(refusal.to_string_in(Language::English), "TCP port: \"91\" is not a number from 0.1 to 90.");
+        assert!(refusal.to_string_in(Language::German).ends_with("keine Zahl von 0,1 bis 90."));
+        assert_eq!(parse_in_range("connect.tcp_port", "90", 0.1, 90.0), Ok(90.0));
+        assert_eq!(parse_in_range("connect.tcp_port", "  ", 0.1, 90.0).unwrap_err().id(), "entry.missing");
         for text in ["-1", "1.5", "4294967296", "99999999999999999999999", "0x", "0xG", "+1", "0", "501"] {
-            assert_eq!(whole("connect.margin", text, 1, 500).unwrap_err().id(), "entry.whole", "{text}");
+            assert_eq!(parse_integer("connect.margin", text, 1, 500).unwrap_err().id(), "entry.whole", "{text}");
         }
-        assert_eq!(whole("connect.margin", "0x10", 1, 500), Ok(16));
+        assert_eq!(parse_integer("connect.margin", "0x10", 1, 500), Ok(16));
     }
 }

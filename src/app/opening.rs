@@ -3,9 +3,9 @@
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-use super::action::{Action, Attempt, Done, OpenFailure, OpenedConnection};
+use super::action::{Action, ConnectAttempt, OpenFailure, OpenedConnection, TaskResult};
 use super::given::LinkOpener;
-use super::question::{Question, Then};
+use super::question::{FollowUpAction, Question};
 use super::services::{JobState, Services, StudioEnvironment};
 use super::session::{Kind, PendingOpen, Phase, Source};
 use super::shutdown::is_same_connection;
@@ -31,14 +31,15 @@ impl Studio {
         let tab = self.settings.tab;
         let shown = if kinds.kind_for_tab(tab).is_some() { tab } else { kinds.first_tab() };
         let Some(link) = link else { return shown };
-        let fits = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
+        let fits = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.check_link(link).is_ok());
         // Every kind has virtual devices, so a `sim:` link does not identify the kind.
         let text = (link.scheme != LinkScheme::Sim).then(|| link.to_string());
-        let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
+        let used =
+            |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links_of(*tab).contains(text));
         let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
         let leads_there =
-            |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| !kind.check(link).is_err_and(is_elsewhere));
+            |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| !kind.check_link(link).is_err_and(is_elsewhere));
         // An invalid link is reported by a kind of device to which such links can lead.
         tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
@@ -76,7 +77,7 @@ impl Studio {
                 return None;
             }
             let held = device.is_connected();
-            device.let_go(JobState::Cancelled, &mut self.services);
+            device.release_thread(JobState::Cancelled, &mut self.services);
             if device.tab() == tab {
                 device.switch_link(url.clone());
                 own = Some(device.id());
@@ -116,7 +117,7 @@ impl Studio {
         if device.is_writing() {
             return Err(Text::new("session.writes_there").with("name", name));
         }
-        device.let_go(JobState::Cancelled, &mut self.services);
+        device.release_thread(JobState::Cancelled, &mut self.services);
         *device.phase_mut() = Phase::Lost(why.clone());
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         self.services.notify(Severity::Note, vec![why], Some(&name));
@@ -126,7 +127,7 @@ impl Studio {
     pub(crate) fn reconnect(&mut self, id: SessionId) {
         let Some(device) = self.devices.iter_mut().find(|own| own.id() == id && !own.is_writing()) else { return };
         let Source::Link(url) = device.source().clone() else { return };
-        device.let_go(JobState::Cancelled, &mut self.services);
+        device.release_thread(JobState::Cancelled, &mut self.services);
         self.open_session_link(id, url);
     }
 
@@ -139,7 +140,7 @@ impl Studio {
             return self.start_open_attempt(id, url, false);
         }
         *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
-        self.question = Some(Question::other_master(kinds.display_link(&url), Then::OpenLink(id)));
+        self.question = Some(Question::other_master(kinds.display_link(&url), FollowUpAction::OpenLink(id)));
     }
 
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
@@ -159,8 +160,8 @@ impl Studio {
         *device.opening_mut() = Some(PendingOpen { attempt: Some(attempt), over, is_sole_master });
     }
 
-    pub(super) fn opened(&mut self, done: Attempt) {
-        let Attempt { session, attempt, result } = done;
+    pub(super) fn handle_opened(&mut self, done: ConnectAttempt) {
+        let ConnectAttempt { session, attempt, result } = done;
         let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_current_attempt(attempt);
         let Some(device) = self.devices.iter_mut().find(own) else {
             if let Ok(opened) = result {
@@ -193,17 +194,17 @@ impl Services {
         url: LinkUrl,
         earlier: Option<Receiver<()>>,
         prepare: impl FnOnce(&mut Session<D>) + Send + 'static,
-        done: impl FnOnce(Result<Box<OpenedConnection<D>>, Box<OpenFailure>>) -> Done + Send + 'static,
+        done: impl FnOnce(Result<Box<OpenedConnection<D>>, Box<OpenFailure>>) -> TaskResult + Send + 'static,
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
-        let (world, wake) = (self.world.clone(), self.tasks.wake());
+        let (world, wake) = (self.world.clone(), self.tasks.wake_callback());
         let endings = self.sessions_closing_on_link(&url);
         self.tasks.run("open", move || {
             if let Some(earlier) = earlier {
                 // Nothing is ever sent on this channel; it only closes.
                 let _ = earlier.recv_timeout(world.patience.job);
             }
-            let free = endings.into_iter().all(|(ending, patience)| ending.wait(patience));
+            let free = endings.into_iter().all(|(ending, patience)| ending.wait_for_end(patience));
             let result = if free { open(&world, &url, prepare, wake, turn) } else { Err(Box::new(OpenFailure::Held)) };
             Action::Done(done(result))
         });

@@ -2,7 +2,7 @@
 
 /// Returns how well a name matches the typed text, or `None` if a typed word is missing. The best match is 0. Case and
 /// word order do not matter.
-pub(crate) fn fit(typed: &str, name: &str) -> Option<usize> {
+pub(crate) fn match_score(typed: &str, name: &str) -> Option<usize> {
     let (typed, name) = (typed.to_lowercase(), name.to_lowercase());
     typed.split_whitespace().map(|word| match_quality(word, &name)).sum()
 }
@@ -37,7 +37,7 @@ mod tests {
             ("  ", "Save", Some(0)),
         ];
         for (typed, name, expected) in cases {
-            assert_eq!(fit(typed, name), expected, "{typed:?} in {name:?}");
+            assert_eq!(match_score(typed, name), expected, "{typed:?} in {name:?}");
         }
     }
 }

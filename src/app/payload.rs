@@ -4,7 +4,7 @@
 use std::any::Any;
 use std::fmt;
 
-use super::action::{Action, Done};
+use super::action::{Action, TaskResult};
 use super::connect::form::Finder;
 use super::studio::SessionId;
 use super::tab::Tab;
@@ -20,11 +20,11 @@ pub struct Payload(Box<dyn Any + Send>);
 pub struct PayloadKindError;
 
 impl Payload {
-    pub(in crate::app) fn of(content: impl Any + Send) -> Self {
+    pub(in crate::app) fn new(content: impl Any + Send) -> Self {
         Payload(Box::new(content))
     }
 
-    pub(in crate::app) fn is<T: Any>(&self) -> bool {
+    pub(in crate::app) fn contains<T: Any>(&self) -> bool {
         self.0.is::<T>()
     }
 
@@ -45,22 +45,22 @@ impl fmt::Debug for Payload {
 
 impl Action {
     pub fn device(id: SessionId, action: impl DeviceAction) -> Self {
-        Action::Device(id, Payload::of(action))
+        Action::Device(id, Payload::new(action))
     }
 }
 
-impl Done {
+impl TaskResult {
     /// Wraps the result of a device task, whose type depends on the kind of device.
     pub(crate) fn device(id: SessionId, done: impl Any + Send) -> Self {
-        Done::Device(id, Payload::of(done))
+        TaskResult::Device(id, Payload::new(done))
     }
 
     /// Wraps the result of a search task for the connection form of a kind of device.
-    pub fn finder<F: Finder>(tab: Tab, done: F::Done) -> Self {
-        Done::Finder(tab, Payload::of(done))
+    pub fn from_finder<F: Finder>(tab: Tab, done: F::TaskResult) -> Self {
+        TaskResult::Finder(tab, Payload::new(done))
     }
 
-    pub fn tool(tab: Tab, done: impl Any + Send) -> Self {
-        Done::Tool(tab, Payload::of(done))
+    pub fn from_tool(tab: Tab, done: impl Any + Send) -> Self {
+        TaskResult::Tool(tab, Payload::new(done))
     }
 }

@@ -19,7 +19,7 @@ pub trait PendingEdits {
     fn redo(&mut self) -> bool;
 
     /// Discards all edits as one undo step. Returns `false` if there are none.
-    fn revert(&mut self) -> bool;
+    fn discard_all(&mut self) -> bool;
 
     /// Discards the undo steps, because the edits have been written or saved.
     fn clear_undo_steps(&mut self);
@@ -36,7 +36,7 @@ pub(crate) trait SnapshotEdits {
     fn history(&self) -> &History<Self::Values>;
 
     /// Returns the original values, the edited values and the undo steps, or `None` if nothing has been read.
-    fn parts(&mut self) -> Option<EditHistoryParts<'_, Self::Values>>;
+    fn history_parts(&mut self) -> Option<EditHistoryParts<'_, Self::Values>>;
 }
 
 /// The original values, the edited values and the undo steps.
@@ -60,20 +60,20 @@ impl<S: SnapshotEdits> PendingEdits for S {
     }
 
     fn undo(&mut self) -> bool {
-        self.parts().is_some_and(|(_, wanted, history)| history.undo(wanted))
+        self.history_parts().is_some_and(|(_, wanted, history)| history.undo(wanted))
     }
 
     fn redo(&mut self) -> bool {
-        self.parts().is_some_and(|(_, wanted, history)| history.redo(wanted))
+        self.history_parts().is_some_and(|(_, wanted, history)| history.redo(wanted))
     }
 
-    fn revert(&mut self) -> bool {
-        self.parts().is_some_and(|(base, wanted, history)| history.step(wanted, base.clone()))
+    fn discard_all(&mut self) -> bool {
+        self.history_parts().is_some_and(|(base, wanted, history)| history.apply_step(wanted, base.clone()))
     }
 
     fn clear_undo_steps(&mut self) {
-        if let Some((_, _, history)) = self.parts() {
-            history.forget();
+        if let Some((_, _, history)) = self.history_parts() {
+            history.clear_steps();
         }
     }
 }

@@ -39,10 +39,10 @@ impl Picture {
             task: FileOperation::Write,
             problem: FileErrorKind::from(error),
         };
-        write_atomically(path, &self.png().map_err(refused)?)
+        write_atomically(path, &self.encode_png().map_err(refused)?)
     }
 
-    fn png(&self) -> Result<Vec<u8>, std::io::Error> {
+    fn encode_png(&self) -> Result<Vec<u8>, std::io::Error> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);
@@ -62,7 +62,7 @@ mod tests {
         assert!(Picture::new(0, 7, Vec::new()).is_none());
         let pixels = vec![255, 0, 0, 0, 0, 255];
         let picture = Picture::new(2, 1, pixels.clone()).unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(picture.png().unwrap())).read_info().unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(picture.encode_png().unwrap())).read_info().unwrap();
         let mut read = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut read).unwrap();
         assert_eq!((info.width, info.height, read), (2, 1, pixels));

@@ -15,11 +15,11 @@ pub struct Question {
     pub text: Text,
     pub confirm: Text,
     pub decline: Text,
-    pub(super) then: Then,
+    pub(super) then: FollowUpAction,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Then {
+pub(crate) enum FollowUpAction {
     CloseWindow,
     CloseSession(SessionId),
     Write(FileQuestion, PathBuf),
@@ -31,12 +31,12 @@ pub(crate) enum Then {
 }
 
 impl Question {
-    pub(super) fn before(text: Text, confirm: Text, then: Then) -> Self {
+    pub(super) fn new(text: Text, confirm: Text, then: FollowUpAction) -> Self {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
     /// Creates the question whether another master may be on the line of a link.
-    pub(crate) fn other_master(link: String, then: Then) -> Self {
+    pub(crate) fn other_master(link: String, then: FollowUpAction) -> Self {
         Question {
             text: Text::new("question.drive").with("link", link),
             confirm: Text::new("question.no_drive"),

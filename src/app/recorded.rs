@@ -21,7 +21,7 @@ fn settings_match_the_recorded_file() {
         Tab::named("Hiperdrive"),
         Tab::named("Signals"),
     ];
-    assert!(tabs.iter().all(|tab| settings.links(*tab).len() == 1));
+    assert!(tabs.iter().all(|tab| settings.links_of(*tab).len() == 1));
     assert_eq!(Settings::parse_partial(SETTINGS), settings);
 }
 

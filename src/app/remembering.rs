@@ -9,9 +9,9 @@ use super::studio::Studio;
 use crate::store::FileError;
 
 /// Interval at which the settings are read again while drives are under control.
-const PACE: Duration = Duration::from_secs(1);
+const REFRESH_INTERVAL: Duration = Duration::from_secs(1);
 /// Time for which settings stay valid after they were read. It is the same as for values read from the drives.
-const STALE: Duration = Duration::from_secs(4);
+const VALIDITY: Duration = Duration::from_secs(4);
 
 impl Studio {
     pub(super) fn remember_drives(&mut self) {
@@ -26,18 +26,18 @@ impl Studio {
     /// Reads the settings periodically while drives are under control. Another window may have marked limits as
     /// unconfirmed.
     pub(super) fn refresh_settings(&mut self) {
-        let now = self.services.now();
-        let is_old = self.settings_store.is_last_read_older(&now, STALE);
-        let mut is_due = self.has_control() && self.settings_store.is_last_read_older(&now, PACE);
+        let now = self.services.current_time();
+        let is_old = self.settings_store.is_last_read_older(&now, VALIDITY);
+        let mut is_due = self.has_control() && self.settings_store.is_last_read_older(&now, REFRESH_INTERVAL);
         for drives in self.controlled_drives() {
-            if is_old && drives.marks() == SettingsReadState::Read {
+            if is_old && drives.read_state() == SettingsReadState::Read {
                 drives.set_read_state(SettingsReadState::Unread);
             }
-            is_due |= drives.marks() == SettingsReadState::Unread;
+            is_due |= drives.read_state() == SettingsReadState::Unread;
         }
         if is_due && self.settings_store.begin_read(&self.services) {
             self.controlled_drives()
-                .for_each(|drives| drives.set_read_state(drives.marks().max(SettingsReadState::Reading)));
+                .for_each(|drives| drives.set_read_state(drives.read_state().max(SettingsReadState::Reading)));
         }
     }
 
@@ -48,7 +48,7 @@ impl Studio {
             }
         }
         self.remember_drives();
-        let reading = |drives: &&mut dyn StoredDriveData| drives.marks() == SettingsReadState::Reading;
+        let reading = |drives: &&mut dyn StoredDriveData| drives.read_state() == SettingsReadState::Reading;
         self.controlled_drives().filter(reading).for_each(|drives| drives.set_read_state(SettingsReadState::Read));
     }
 

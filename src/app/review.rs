@@ -44,9 +44,9 @@ pub enum ReviewState<K: Reviewable> {
 
 impl<K: Reviewable> Review<K> {
     pub(crate) fn new(mut change: K::Change, is_for_another: bool, is_for_other_type: bool) -> Self {
-        let own = |permit| K::permitted(&mut change, permit).map(|own| PermitToggle { permit, is_on: *own });
+        let own = |permit| K::permit_flag(&mut change, permit).map(|own| PermitToggle { permit, is_on: *own });
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
-        let what = K::change(&change);
+        let what = K::change_title(&change);
         Review {
             title: what,
             state: ReviewState::Planning,
@@ -59,7 +59,7 @@ impl<K: Reviewable> Review<K> {
     }
 
     /// Returns the displayed plan. There is one until the review ends.
-    pub fn prepared(&self) -> Option<&K::Prepared> {
+    pub fn prepared_plan(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
                 Some(prepared)
@@ -69,7 +69,7 @@ impl<K: Reviewable> Review<K> {
     }
 
     pub(crate) fn plan_in_progress(&self) -> Option<&K::Prepared> {
-        self.prepared().filter(|_| self.is_writing())
+        self.prepared_plan().filter(|_| self.is_writing())
     }
 
     pub fn is_planning(&self) -> bool {
@@ -86,14 +86,14 @@ impl<K: Reviewable> Review<K> {
     }
 
     /// Ends the review early. If the execution had begun, `done` operations had been completed.
-    pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
+    pub(in crate::app) fn end_early(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.plan_in_progress().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
     pub(crate) fn with_toggled_permit(&self, permit: Permit) -> Option<K::Change> {
         let mut change = self.change.clone();
-        let own = K::permitted(&mut change, permit)?;
+        let own = K::permit_flag(&mut change, permit)?;
         *own = !*own;
         Some(change)
     }
@@ -103,7 +103,7 @@ impl<K: Reviewable> Review<K> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
             Permit::TypeMismatch => self.is_for_other_type,
-            Permit::Mounting => self.prepared().is_some_and(K::skips_mounting_values),
+            Permit::Mounting => self.prepared_plan().is_some_and(K::skips_mounting_values),
             Permit::Recreate => true,
             // This permit is offered as a question.
             Permit::Copy(_) => false,
@@ -128,7 +128,7 @@ pub struct ChangeTexts {
 }
 
 impl OperationTexts {
-    pub fn one(item: Text, old: Text, new: Text) -> Self {
+    pub fn single(item: Text, old: Text, new: Text) -> Self {
         OperationTexts { item, changes: vec![ChangeTexts { part: None, old, new }] }
     }
 
@@ -229,10 +229,10 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     type Prepared: PlannedWrite + Clone;
     type Written;
 
-    fn change(change: &Self::Change) -> Text;
+    fn change_title(change: &Self::Change) -> Text;
     /// Returns the flag for a permit in a change, or `None` if the permit does not apply.
-    fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
-    fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
+    fn permit_flag(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
+    fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
     /// Returns whether some values depend on the mounting, differ, and are not written.
     fn skips_mounting_values(_prepared: &Self::Prepared) -> bool {
         false
@@ -256,7 +256,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    fn cost(prepared: &Self::Prepared) -> Text;
+    fn cost_text(prepared: &Self::Prepared) -> Text;
 
     /// Returns whether the device reaches its limit of write cycles with this plan.
     fn reaches_wear_limit(prepared: &Self::Prepared) -> bool {
@@ -264,10 +264,10 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
 
-    fn written(written: &Self::Written) -> Text;
+    fn written_text(written: &Self::Written) -> Text;
 
-    fn verified(written: &Self::Written) -> Text {
-        Self::written(written)
+    fn verified_text(written: &Self::Written) -> Text {
+        Self::written_text(written)
     }
 
     fn execution_mode(_prepared: &Self::Prepared) -> ExecutionMode {
@@ -278,7 +278,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
 pub(crate) type Op<K> = <<K as Reviewable>::Prepared as PlannedWrite>::Op;
 
 pub fn written_texts<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Severity, Vec<Text>) {
-    let text = K::written(&committed.written);
+    let text = K::written_text(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
         None => (Severity::Good, vec![text]),
@@ -305,8 +305,8 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
 
 impl<K: Reviewable> Review<K> {
     /// Returns the review as it is displayed after `done` completed operations.
-    pub fn sheet(&self, done: usize) -> ReviewSheet {
-        self.review_sheet(done, K::op)
+    pub fn to_sheet(&self, done: usize) -> ReviewSheet {
+        self.review_sheet(done, K::operation_texts)
     }
 
     /// Returns the review as it is displayed. `op` describes the operations for the connected device.
@@ -315,7 +315,7 @@ impl<K: Reviewable> Review<K> {
         done: usize,
         op: impl Fn(&K::Prepared, &Op<K>) -> OperationTexts,
     ) -> ReviewSheet {
-        let prepared = self.prepared();
+        let prepared = self.prepared_plan();
         let cut_off = match &self.state {
             ReviewState::Failed { cut_off: Some((prepared, done)), .. } => Some((&**prepared, *done)),
             _ => None,
@@ -328,7 +328,7 @@ impl<K: Reviewable> Review<K> {
             ReviewState::Ready(_) => plan.map_or(Stage::Nothing, Stage::Ready),
             ReviewState::Writing(_) => Stage::Writing(done),
             ReviewState::Done(_, own) => Stage::Done {
-                verified: K::verified(&own.written),
+                verified: K::verified_text(&own.written),
                 backup: own.backup.clone(),
                 logbook: own.logbook_warning.as_ref().map(explain::logbook),
             },
@@ -347,7 +347,7 @@ impl<K: Reviewable> Review<K> {
             warnings: shown.map(K::warnings).unwrap_or_default(),
             needs: shown.map(|own| K::requirements(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
-            cost: costs.map(K::cost),
+            cost: costs.map(K::cost_text),
             execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
             toggles: self.permit_toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),

@@ -9,7 +9,7 @@ use jiff::Zoned;
 use super::Text;
 use super::brakes::DriveStopHandles;
 use super::file_question::FileQuestion;
-use super::given::Given;
+use super::given::TypeMap;
 use super::kinds::KindRegistry;
 use super::notices::{Notice, NoticeLog, Severity};
 use super::remote::is_remote_session;
@@ -25,7 +25,7 @@ use crate::worker::JobId;
 pub struct StudioEnvironment {
     pub store: Store,
     /// Values for kinds of devices from outside.
-    pub given: Given,
+    pub given: TypeMap,
     pub kinds: KindRegistry,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Folders that relative paths refer to.
@@ -38,10 +38,10 @@ pub struct StudioEnvironment {
 }
 
 impl StudioEnvironment {
-    pub fn real(store: Store, kinds: KindRegistry) -> Self {
+    pub fn production(store: Store, kinds: KindRegistry) -> Self {
         StudioEnvironment {
             store,
-            given: Given::default(),
+            given: TypeMap::default(),
             kinds,
             ports: Arc::new(crate::link::ports),
             folders: BaseFolders::for_current_user(),
@@ -95,7 +95,7 @@ impl Services {
     }
 
     /// Shares data with all sessions of a kind of device. Earlier data are replaced.
-    pub fn share<T: Any>(&mut self, value: T) {
+    pub fn share_value<T: Any>(&mut self, value: T) {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
 
@@ -121,12 +121,12 @@ impl Services {
         (self.world.is_remote)()
     }
 
-    pub(crate) fn now(&self) -> Zoned {
+    pub(crate) fn current_time(&self) -> Zoned {
         (self.world.now)()
     }
 
     pub(crate) fn notify(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
-        self.log.add(self.notice(severity, texts, about));
+        self.log.add(self.create_notice(severity, texts, about));
     }
 
     /// Adds a notice about a part of a device to the log, and displays it in the window.
@@ -136,16 +136,16 @@ impl Services {
         texts: Vec<Text>,
         (about, part): (Option<&str>, Option<Text>),
     ) {
-        self.log.add(Notice { part, ..self.notice(severity, texts, about) });
+        self.log.add(Notice { part, ..self.create_notice(severity, texts, about) });
     }
 
     /// Adds a notice to the log. It is not displayed, because the window already shows it elsewhere.
-    pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
-        self.log.add_to_log(self.notice(severity, texts, about));
+    pub(crate) fn log_only(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+        self.log.add_to_log(self.create_notice(severity, texts, about));
     }
 
-    fn notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {
-        Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
+    fn create_notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {
+        Notice { at: self.current_time(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
     }
 
     pub fn jobs(&self) -> impl DoubleEndedIterator<Item = &JobRecord> + ExactSizeIterator {
@@ -154,7 +154,7 @@ impl Services {
 
     pub(super) fn record_job_start(&mut self, session: SessionId, id: JobId, about: &str, what: Text) {
         let about = about.to_owned();
-        let since = self.now();
+        let since = self.current_time();
         self.jobs.push_back(JobRecord {
             since,
             until: None,
@@ -169,7 +169,7 @@ impl Services {
     }
 
     pub(crate) fn end_job(&mut self, session: SessionId, id: JobId, end: JobState) {
-        let now = self.now();
+        let now = self.current_time();
         if let Some(job) = self.jobs.iter_mut().rev().find(|job| job.key == (session, id)) {
             job.end = end;
             job.until = Some(now);

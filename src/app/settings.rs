@@ -62,7 +62,7 @@ impl Default for Settings {
 
 impl Settings {
     /// Returns the settings for the first start of the program.
-    pub fn of(kinds: KindRegistry) -> Self {
+    pub fn initial(kinds: KindRegistry) -> Self {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
@@ -93,7 +93,7 @@ impl Settings {
                 links: Links,
                 // This is the format from the time when there was only one kind of device.
                 entry!(links: Vec<String>, Vec::new()).into_iter().rev().fold(Links::default(), |mut links, link| {
-                    links.change(Tab::default(), |own| own.insert(0, link));
+                    links.edit_links(Tab::default(), |own| own.insert(0, link));
                     links
                 })
             ),
@@ -124,7 +124,7 @@ impl Settings {
         take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone);
         self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
-            let used = links_used_since(known.links(tab), ours.links(tab));
+            let used = links_used_since(known.links_of(tab), ours.links_of(tab));
             used.iter().rev().for_each(|link| self.use_link(tab, link));
         }
         self
@@ -158,20 +158,20 @@ impl Settings {
     }
 
     /// Returns the links used in a tab, with the latest first.
-    pub fn links(&self, tab: Tab) -> &[String] {
-        self.links.of(tab)
+    pub fn links_of(&self, tab: Tab) -> &[String] {
+        self.links.links_of(tab)
     }
 
     /// Replaces an unknown tab with the first one.
-    pub(super) fn settle(&mut self, kinds: KindRegistry) {
+    pub(super) fn replace_unknown_tab(&mut self, kinds: KindRegistry) {
         if !kinds.has_tab(self.tab) {
             self.tab = kinds.first_tab();
         }
-        self.links.settle(kinds.first_tab());
+        self.links.move_old_links(kinds.first_tab());
     }
 
     pub fn use_link(&mut self, tab: Tab, link: &str) {
-        self.links.change(tab, |links| {
+        self.links.edit_links(tab, |links| {
             links.retain(|known| known != link);
             links.insert(0, link.to_owned());
             links.truncate(Self::LINKS);
@@ -184,11 +184,11 @@ impl Settings {
 struct Links(Vec<(Tab, Vec<String>)>);
 
 impl Links {
-    fn of(&self, tab: Tab) -> &[String] {
+    fn links_of(&self, tab: Tab) -> &[String] {
         self.0.iter().find(|(own, _)| *own == tab).map_or(&[], |(_, links)| links)
     }
 
-    fn change(&mut self, tab: Tab, change: impl FnOnce(&mut Vec<String>)) {
+    fn edit_links(&mut self, tab: Tab, change: impl FnOnce(&mut Vec<String>)) {
         if let Some((_, links)) = self.0.iter_mut().find(|(own, _)| *own == tab) {
             change(links);
         } else {
@@ -204,10 +204,10 @@ impl Links {
 
     /// Moves links from an old file to the first tab. Such files date from the time when there was only one kind of
     /// device.
-    fn settle(&mut self, first: Tab) {
+    fn move_old_links(&mut self, first: Tab) {
         let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
         let (_, links) = self.0.remove(at);
-        self.change(first, |own| drop(own.splice(0..0, links)));
+        self.edit_links(first, |own| drop(own.splice(0..0, links)));
     }
 }
 
@@ -230,7 +230,7 @@ impl<'de> Deserialize<'de> for Links {
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Links, A::Error> {
                 let mut links = Links::default();
                 while let Some((tab, used)) = map.next_entry()? {
-                    links.change(tab, |own| *own = used);
+                    links.edit_links(tab, |own| *own = used);
                 }
                 Ok(links)
             }
@@ -276,8 +276,8 @@ mod tests {
         assert_eq!(Settings::parse(&broken), None);
         assert_eq!(Settings::parse_partial(&broken), settings);
         assert_eq!(Settings::parse_partial("(theme: Light, links: 7)").theme, ColorScheme::Light);
-        assert_eq!(Settings::parse_partial("(links: [\"sim:\"])").links(Tab::default()), ["sim:"], "from before");
-        assert!(Settings::parse_partial("no settings").links(HIPERFACE).is_empty());
+        assert_eq!(Settings::parse_partial("(links: [\"sim:\"])").links_of(Tab::default()), ["sim:"], "from before");
+        assert!(Settings::parse_partial("no settings").links_of(HIPERFACE).is_empty());
     }
 
     /// A tab that belongs to a different version of the program is unknown here, but its entries are kept.
@@ -285,12 +285,12 @@ mod tests {
     fn links_of_an_unknown_tab_are_kept() {
         let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
         let mut settings = Settings::parse(text).unwrap();
-        settings.settle(KindRegistry::NONE);
+        settings.replace_unknown_tab(KindRegistry::NONE);
         settings.use_link(HIPERFACE, "tcp:host:2");
         let again = Settings::parse(&settings.emit()).unwrap();
         assert_eq!(again.tab, Tab::default());
-        assert_eq!(again.links(Tab::named("Gearbox")), ["tcp:host:1"]);
-        assert_eq!(again.links(HIPERFACE), ["tcp:host:2", "sim:"]);
+        assert_eq!(again.links_of(Tab::named("Gearbox")), ["tcp:host:1"]);
+        assert_eq!(again.links_of(HIPERFACE), ["tcp:host:2", "sim:"]);
     }
 
     #[test]
@@ -304,7 +304,7 @@ mod tests {
             (settings.theme, settings.language, settings.size),
             (ColorScheme::Light, Language::German, Some((1500, 900)))
         );
-        assert_eq!(settings.links(HIPERFACE), ["sim:", "tcp:host:1"]);
+        assert_eq!(settings.links_of(HIPERFACE), ["sim:", "tcp:host:1"]);
     }
 
     fn with_drives(drives: &str) -> Settings {
@@ -393,7 +393,7 @@ mod tests {
         ];
         for [there, known, ours, expected] in cases {
             let merged = of(there).with_changes(&of(known), &of(ours));
-            assert_eq!(merged.links(BISS), expected, "{there:?} {known:?} {ours:?}");
+            assert_eq!(merged.links_of(BISS), expected, "{there:?} {known:?} {ours:?}");
         }
     }
 
@@ -412,7 +412,7 @@ mod tests {
             settings.use_link(HIPERFACE, &format!("tcp:host:{at}"));
         }
         settings.use_link(HIPERFACE, "tcp:host:15");
-        assert_eq!(settings.links(HIPERFACE).len(), 12);
-        assert_eq!(settings.links(HIPERFACE)[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
+        assert_eq!(settings.links_of(HIPERFACE).len(), 12);
+        assert_eq!(settings.links_of(HIPERFACE)[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
     }
 }

@@ -12,19 +12,19 @@ use std::time::Duration;
 use crossbeam_channel::bounded;
 use jiff::Zoned;
 
-use super::action::{Action, Done};
+use super::action::{Action, TaskResult};
 use super::kinds::KindRegistry;
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::store::{FileError, FileErrorKind, read_text, update_text};
 
 /// Maximum time for which the program waits for the settings when it starts.
-const PATIENCE: Duration = Duration::from_millis(300);
+const START_TIMEOUT: Duration = Duration::from_millis(300);
 
-const NOT_KEPT: &str = "session.settings_not_kept";
+const SETTINGS_NOT_SAVED_ID: &str = "session.settings_not_kept";
 
 /// Time between a failed attempt to read the settings and the next one.
-const AGAIN: Duration = Duration::from_secs(1);
+const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 
 #[derive(Debug)]
 pub(crate) struct SettingsStore {
@@ -72,10 +72,10 @@ impl SettingsStore {
         let (sender, receiver) = bounded(0);
         let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
             if let Err(late) = sender.send(read(path, kinds)) {
-                mailbox.send(Action::Done(Done::SettingsRead(late.into_inner())));
+                mailbox.send(Action::Done(TaskResult::SettingsRead(late.into_inner())));
             }
         });
-        let mut settings = Settings::of(kinds);
+        let mut settings = Settings::initial(kinds);
         let mut store = SettingsStore {
             known: settings.clone(),
             failed: None,
@@ -86,8 +86,8 @@ impl SettingsStore {
             last_read: None,
             last_failed_read: None,
         };
-        match receiver.recv_timeout(PATIENCE) {
-            Ok(read) => store.take(read, &mut settings, services),
+        match receiver.recv_timeout(START_TIMEOUT) {
+            Ok(read) => store.adopt(read, &mut settings, services),
             Err(_) => {
                 drop(receiver);
                 services.notify(Severity::Warning, vec![Text::new("session.settings_slow")], None);
@@ -97,8 +97,8 @@ impl SettingsStore {
     }
 
     /// Adopts settings that were read. Changes of the user in the meantime are kept.
-    pub(super) fn take(&mut self, read: LoadedSettings, settings: &mut Settings, services: &mut Services) {
-        services.log.settle("session.settings_slow", None);
+    pub(super) fn adopt(&mut self, read: LoadedSettings, settings: &mut Settings, services: &mut Services) {
+        services.log.remove_from_window("session.settings_slow", None);
         let kinds = services.world.kinds;
         let found = match read {
             LoadedSettings::Whole(found) => {
@@ -107,7 +107,7 @@ impl SettingsStore {
             }
             LoadedSettings::Missing => {
                 self.may_write = true;
-                Settings::of(kinds)
+                Settings::initial(kinds)
             }
             LoadedSettings::Broken { settings, path, aside } => {
                 let text = match &aside {
@@ -119,12 +119,12 @@ impl SettingsStore {
                 *settings
             }
             LoadedSettings::Unreadable(error) => {
-                let text = Text::new("session.settings_unread").with_text("why", explain::file(&error));
+                let text = Text::new("session.settings_unread").with_text("why", explain::file_error_text(&error));
                 services.notify(Severity::Warning, vec![text], None);
                 return;
             }
         };
-        *settings = found.clone().with_changes(&Settings::of(kinds), settings);
+        *settings = found.clone().with_changes(&Settings::initial(kinds), settings);
         self.known = found;
     }
 
@@ -136,7 +136,9 @@ impl SettingsStore {
         self.writing = Some(settings.clone());
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let (known, ours) = (self.known.clone(), settings.clone());
-        services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours, kinds))));
+        services
+            .tasks
+            .run("settings", move || Action::Done(TaskResult::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
     /// Handles the result of a write. A failure is reported only the first time.
@@ -157,14 +159,14 @@ impl SettingsStore {
                     services.notify(Severity::Warning, vec![text.with("path", path.display())], None);
                 }
                 if std::mem::take(&mut self.is_failure_reported) {
-                    services.log.settle(NOT_KEPT, None);
+                    services.log.remove_from_window(SETTINGS_NOT_SAVED_ID, None);
                 }
             }
             Err(error) => {
                 // If another program is using the file, the write is repeated later.
                 self.failed = (error.problem != FileErrorKind::InUse).then_some(written);
                 if !std::mem::replace(&mut self.is_failure_reported, true) {
-                    let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
+                    let text = Text::new(SETTINGS_NOT_SAVED_ID).with_text("why", explain::file_error_text(&error));
                     services.notify(Severity::Warning, vec![text], None);
                 }
             }
@@ -174,15 +176,15 @@ impl SettingsStore {
     /// Starts to read the settings again, because another window may have changed them. Returns whether a read has
     /// started.
     pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
-        let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
+        let has_failed = |at: &Zoned| at.duration_until(&services.current_time()).unsigned_abs() < RETRY_INTERVAL;
         if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
             return false;
         }
-        self.reading_since = Some(services.now());
+        self.reading_since = Some(services.current_time());
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         services.tasks.run("settings", move || {
-            let found = found(&path, kinds).map(|found| found.map(Box::new));
-            Action::Done(Done::SettingsSeen(found))
+            let found = read_settings(&path, kinds).map(|found| found.map(Box::new));
+            Action::Done(TaskResult::SettingsSeen(found))
         });
         true
     }
@@ -227,7 +229,7 @@ impl SettingsStore {
 
 /// Reads the settings. An invalid file is copied to another name in the same folder.
 fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
-    match understood(read_text(&path), kinds) {
+    match parse_settings(read_text(&path), kinds) {
         Ok(Some((settings, true))) => LoadedSettings::Whole(Box::new(settings)),
         Ok(Some((settings, false))) => {
             let aside = broken_copy_path(&path);
@@ -241,28 +243,28 @@ fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
 }
 
 /// Parses settings as far as possible, and returns whether they are complete. Returns `None` if there is no file.
-fn understood(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Option<(Settings, bool)>, FileError> {
+fn parse_settings(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
             let (mut settings, is_whole) = match Settings::parse(&text) {
                 Some(settings) => (settings, true),
                 None => (Settings::parse_partial(&text), false),
             };
-            settings.settle(kinds);
+            settings.replace_unknown_tab(kinds);
             Ok(Some((settings, is_whole)))
         }
         Err(FileError { problem: FileErrorKind::NotFound, .. }) => Ok(None),
         Err(FileError { problem: FileErrorKind::NotUtf8 { .. } | FileErrorKind::TooLarge { .. }, .. }) => {
-            Ok(Some((Settings::of(kinds), false)))
+            Ok(Some((Settings::initial(kinds), false)))
         }
         Err(error) => Err(error),
     }
 }
 
 /// Reads the settings, or returns `None` if no window can have written them.
-fn found(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, FileError> {
+fn read_settings(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, FileError> {
     use FileErrorKind::{IsFolder, NoFolder, NotAFile, NotFolder};
-    match understood(read_text(path), kinds) {
+    match parse_settings(read_text(path), kinds) {
         Err(FileError { problem: NoFolder | NotFolder | IsFolder | NotAFile, .. }) => Ok(None),
         read => Ok(read?.map(|(settings, _)| settings)),
     }
@@ -277,7 +279,7 @@ fn broken_copy_path(path: &Path) -> PathBuf {
 /// Writes the changes from `known` to `ours` into the present file.
 fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) -> Result<SavedSettings, FileError> {
     update_text(path, |text| {
-        let (there, is_whole) = match understood(text, kinds)? {
+        let (there, is_whole) = match parse_settings(text, kinds)? {
             Some((found, is_whole)) => (Some(found), is_whole),
             None => (None, true),
         };

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crossbeam_channel::Sender;
 
-use super::action::{Action, Done};
+use super::action::{Action, TaskResult};
 use super::brakes::DriveStopHandles;
 use super::services::{JobState, Services};
 use super::session::{JobCompletion, Kind};
@@ -57,7 +57,7 @@ pub(crate) trait ClosingWorker: Send + Sync {
     fn is_finished(&self) -> bool;
 
     /// Waits for the end, for at most `patience`. Returns whether it has been reached.
-    fn wait(&self, patience: Duration) -> bool;
+    fn wait_for_end(&self, patience: Duration) -> bool;
 
     fn job_completions(&self) -> Vec<JobCompletion>;
 }
@@ -67,7 +67,7 @@ impl<D: Kind> ClosingWorker for Ending<D> {
         Ending::is_finished(self)
     }
 
-    fn wait(&self, patience: Duration) -> bool {
+    fn wait_for_end(&self, patience: Duration) -> bool {
         Ending::wait(self, patience)
     }
 
@@ -81,7 +81,7 @@ impl ClosingWorker for End {
         self.has_ended()
     }
 
-    fn wait(&self, patience: Duration) -> bool {
+    fn wait_for_end(&self, patience: Duration) -> bool {
         End::wait(self, patience)
     }
 
@@ -97,7 +97,12 @@ pub(crate) fn is_same_connection(one: &LinkUrl, other: &LinkUrl) -> bool {
 impl Services {
     /// Releases the thread of a session. When it ends, `turn` is dropped, and the next user of the connection can
     /// continue.
-    pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, info: ClosingSessionInfo, turn: Option<Sender<()>>) {
+    pub(crate) fn release_worker<D: Kind>(
+        &mut self,
+        worker: Worker<D>,
+        info: ClosingSessionInfo,
+        turn: Option<Sender<()>>,
+    ) {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
 
@@ -115,9 +120,9 @@ impl Services {
     ) {
         let (watched, patience) = (ending.clone(), self.closing_timeout(info.write.is_some()));
         self.tasks.run("leave", move || {
-            watched.wait(patience);
+            watched.wait_for_end(patience);
             drop(turn);
-            Action::Done(Done::Left)
+            Action::Done(TaskResult::Left)
         });
         self.closing_sessions.push(ClosingSession { info, ending });
     }

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Done, ShutdownWait};
+use super::action::{Action, ShutdownWait, TaskResult};
 use super::comparison::ProfileComparison;
 use super::connect::ConnectDialog;
 use super::devices::{AnyDevice, DeviceType, Selection};
 use super::diverged::ProfileConflict;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
-use super::question::{Question, Then};
+use super::question::{FollowUpAction, Question};
 use super::services::{Services, StudioEnvironment};
 use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
@@ -47,7 +47,7 @@ impl Studio {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
         let (settings, settings_store) = SettingsStore::load(&mut services);
-        let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.begin(settings.links(kind.tab())));
+        let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.begin(settings.links_of(kind.tab())));
         Studio {
             tools: kinds.tools().iter().map(begin).collect(),
             settings,
@@ -67,7 +67,7 @@ impl Studio {
     }
 
     /// Begins with a link or a profile, or with the virtual encoder if neither is given.
-    pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
+    pub fn start_with(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
         let tab = self.tab_for_link(link.as_ref());
         let is_empty = link.is_none() && profile.is_none();
         let link = link.or_else(|| self.virtual_link(tab).filter(|_| is_empty));
@@ -75,11 +75,11 @@ impl Studio {
             self.open_link(tab, link);
         }
         if let Some(profile) = profile {
-            self.act(Action::Open(profile));
+            self.handle_action(Action::Open(profile));
         }
     }
 
-    pub fn act(&mut self, action: Action) {
+    pub fn handle_action(&mut self, action: Action) {
         self.devices.iter_mut().for_each(|device| device.mark_draft_due());
         match self.with_absolute_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
@@ -102,7 +102,7 @@ impl Studio {
             Action::Escape => self.press_escape(),
             Action::Close => self.close(),
             Action::Quit => self.force_quit(),
-            Action::Confirm => self.confirm(),
+            Action::Confirm => self.confirm_question(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.apply_connect_action(action),
             Action::OpenVirtual => {
@@ -112,7 +112,7 @@ impl Studio {
                 }
             }
             Action::Save(id) => self.save_in_place(id),
-            Action::Resolve(resolve) => self.resolve(resolve),
+            Action::Resolve(resolve) => self.resolve_conflict(resolve),
             Action::AskOpen => {
                 let is_tool = self.is_tool(self.settings.tab);
                 self.services.file_question =
@@ -127,8 +127,8 @@ impl Studio {
             }
             Action::FileNotChosen => {}
             Action::TypePath(question) => self.path_question = Some(question),
-            Action::Typed(question, path) => self.typed(question, path),
-            Action::Chosen(question, path) => self.chosen(question, path),
+            Action::Typed(question, path) => self.handle_typed_path(question, path),
+            Action::Chosen(question, path) => self.handle_chosen_path(question, path),
             Action::CloseComparison => self.comparison = None,
             Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
             Action::AskForget(owner) => self.confirm_discard_recording(owner),
@@ -142,7 +142,7 @@ impl Studio {
             Action::Command(id, command) => self.command(id, command),
             Action::Device(id, action) => self.apply_device_action(id, action),
             Action::Tool(tab, action) => self.apply_tool_action(tab, action),
-            Action::Done(done) => self.done(done),
+            Action::Done(done) => self.handle_result(done),
             Action::NoThread(why) => {
                 self.devices.iter_mut().for_each(|device| device.mark_save_waiting());
                 let text = Text::new("session.no_thread").with("why", why);
@@ -156,17 +156,17 @@ impl Studio {
     /// Handles all events since the last call. Must be called in every frame.
     pub fn poll(&mut self) {
         while let Some(action) = self.services.tasks.next() {
-            self.act(action);
+            self.handle_action(action);
         }
         for device in &mut self.devices {
-            device.pump(&mut self.services);
+            device.process_events(&mut self.services);
             if let Some(source) = device.sine_cosine_mut() {
-                self.tools.iter_mut().for_each(|(_, tool)| tool.follow(source));
+                self.tools.iter_mut().for_each(|(_, tool)| tool.adopt_reading(source));
             }
         }
-        self.tools.iter_mut().for_each(|(_, tool)| tool.pump(&mut self.services));
+        self.tools.iter_mut().for_each(|(_, tool)| tool.process_events(&mut self.services));
         if let Some(connect) = &mut self.connect {
-            connect.pump();
+            connect.process_events();
         }
         self.services.poll_closing_sessions();
         self.start_due_live_values();
@@ -213,13 +213,13 @@ impl Studio {
     /// Returns the device shown in the open tab, or else the device shown last.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
-        let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
+        let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.session_of(tab) };
         self.device(id?)
     }
 
     /// Returns the device of type `M` that its tab shows.
     pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
-        self.device(self.shown.of(M::TAB)?)?.get()
+        self.device(self.shown.session_of(M::TAB)?)?.get()
     }
 
     fn is_tool(&self, tab: Tab) -> bool {
@@ -234,7 +234,7 @@ impl Studio {
     /// Shows a tab. If no device is open in it, an unsaved profile is created, provided that its kind supports this.
     fn show_tab(&mut self, tab: Tab) {
         self.settings.tab = tab;
-        if self.shown.of(tab).is_none() {
+        if self.shown.session_of(tab).is_none() {
             self.new_profile(tab);
         }
     }
@@ -254,12 +254,12 @@ impl Studio {
     /// Returns the source of sine and cosine signals among the devices that are shown in their tabs, if any.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
-        kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
+        kinds.into_iter().find_map(|kind| self.device(self.shown.session_of(kind.tab())?)?.sine_cosine())
     }
 
     pub(crate) fn show(&mut self, tab: Tab, id: SessionId) {
         self.settings.tab = tab;
-        self.shown.set(tab, id);
+        self.shown.select_session(tab, id);
     }
 
     /// Returns whether a job, polling, a search or a tool can be stopped.
@@ -306,47 +306,47 @@ impl Studio {
         }
     }
 
-    fn done(&mut self, done: Done) {
+    fn handle_result(&mut self, done: TaskResult) {
         match done {
-            Done::OpenedConnection(attempt) => self.opened(attempt),
-            Done::Device(id, done) => self.finish_device_action(id, done),
-            Done::Finder(tab, done) => self.handle_finder_result(tab, done),
-            Done::Shared(with) => with(&mut self.services, &mut self.devices),
-            Done::Ports(ports) => {
+            TaskResult::OpenedConnection(attempt) => self.handle_opened(attempt),
+            TaskResult::Device(id, done) => self.finish_device_action(id, done),
+            TaskResult::Finder(tab, done) => self.handle_finder_result(tab, done),
+            TaskResult::Shared(with) => with(&mut self.services, &mut self.devices),
+            TaskResult::Ports(ports) => {
                 if let Some(connect) = &mut self.connect {
-                    connect.ports = Some(ports.map_err(|error| explain::link(&error)));
+                    connect.ports = Some(ports.map_err(|error| explain::link_error_text(&error)));
                 }
             }
-            Done::Read { file, result, open } => self.read(file, result, open),
-            Done::Compare { session, path, result } => self.compare(session, path, result),
-            Done::Waited(what) => self.waited = self.waited.max(Some(what)),
-            Done::Looked { question, path, exists: true } => {
+            TaskResult::Read { file, result, open } => self.read(file, result, open),
+            TaskResult::Compare { session, path, result } => self.compare(session, path, result),
+            TaskResult::Waited(what) => self.waited = self.waited.max(Some(what)),
+            TaskResult::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
                 let confirm = Text::new("question.replace_it");
-                self.question = Some(Question::before(text, confirm, Then::Write(question, path)));
+                self.question = Some(Question::new(text, confirm, FollowUpAction::Write(question, path)));
             }
-            Done::Looked { question, path, exists: false } => self.chosen(question, path),
-            Done::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
-            Done::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
+            TaskResult::Looked { question, path, exists: false } => self.handle_chosen_path(question, path),
+            TaskResult::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
+            TaskResult::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
             // It has been handled by polling.
-            Done::Left => {}
-            Done::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
-                device.written(*saving, file, result, services);
+            TaskResult::Left => {}
+            TaskResult::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
+                device.handle_profile_written(*saving, file, result, services);
             }),
-            Done::Diverged(diverged) => self.show_conflict(*diverged),
-            Done::WouldLose(saving, lost) => self.confirm_loss(*saving, &lost),
-            Done::SettingsRead(read) => self.settings_store.take(read, &mut self.settings, &mut self.services),
-            Done::SettingsKept(result) => {
+            TaskResult::Diverged(diverged) => self.show_conflict(*diverged),
+            TaskResult::WouldLose(saving, lost) => self.confirm_loss(*saving, &lost),
+            TaskResult::SettingsRead(read) => self.settings_store.adopt(read, &mut self.settings, &mut self.services),
+            TaskResult::SettingsKept(result) => {
                 self.settings_store.finish_write(result, &mut self.settings, &mut self.services)
             }
-            Done::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
-            Done::SettingsSeen(Err(error)) => self.handle_settings_error(&error),
-            Done::Draft(id, done) => self.finish_draft(id, done),
-            Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
-            Done::Backup { session, of, path, result } => {
+            TaskResult::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
+            TaskResult::SettingsSeen(Err(error)) => self.handle_settings_error(&error),
+            TaskResult::Draft(id, done) => self.finish_draft(id, done),
+            TaskResult::Listed(id, of, listed) => self.with_device(id, |device, _| device.set_history(&of, *listed)),
+            TaskResult::Backup { session, of, path, result } => {
                 self.with_device(session, |device, services| device.apply_backup(&of, &path, result, services));
             }
-            Done::Tool(tab, done) => self.finish_tool_action(tab, done),
+            TaskResult::Tool(tab, done) => self.finish_tool_action(tab, done),
         }
     }
 

@@ -51,27 +51,27 @@ impl<'de> Visitor<'de> for TabVisitor {
     }
 
     fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Tab, A::Error> {
-        let (Name(name), variant) = data.variant()?;
+        let (TabName(name), variant) = data.variant()?;
         variant.unit_variant()?;
-        Ok(Tab(intern(name)))
+        Ok(Tab(intern_name(name)))
     }
 }
 
 /// Name of a tab as stored in the settings.
-struct Name(String);
+struct TabName(String);
 
-impl<'de> Deserialize<'de> for Name {
+impl<'de> Deserialize<'de> for TabName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct NameVisitor;
         impl Visitor<'_> for NameVisitor {
-            type Value = Name;
+            type Value = TabName;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a name")
             }
 
-            fn visit_str<E: Error>(self, name: &str) -> Result<Name, E> {
-                Ok(Name(name.to_owned()))
+            fn visit_str<E: Error>(self, name: &str) -> Result<TabName, E> {
+                Ok(TabName(name.to_owned()))
             }
         }
         deserializer.deserialize_identifier(NameVisitor)
@@ -82,7 +82,7 @@ impl<'de> Deserialize<'de> for Name {
 ///
 /// Names of unknown tabs are included, because another version of the program still uses their links. Each name is
 /// stored once until the process ends.
-fn intern(name: String) -> &'static str {
+fn intern_name(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.get(name.as_str()) {

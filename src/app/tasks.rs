@@ -46,7 +46,7 @@ impl TaskRunner {
     }
 
     /// Returns the callback with which sessions wake the window.
-    pub(crate) fn wake(&self) -> Wake {
+    pub(crate) fn wake_callback(&self) -> Wake {
         self.wake.clone()
     }
 
@@ -59,10 +59,10 @@ impl ActionMailbox {
     pub fn send(&self, action: Action) {
         // If the studio has ended, the action is not needed.
         let _ = self.sender.send(action);
-        self.wake();
+        self.wake_window();
     }
 
-    pub(super) fn wake(&self) {
+    pub(super) fn wake_window(&self) {
         (self.wake)();
     }
 }

@@ -145,7 +145,7 @@ impl Text {
         self.id
     }
 
-    pub fn words(&self, language: Language) -> String {
+    pub fn to_string_in(&self, language: Language) -> String {
         self.text_for(Output::Window(language))
     }
 
@@ -179,12 +179,12 @@ impl Text {
 }
 
 /// Formats a number, given with a decimal point, with the decimal sign of a language.
-pub(crate) fn signed(number: &str, language: Language) -> String {
+pub(crate) fn localize_number(number: &str, language: Language) -> String {
     TextArgument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
 /// Formats a number with the given decimals and the decimal sign of a language.
-pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
+pub fn format_decimal(value: f64, decimals: usize, language: Language) -> String {
     TextArgument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
 
@@ -294,19 +294,23 @@ mod tests {
     #[test]
     fn arguments_are_filled_in_once() {
         let text = Text::new("link.busy").with("target", "{target}");
-        assert!(text.words(Language::English).starts_with("{target} is in use"));
-        assert!(text.words(Language::German).starts_with("{target} wird von"));
+        assert!(text.to_string_in(Language::English).starts_with("{target} is in use"));
+        assert!(text.to_string_in(Language::German).starts_with("{target} wird von"));
     }
 
     #[test]
     fn numbers_and_lists_follow_the_language() {
         let text = Text::new("link.busy").with_number("target", 1.25, 1);
-        assert!(text.words(Language::English).starts_with("1.2 is"));
-        assert!(text.words(Language::German).starts_with("1,2 wird"));
+        assert!(text.to_string_in(Language::English).starts_with("1.2 is"));
+        assert!(text.to_string_in(Language::German).starts_with("1,2 wird"));
         assert!(text.terminal_text().starts_with("1.2 is"));
         let list = [Text::new("parity.even"), Text::new("parity.odd")];
         let text = Text::new("link.other").with("target", "COM3").with_list("why", list);
-        assert!(text.words(Language::German).contains("gerade, ungerade"), "{}", text.words(Language::German));
+        assert!(
+            text.to_string_in(Language::German).contains("gerade, ungerade"),
+            "{}",
+            text.to_string_in(Language::German)
+        );
     }
 
     #[test]
@@ -315,13 +319,13 @@ mod tests {
         let text = Text::new("link.other").with("target", "COM3").with_text("why", cause);
         assert!(text.terminal_text().contains("\"encoder-studio ports\" lists"), "{}", text.terminal_text());
         assert!(
-            text.words(Language::English).contains("\"Connect…\" dialog lists"),
+            text.to_string_in(Language::English).contains("\"Connect…\" dialog lists"),
             "{}",
-            text.words(Language::English)
+            text.to_string_in(Language::English)
         );
         assert_eq!(
             Text::new("encoder.cancelled").terminal_text(),
-            Text::new("encoder.cancelled").words(Language::English)
+            Text::new("encoder.cancelled").to_string_in(Language::English)
         );
     }
 

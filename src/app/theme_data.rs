@@ -98,7 +98,7 @@ impl TryFrom<String> for Rgb {
 
 impl Rgb {
     /// Returns the contrast with another colour, from 1 to 21, as defined by WCAG 2.
-    pub fn contrast(self, other: Rgb) -> f64 {
+    pub fn contrast_ratio(self, other: Rgb) -> f64 {
         let (a, b) = (self.relative_luminance(), other.relative_luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
@@ -119,9 +119,9 @@ mod tests {
     #[test]
     fn contrast_is_computed_as_in_wcag() {
         let rgb = |text: &str| Rgb::try_from(text.to_owned()).unwrap();
-        assert!((rgb("#000000").contrast(rgb("#FFFFFF")) - 21.0).abs() < 1e-9);
+        assert!((rgb("#000000").contrast_ratio(rgb("#FFFFFF")) - 21.0).abs() < 1e-9);
         // A known pair: #767676 is the lightest grey that is legible on white.
-        assert!((rgb("#767676").contrast(rgb("#FFFFFF")) - 4.54).abs() < 0.01);
+        assert!((rgb("#767676").contrast_ratio(rgb("#FFFFFF")) - 4.54).abs() < 0.01);
         assert!(Rgb::try_from("#12345".to_owned()).is_err() && Rgb::try_from("123456".to_owned()).is_err());
     }
 
@@ -141,13 +141,16 @@ mod tests {
                     ("warn", warn),
                     ("bad", bad),
                 ] {
-                    let contrast = colour.contrast(surface);
+                    let contrast = colour.contrast_ratio(surface);
                     assert!(contrast >= 4.5, "{theme:?}: {name} on {surface:?} has {contrast:.2}");
                 }
             }
-            assert!(palette.on_accent.contrast(accent) >= 4.5 && palette.on_bad.contrast(bad) >= 4.5, "{theme:?}");
+            assert!(
+                palette.on_accent.contrast_ratio(accent) >= 4.5 && palette.on_bad.contrast_ratio(bad) >= 4.5,
+                "{theme:?}"
+            );
             for (number, series) in palette.series.iter().enumerate() {
-                let contrast = series.contrast(palette.sunken);
+                let contrast = series.contrast_ratio(palette.sunken);
                 assert!(contrast >= 3.0, "{theme:?}: series {number} has {contrast:.2}");
             }
         }

@@ -31,16 +31,16 @@ pub trait Tool: Any {
     ///
     /// # Errors
     /// Returns an error if the action belongs to another tool.
-    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError>;
+    fn handle_action(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError>;
 
     /// Handles the result of a task.
     ///
     /// # Errors
     /// Returns an error if the result belongs to another tool.
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
+    fn handle_result(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
 
     /// Processes the events received since the last call.
-    fn pump(&mut self, services: &mut Services);
+    fn process_events(&mut self, services: &mut Services);
 
     /// Returns whether the tool has a running job.
     fn can_stop(&self) -> bool;
@@ -55,13 +55,13 @@ pub trait Tool: Any {
     fn recorder_mut(&mut self) -> &mut Recorder;
 
     /// Adopts a reading that the device has taken at standstill.
-    fn follow(&mut self, source: &mut dyn SineCosineSource);
+    fn adopt_reading(&mut self, source: &mut dyn SineCosineSource);
 
     /// Releases a connection, because it is needed elsewhere.
     fn release_connection(&mut self, url: &LinkUrl, services: &mut Services);
 
     /// Returns whether the tool can open the given file.
-    fn takes(&self, path: &Path) -> bool;
+    fn can_open(&self, path: &Path) -> bool;
 
     /// Opens a file.
     fn open(&mut self, path: PathBuf, services: &mut Services);
@@ -76,7 +76,7 @@ pub trait ToolAction: Any + Send {
 impl Action {
     /// Wraps an action for a tool.
     pub fn tool<A: ToolAction>(action: A) -> Self {
-        Action::Tool(A::TAB, Payload::of(action))
+        Action::Tool(A::TAB, Payload::new(action))
     }
 }
 
@@ -116,14 +116,14 @@ impl ToolContext<'_> {
 
 impl Studio {
     /// Returns the tool of the given type.
-    pub fn tool<T: Any>(&self) -> Option<&T> {
+    pub fn tool_as<T: Any>(&self) -> Option<&T> {
         self.tools.iter().find_map(|(_, tool)| tool.get())
     }
 
     pub(super) fn apply_tool_action(&mut self, tab: Tab, action: Payload) {
         let Some(at) = self.tools.iter().position(|(own, _)| *own == tab) else { return self.notify_wrong_kind(None) };
         let (_, mut tool) = self.tools.remove(at);
-        let done = tool.act(action, &mut ToolContext { tab, studio: self });
+        let done = tool.handle_action(action, &mut ToolContext { tab, studio: self });
         self.tools.insert(at, (tab, tool));
         if done.is_err() {
             self.notify_wrong_kind(None);
@@ -132,14 +132,14 @@ impl Studio {
 
     pub(super) fn finish_tool_action(&mut self, tab: Tab, done: Payload) {
         let tool = self.tools.iter_mut().find(|(own, _)| *own == tab);
-        if tool.is_none_or(|(_, tool)| tool.done(done, &mut self.services).is_err()) {
+        if tool.is_none_or(|(_, tool)| tool.handle_result(done, &mut self.services).is_err()) {
             self.notify_wrong_kind(None);
         }
     }
 
     /// Opens a file in the tool that accepts it. Returns the path if there is no such tool.
     pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
-        let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.takes(&path)) else { return Err(path) };
+        let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.can_open(&path)) else { return Err(path) };
         self.settings.tab = *tab;
         tool.open(path, &mut self.services);
         Ok(())

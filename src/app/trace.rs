@@ -39,7 +39,7 @@ pub struct FrameExplanation {
 }
 
 impl FrameExplanation {
-    pub fn broken(why: Text) -> Self {
+    pub fn from_error(why: Text) -> Self {
         FrameExplanation { meaning: vec![why], fault: Some(TraceFault::Broken), ..FrameExplanation::default() }
     }
 }
@@ -62,8 +62,8 @@ impl TraceLine {
         self.bytes.get(3 * self.header..).unwrap_or(&self.bytes)
     }
 
-    pub fn words(&self, language: Language) -> String {
-        self.meaning.iter().map(|text| text.words(language)).collect::<Vec<_>>().join(" · ")
+    pub fn to_string_in(&self, language: Language) -> String {
+        self.meaning.iter().map(|text| text.to_string_in(language)).collect::<Vec<_>>().join(" · ")
     }
 }
 
@@ -87,7 +87,7 @@ impl TraceFilter {
         (!self.faults_only || line.fault.is_some())
             && (search.is_empty()
                 || line.bytes.to_lowercase().contains(&search)
-                || line.words(language).to_lowercase().contains(&search))
+                || line.to_string_in(language).to_lowercase().contains(&search))
     }
 }
 
@@ -106,16 +106,16 @@ pub struct TraceMatches {
 
 impl TraceMatches {
     /// Updates the matches for the frames numbered below `end`. A new filter or language starts again.
-    pub fn update(&mut self, log: &TraceLog, filter: &TraceFilter, language: Language, end: u64) {
+    pub fn update_matches(&mut self, log: &TraceLog, filter: &TraceFilter, language: Language, end: u64) {
         if self.filter != *filter || self.language != Some(language) || self.next > end {
             *self = TraceMatches { filter: filter.clone(), language: Some(language), ..TraceMatches::default() };
         }
-        while self.numbers.front().is_some_and(|number| *number < log.gone()) {
+        while self.numbers.front().is_some_and(|number| *number < log.removed_count()) {
             self.numbers.pop_front();
             self.removed += 1;
         }
-        for number in self.next.max(log.gone())..end {
-            if log.line(number).is_some_and(|line| self.filter.matches(line, language)) {
+        for number in self.next.max(log.removed_count())..end {
+            if log.line_by_number(number).is_some_and(|line| self.filter.matches(line, language)) {
                 self.numbers.push_back(number);
             }
         }
@@ -123,12 +123,12 @@ impl TraceMatches {
     }
 
     /// Returns the numbers of the matching frames, in ascending order.
-    pub fn numbers(&self) -> &VecDeque<u64> {
+    pub fn frame_numbers(&self) -> &VecDeque<u64> {
         &self.numbers
     }
 
     /// Returns the number of matching frames that the log has removed since the filter was set.
-    pub fn removed(&self) -> u64 {
+    pub fn removed_count(&self) -> u64 {
         self.removed
     }
 }
@@ -145,10 +145,10 @@ pub struct TraceLog {
 
 impl TraceLog {
     /// Maximum memory of the log in bytes. It is enough for about 40,000 readings of a position.
-    const MOST: usize = 16 << 20;
+    const MAX_BYTES: usize = 16 << 20;
 
     /// Adds frames with their explanations. `dropped` frames arrived too fast to be included.
-    pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, FrameExplanation)>, dropped: u64) {
+    pub fn add_frames(&mut self, entries: impl IntoIterator<Item = (TraceEntry, FrameExplanation)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, FrameExplanation { header, meaning, fault }) in entries {
             let bytes = entry.bytes.to_string();
@@ -156,7 +156,7 @@ impl TraceLog {
             self.size += line.size();
             self.lines.push_back(line);
         }
-        self.trim(Self::MOST);
+        self.trim(Self::MAX_BYTES);
     }
 
     /// Removes the oldest frames until the log takes at most `size` bytes.
@@ -170,7 +170,7 @@ impl TraceLog {
     }
 
     /// Returns the number of frames that were removed to make room for newer ones.
-    pub fn gone(&self) -> u64 {
+    pub fn removed_count(&self) -> u64 {
         self.gone
     }
 
@@ -180,12 +180,12 @@ impl TraceLog {
     }
 
     /// Returns the number that the next frame will get. Frames are numbered from 0 since the connection was opened.
-    pub fn end(&self) -> u64 {
+    pub fn next_number(&self) -> u64 {
         self.gone + self.lines.len() as u64
     }
 
     /// Returns the frame with this number, or `None` if it was removed or has not arrived.
-    pub fn line(&self, number: u64) -> Option<&TraceLine> {
+    pub fn line_by_number(&self, number: u64) -> Option<&TraceLine> {
         self.lines.get(usize::try_from(number.checked_sub(self.gone)?).ok()?)
     }
 
@@ -214,7 +214,7 @@ impl TraceLog {
         self.began.as_ref()?.checked_add(line.at.since_start()).ok()
     }
 
-    pub(super) fn begin(&mut self, began: Zoned) {
+    pub(super) fn begin_connection(&mut self, began: Zoned) {
         *self = TraceLog { began: Some(began), ..TraceLog::default() };
     }
 }
@@ -229,7 +229,7 @@ mod tests {
 
     fn log(frames: &[(u64, Direction, &str, Text, Option<TraceFault>)]) -> TraceLog {
         let mut log = TraceLog::default();
-        log.add(
+        log.add_frames(
             frames.iter().cloned().map(|(millis, direction, bytes, meaning, fault)| {
                 let at = Moment::from_elapsed(Duration::from_millis(millis));
                 let bytes: MaskedBytes = bytes.parse().unwrap();
@@ -251,8 +251,8 @@ mod tests {
     fn matching(log: &TraceLog, search: &str, faults_only: bool, end: u64) -> Vec<u64> {
         let mut matches = TraceMatches::default();
         let filter = TraceFilter { search: search.to_owned(), faults_only };
-        matches.update(log, &filter, Language::English, end);
-        matches.numbers().iter().copied().collect()
+        matches.update_matches(log, &filter, Language::English, end);
+        matches.frame_numbers().iter().copied().collect()
     }
 
     #[test]
@@ -272,8 +272,8 @@ mod tests {
         let mut matches = TraceMatches::default();
         let mut update = |search: &str, end| {
             let filter = TraceFilter { search: search.to_owned(), faults_only: false };
-            matches.update(&log, &filter, Language::English, end);
-            matches.numbers().iter().copied().collect::<Vec<_>>()
+            matches.update_matches(&log, &filter, Language::English, end);
+            matches.frame_numbers().iter().copied().collect::<Vec<_>>()
         };
         assert_eq!(update("40", 1), [0]);
         assert_eq!(update("40", 3), [0, 1]);
@@ -288,12 +288,12 @@ mod tests {
         let mut log = log(&[frame(0), frame(1), frame(2)]);
         let mut matches = TraceMatches::default();
         let filter = TraceFilter { search: "42".to_owned(), faults_only: false };
-        matches.update(&log, &filter, Language::English, log.end());
+        matches.update_matches(&log, &filter, Language::English, log.next_number());
         log.trim(2 * one);
-        matches.update(&log, &filter, Language::English, log.end());
-        assert_eq!((matches.removed(), matches.numbers().front()), (1, Some(&1)));
-        assert_eq!((log.gone(), log.end()), (1, 3));
-        assert!(log.line(0).is_none() && log.line(2).is_some() && log.line(3).is_none());
+        matches.update_matches(&log, &filter, Language::English, log.next_number());
+        assert_eq!((matches.removed_count(), matches.frame_numbers().front()), (1, Some(&1)));
+        assert_eq!((log.removed_count(), log.next_number()), (1, 3));
+        assert!(log.line_by_number(0).is_none() && log.line_by_number(2).is_some() && log.line_by_number(3).is_none());
     }
 
     /// The file of the window is the same as one written by the command line, and `replay:` reads it.

@@ -7,7 +7,7 @@ use jiff::{SignedDuration, Zoned};
 
 use crate::analysis::history::{ColumnPart, Flags, Kind, Value};
 use crate::analysis::{MotionRates, SampleTime};
-use crate::app::closing::MUCH;
+use crate::app::closing::LONG_RECORDING_NS;
 use crate::app::recorder::{self, GroupId, Recorder, SeriesId};
 use crate::app::{Recording, Text};
 use crate::units::Moment;
@@ -17,22 +17,22 @@ mod meaning;
 mod watchable;
 
 use follower::PositionTracker;
-pub use meaning::Meaning;
+pub use meaning::PositionScales;
 pub use watchable::{Watchable, WatchedValue};
 
 /// Maximum number of positions. It is enough for more than a day at the highest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
 /// Maximum time in nanoseconds between two positions that are joined by a line. A line across a longer time would show
 /// a motion that was not observed.
-const APART: i64 = 5_000_000_000;
+const MAX_JOINED_GAP_NS: i64 = 5_000_000_000;
 /// Delay of a position in nanoseconds that is tolerated in addition to four intervals. A lost reply that is requested
 /// again causes such a delay.
-const LATE: i64 = 400_000_000;
+const TOLERATED_DELAY_NS: i64 = 400_000_000;
 /// Maximum time in nanoseconds between two watched values that are joined by a line. Watched values arrive less often
 /// than positions.
-const WATCHED_APART: i64 = APART;
+const MAX_WATCHED_GAP_NS: i64 = MAX_JOINED_GAP_NS;
 /// Maximum number of samples of a watched value.
-const WATCHED: usize = 500_000;
+const MAX_WATCHED_SAMPLES: usize = 500_000;
 /// Duration in nanoseconds that is displayed at first.
 const SPAN: i64 = 30_000_000_000;
 
@@ -56,7 +56,7 @@ pub struct DeviceRecorder<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
     lines: [SeriesId; 3],
-    watched: Vec<Watched<W>>,
+    watched: Vec<WatchedSeries<W>>,
     /// Tracking of positions, or `None` before the first position.
     follower: Option<PositionTracker>,
     dropped: u64,
@@ -71,7 +71,7 @@ pub struct DeviceRecorder<W> {
 }
 
 #[derive(Clone, Debug)]
-struct Watched<W> {
+struct WatchedSeries<W> {
     value: W,
     group: GroupId,
     line: SeriesId,
@@ -119,15 +119,15 @@ impl Columns {
 
 impl<W: Watchable> Default for DeviceRecorder<W> {
     fn default() -> Self {
-        DeviceRecorder::about(&Meaning::for_steps(None))
+        DeviceRecorder::new(&PositionScales::for_steps(None))
     }
 }
 
 impl<W: Watchable> DeviceRecorder<W> {
-    fn about(meaning: &Meaning) -> Self {
+    fn new(meaning: &PositionScales) -> Self {
         let mut recorder = Recorder::new(SPAN);
-        let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
-        let lines = meaning.lines(positions).map(|line| recorder.add_line(line));
+        let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(MAX_JOINED_GAP_NS));
+        let lines = meaning.create_series(positions).map(|line| recorder.add_line(line));
         DeviceRecorder {
             recorder,
             positions,
@@ -139,30 +139,32 @@ impl<W: Watchable> DeviceRecorder<W> {
             shift: 0,
             newest: None,
             last: 0,
-            apart: APART,
+            apart: MAX_JOINED_GAP_NS,
         }
     }
 
     /// Begins a session. Earlier recordings are kept. The new ones are shifted by the difference between the clocks.
-    pub fn begin(&mut self, began: &Zoned) {
+    pub fn begin_session(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
         // The clock of the system may be set back.
         let behind = self.newest.map_or(0, |newest| newest.as_nanoseconds().saturating_add(1));
         self.shift = later.max(behind);
-        self.gap();
+        self.mark_gap();
     }
 
-    pub fn meaning(&self) -> Option<&Meaning> {
+    pub fn scales(&self) -> Option<&PositionScales> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
     /// Sets the polling interval. If polling begins, positions before and after are not joined.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
-        self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
+        self.apart = interval.map_or(MAX_JOINED_GAP_NS, |interval| {
+            interval.saturating_mul(4).saturating_add(TOLERATED_DELAY_NS).min(MAX_JOINED_GAP_NS)
+        });
         if begins {
-            self.gap();
+            self.mark_gap();
         }
     }
 
@@ -170,12 +172,12 @@ impl<W: Watchable> DeviceRecorder<W> {
     pub fn record_dropped(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
-            self.gap();
+            self.mark_gap();
         }
     }
 
-    pub fn add(&mut self, sightings: &[PositionSample], meaning: &Meaning) {
-        self.observe(meaning);
+    pub fn add_positions(&mut self, sightings: &[PositionSample], meaning: &PositionScales) {
+        self.set_scales(meaning);
         let mut columns = Columns::default();
         for sighting in sightings {
             self.add_sample(sighting, &mut columns);
@@ -221,13 +223,13 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     /// Selects the values that are recorded in addition to the position. Earlier recordings of other values are kept.
-    pub fn watch(&mut self, watched: &[W]) {
+    pub fn set_watched(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
             if !own.active || watched.iter().any(|what| own.value.can_continue_as(what)) {
                 kept.push(own);
             } else if self.recorder.has_samples(own.line) {
-                self.end(own.line);
+                self.end_series(own.line);
                 own.active = false;
                 kept.push(own);
             } else {
@@ -235,7 +237,7 @@ impl<W: Watchable> DeviceRecorder<W> {
             }
         }
         // The lines of ended values no longer exist if the recording was cleared.
-        kept.retain(|own| self.recorder.line(own.line).is_some());
+        kept.retain(|own| self.recorder.series_by_id(own.line).is_some());
         self.watched = kept;
         watched.iter().for_each(|what| self.begin_watching(what));
     }
@@ -243,23 +245,23 @@ impl<W: Watchable> DeviceRecorder<W> {
     fn begin_watching(&mut self, what: &W) {
         let Some(own) = self.watched.iter_mut().find(|own| own.value.can_continue_as(what)) else {
             let kind = if what.is_whole() { Kind::Whole } else { Kind::Real };
-            let group = self.recorder.add_group(&[kind], WATCHED, Some(WATCHED_APART));
-            let line = self.recorder.add_line(what.line(group));
-            return self.watched.push(Watched { value: what.clone(), group, line, active: true });
+            let group = self.recorder.add_group(&[kind], MAX_WATCHED_SAMPLES, Some(MAX_WATCHED_GAP_NS));
+            let line = self.recorder.add_line(what.create_series(group));
+            return self.watched.push(WatchedSeries { value: what.clone(), group, line, active: true });
         };
         let goes_on = std::mem::replace(&mut own.active, true);
         if goes_on && own.value == *what {
             return;
         }
         own.value = what.clone();
-        let line = what.line(own.group);
+        let line = what.create_series(own.group);
         if !goes_on {
             self.recorder.resume_line(own.line, line.name.clone(), line.heading.clone());
         }
-        self.recorder.rescale(own.line, line.scales().to_vec());
+        self.recorder.set_scales(own.line, line.scales().to_vec());
     }
 
-    pub fn watched(&self) -> Vec<W> {
+    pub fn watched_values(&self) -> Vec<W> {
         self.watched.iter().filter(|own| own.active).map(|own| own.value.clone()).collect()
     }
 
@@ -270,7 +272,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         if watching.is_warned {
             flags |= Flags::WARNING;
         }
-        self.recorder.remark(line, watching.never.clone());
+        self.recorder.set_remark(line, watching.never.clone());
         let (time, flags) = (self.time(watching.at), [flags]);
         let (whole, real) = match watching.value {
             Some(Value::Whole(whole)) => ([whole], [whole as f64]),
@@ -288,62 +290,65 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.dropped
     }
 
-    pub fn positions(&self) -> u64 {
+    pub fn position_count(&self) -> u64 {
         let [line, ..] = self.lines;
-        let all =
-            self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.indices());
+        let all = self
+            .recorder
+            .series_by_id(line)
+            .and_then(|line| self.recorder.history(line))
+            .map(|history| history.indices());
         all.map_or(0, |all| all.end - all.start)
     }
 
     /// Discards the recording of the previous device, unless it contains minutes of data that have not been exported.
     /// The selection of values is kept.
-    pub fn forget(&mut self) {
-        let watched = self.watched();
-        if self.recorder.unsaved() >= MUCH {
-            self.watch(&[]);
+    pub fn clear_unless_long(&mut self) {
+        let watched = self.watched_values();
+        if self.recorder.unexported_duration() >= LONG_RECORDING_NS {
+            self.set_watched(&[]);
             self.watched.clear();
-            self.part(&Meaning::for_steps(None));
+            self.replace_series(&PositionScales::for_steps(None));
             self.follower = None;
         } else {
             let (began, shift, apart) = (self.began.take(), self.shift, self.apart);
             *self = DeviceRecorder { began, shift, apart, ..DeviceRecorder::default() };
         }
-        self.watch(&watched);
+        self.set_watched(&watched);
     }
 
     /// Prepares to decode the recording again from the `kept` words that are stored. The times do not change. If not
     /// all words are stored, the old recording is kept as well.
     pub fn prepare_redecoding(&mut self, kept: usize) {
-        if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
-            self.part(&Meaning::for_steps(None));
+        if usize::try_from(self.position_count()).is_ok_and(|own| own > kept) {
+            self.replace_series(&PositionScales::for_steps(None));
             (self.follower, self.newest) = (None, None);
             return;
         }
-        let (began, shift, apart, span) = (self.began.take(), self.shift, self.apart, self.recorder.span());
+        let (began, shift, apart, span) = (self.began.take(), self.shift, self.apart, self.recorder.window_length());
         *self = DeviceRecorder { began, shift, apart, ..DeviceRecorder::default() };
-        self.recorder.act(recorder::RecorderAction::SetSpan(span));
+        self.recorder.handle_action(recorder::RecorderAction::SetSpan(span));
     }
 
     /// Sets the meaning of the positions that follow. Positions with another meaning stay in lines that end here.
-    fn observe(&mut self, meaning: &Meaning) {
+    fn set_scales(&mut self, meaning: &PositionScales) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_location(meaning)) {
             if own.meaning != *meaning {
                 own.meaning = meaning.clone();
                 let lines = self.lines.into_iter().zip(meaning.scales.clone());
-                lines.for_each(|(line, scales)| self.recorder.rescale(line, scales));
+                lines.for_each(|(line, scales)| self.recorder.set_scales(line, scales));
             }
             return;
         }
-        self.part(meaning);
+        self.replace_series(meaning);
         self.follower = Some(PositionTracker::new(meaning.clone()));
     }
 
     /// Replaces the lines by new ones for positions with the given meaning.
-    fn part(&mut self, meaning: &Meaning) {
-        let has_samples = self.positions() > 0;
-        let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
+    fn replace_series(&mut self, meaning: &PositionScales) {
+        let has_samples = self.position_count() > 0;
+        let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(MAX_JOINED_GAP_NS));
         let before = self.lines;
-        let mut lines = meaning.lines(group).into_iter().zip(before);
+        let mut lines = meaning.create_series(group).into_iter().zip(before);
         self.lines = before.map(|old| {
             let Some((line, _)) = lines.next() else { return old };
             let name = self.ended_line_name(old);
@@ -356,7 +361,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.positions = group;
     }
 
-    fn end(&mut self, line: SeriesId) {
+    fn end_series(&mut self, line: SeriesId) {
         let (name, heading) = self.ended_line_name(line);
         self.recorder.end_line(line, name, heading);
     }
@@ -367,14 +372,14 @@ impl<W: Watchable> DeviceRecorder<W> {
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());
         let until =
             until.map_or_else(|| format!("{:.1} s", newest as f64 / 1e9), |at| at.strftime("%H:%M:%S").to_string());
-        let (name, heading) = match self.recorder.line(line) {
+        let (name, heading) = match self.recorder.series_by_id(line) {
             Some(line) => (line.name.clone(), line.heading.clone()),
             None => (Text::new("recorder.position"), String::new()),
         };
         (Text::new("recorder.until").with_text("name", name).with("time", &until), format!("{heading} until {until}"))
     }
 
-    pub fn gap(&mut self) {
+    pub fn mark_gap(&mut self) {
         self.recorder.mark_gap_in_all_groups();
         self.reset_tracking();
     }

@@ -17,7 +17,7 @@ pub(crate) use decode::{Direction, DirectionOption};
 
 use super::Failure;
 use super::commands::{Commands, KindOptions};
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::link::LinkUrl;
 
 /// Help heading of the options that every command has.
@@ -61,8 +61,8 @@ pub struct CommonArgs {
 
 impl CommonArgs {
     /// Returns the values of the options that the kinds of device add.
-    pub(super) fn given(&self) -> Result<Given, Failure> {
-        self.commands.devices().iter().try_fold(Given::default(), |given, device| device.given(&self.own, given))
+    pub(super) fn given(&self) -> Result<TypeMap, Failure> {
+        self.commands.devices().iter().try_fold(TypeMap::default(), |given, device| device.given(&self.own, given))
     }
 }
 

@@ -6,7 +6,7 @@ use super::output::{Lines, Output};
 use super::{Done, Failure, Result};
 use crate::analysis::check::Verdict;
 use crate::app::Text;
-use crate::app::check::{CheckLine, verdict};
+use crate::app::check::{CheckLine, verdict_text};
 use crate::link::LineQuality;
 
 /// Prints the results of the check. Returns an error if they include a fault.
@@ -22,7 +22,7 @@ pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&
     let mut text = Lines::default();
     for line in lines {
         let (step, word) = (line.step.terminal_text(), word(line.verdict));
-        let verdict = verdict(line.verdict).terminal_text();
+        let verdict = verdict_text(line.verdict).terminal_text();
         let found = findings(line);
         // A full stop is only at the end of the line, not between two findings.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();

@@ -10,7 +10,7 @@ use super::args::{Command, CommonArgs, DecodeArgs, Restore, SimulateArgs};
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result};
-use crate::app::{Given, Text};
+use crate::app::{Text, TypeMap};
 use crate::profile::Body;
 
 /// Commands that a kind of device may support.
@@ -112,7 +112,7 @@ pub trait DeviceCommands: ProfileCommands {
     ///
     /// # Errors
     /// Returns an error if a value is invalid.
-    fn given(&self, _options: &KindOptions, given: Given) -> Result<Given> {
+    fn given(&self, _options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
         Ok(given)
     }
 

@@ -38,7 +38,7 @@ pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
 }
 
 fn entries(filter: &EntryFilter, limit: u32) -> std::result::Result<Vec<Entry>, Failure> {
-    let path = Store::for_user().map_err(|error| failed(&explain::store(&error)))?.logbook_path();
+    let path = Store::for_user().map_err(|error| failed(&explain::store_error_text(&error)))?.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
         return Ok(Vec::new());
     }

@@ -35,7 +35,7 @@ pub use runner::{JobFailure, Runner, Runs, failed, unexpected_output};
 pub use simulate::{Simulated, settings};
 pub use slow_reply_notice::Pace;
 
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::link::LinkUrl;
 use crate::profile::ProfileFormats;
 
@@ -70,7 +70,7 @@ pub enum Invocation {
 pub struct Window {
     pub link: Option<LinkUrl>,
     pub profile: Option<PathBuf>,
-    pub given: Given,
+    pub given: TypeMap,
 }
 
 /// Runs the command given by the arguments of a process, which start with the program name. Without a command, requests

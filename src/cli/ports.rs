@@ -9,7 +9,7 @@ use crate::app::explain;
 use crate::link;
 
 pub(super) fn ports(output: &Output) -> Result {
-    let ports = link::ports().map_err(|error| failed(&explain::link(&error)))?;
+    let ports = link::ports().map_err(|error| failed(&explain::link_error_text(&error)))?;
     let list: Vec<Json> = ports
         .iter()
         .map(|port| json!({"path": port.path, "description": port.description, "serial_number": port.serial_number}))

@@ -42,7 +42,7 @@ fn remark(output: &Output, path: &Path, document: &ProfileDocument) -> Result<()
 }
 
 fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
-    let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
+    let text = read_text(path).map_err(|error| failed(&explain::file_error_text(&error)))?;
     ProfileDocument::parse(&text, output.formats())
         .map_err(|error| failed(&explain::profile(path, &error, KindRegistry::NONE)))
 }
@@ -51,7 +51,7 @@ pub fn save_profile(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = ProfileDocument::new(second.to_string(), body);
-    write_atomically(path, document.emit().as_bytes()).map_err(|error| failed(&explain::file(&error)))
+    write_atomically(path, document.emit().as_bytes()).map_err(|error| failed(&explain::file_error_text(&error)))
 }
 
 pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Result {
@@ -181,7 +181,7 @@ pub struct UnrestoredItems {
 
 impl UnrestoredItems {
     fn warn(&self, output: &Output) {
-        let items = self.redo.iter().map(explain::plain).collect();
+        let items = self.redo.iter().map(explain::literal_text).collect();
         if let Some(text) = review::redo(items) {
             output.remark(&text.terminal_text());
         }

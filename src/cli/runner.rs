@@ -17,7 +17,7 @@ use super::output::say;
 use super::slow_reply_notice::{Pace, SlowReplyNotice};
 use super::{Failure, Result};
 use crate::app::session::Kind;
-use crate::app::{Given, Text, explain};
+use crate::app::{Text, TypeMap, explain};
 use crate::link::{LinkError, LinkUrl, write_entry, write_header};
 use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
@@ -39,7 +39,7 @@ pub trait Runs: Kind {
     }
 
     /// Prepares a session with the options that every command has.
-    fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
+    fn begin(session: &mut Session<Self>, given: &TypeMap) -> Self::Context;
 
     /// Prints a message of the device immediately. The default prints nothing.
     fn print_message(_remark: &Self::DeviceMessage) {}
@@ -109,7 +109,7 @@ impl<D: Runs> Runner<D> {
         if common.only_master && !D::HAS_ONE_MASTER {
             return Err(Failure::Usage(common.commands.refusal("--only-master", D::COMMANDS.name())));
         }
-        let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
+        let store = Store::for_user().map_err(|error| failed(&explain::store_error_text(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal_text()),
             error => failed(&D::open_error(&error)),
@@ -226,7 +226,7 @@ impl<D: Runs> JobFailure<D> {
                 Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal_text).collect()))
             }
             JobFailure::Interrupted => failed(&Text::new("encoder.cancelled")),
-            JobFailure::Lost(error) => failed(&explain::link(&error)),
+            JobFailure::Lost(error) => failed(&explain::link_error_text(&error)),
             JobFailure::Worker => Failure::Failed(vec!["The session ended unexpectedly.".to_owned()]),
         }
     }

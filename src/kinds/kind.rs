@@ -39,7 +39,7 @@ impl Program {
         further: &'static [&'static dyn CliCommand],
     ) -> Self {
         let devices: Vec<&'static dyn DeviceKind> = kinds.iter().map(|kind| kind.view.kind()).collect();
-        let formats: Vec<&'static dyn ProfileFormat> = devices.iter().map(|kind| kind.format()).collect();
+        let formats: Vec<&'static dyn ProfileFormat> = devices.iter().map(|kind| kind.profile_format()).collect();
         let tool_kinds: Vec<&'static dyn ToolKind> = tools.iter().map(|tool| tool.view.kind()).collect();
         let views: Vec<&'static dyn DeviceView> = kinds.iter().map(|kind| kind.view).collect();
         let tool_views: Vec<&'static dyn ToolView> = tools.iter().map(|tool| tool.view).collect();

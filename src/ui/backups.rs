@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::controls::{button, card, empty_placeholder, enabled_button, paragraph};
+use super::controls::{card, empty_placeholder, enabled_button, labelled_button, paragraph};
 use super::{Theme, icons};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand};
@@ -17,12 +17,12 @@ pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec
     if *device.phase() == Phase::Offline {
         return;
     }
-    theme.gap(ui);
+    theme.add_gap(ui);
     backups_ui(ui, theme, device, actions);
-    theme.gap(ui);
+    theme.add_gap(ui);
     writes_ui(ui, theme, device);
-    if !device.statuses().is_empty() {
-        theme.gap(ui);
+    if !device.logged_status_codes().is_empty() {
+        theme.add_gap(ui);
         statuses_ui(ui, theme, device);
     }
 }
@@ -30,19 +30,19 @@ pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec
 fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let savable = device.is_savable();
     card(ui, theme, "profile_card.title", |ui| {
-        paragraph(ui, theme.label(theme.say("profile_card.words")));
+        paragraph(ui, theme.label(theme.translate("profile_card.words")));
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, savable, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
+            if enabled_button(ui, savable, icons::FLOPPY_DISK, &theme.translate("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
-            if enabled_button(ui, savable, "", &theme.say("profile_card.save_as")).clicked() {
+            if enabled_button(ui, savable, "", &theme.translate("profile_card.save_as")).clicked() {
                 actions.push(device.command(DeviceCommand::AskSave));
             }
-            if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
+            if labelled_button(ui, icons::FOLDER_OPEN, &theme.translate("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
             }
             let comparable = device.is_comparable();
-            if enabled_button(ui, comparable, COMPARE, &theme.say("shell.compare")).clicked() {
+            if enabled_button(ui, comparable, COMPARE, &theme.translate("shell.compare")).clicked() {
                 actions.push(device.command(DeviceCommand::AskCompare));
             }
         });
@@ -52,16 +52,16 @@ fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
 fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     card(ui, theme, "backups_card.title", |ui| match device.backups() {
         None => {
-            empty_placeholder(ui, theme, &theme.say("backups_card.none"), None);
+            empty_placeholder(ui, theme, &theme.translate("backups_card.none"), None);
         }
         Some(Err(why)) => {
-            ui.label(RichText::new(theme.words(why)).color(theme.palette.warn));
+            ui.label(RichText::new(theme.format_text(why)).color(theme.palette.warn));
         }
         Some(Ok(backups)) if backups.is_empty() => {
-            empty_placeholder(ui, theme, &theme.say("backups_card.none"), None);
+            empty_placeholder(ui, theme, &theme.translate("backups_card.none"), None);
         }
         Some(Ok(backups)) => {
-            paragraph(ui, theme.label(theme.say("backups_card.words")));
+            paragraph(ui, theme.label(theme.translate("backups_card.words")));
             for backup in backups {
                 ui.horizontal(|ui| {
                     ui.label(theme.monospace(time(backup.taken)));
@@ -69,16 +69,16 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
                         ui,
                         device.is_ready(),
                         icons::CLOCK_COUNTER_CLOCKWISE,
-                        &theme.say("backups_card.restore"),
+                        &theme.translate("backups_card.restore"),
                     );
                     if restore.clicked() {
                         actions.push(device.command(DeviceCommand::Restore(backup.path.clone())));
                     }
-                    let compare = theme.say("backups_card.compare");
+                    let compare = theme.translate("backups_card.compare");
                     if enabled_button(ui, device.is_comparable(), COMPARE, &compare).clicked() {
                         actions.push(device.command(DeviceCommand::Compare(backup.path.clone())));
                     }
-                    if button(ui, icons::FILE_TEXT, &theme.say("backups_card.look")).clicked() {
+                    if labelled_button(ui, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
                         actions.push(Action::Open(backup.path.clone()));
                     }
                     let name = backup.path.display().to_string();
@@ -90,15 +90,15 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
 }
 
 fn writes_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
-    card(ui, theme, "writes_card.title", |ui| match device.writes() {
+    card(ui, theme, "writes_card.title", |ui| match device.logged_writes() {
         None => {
-            ui.label(theme.label(theme.say("writes_card.none")));
+            ui.label(theme.label(theme.translate("writes_card.none")));
         }
         Some(Err(why)) => {
-            paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
+            paragraph(ui, RichText::new(theme.format_text(why)).color(theme.palette.warn));
         }
         Some(Ok(writes)) if writes.is_empty() => {
-            ui.label(theme.label(theme.say("writes_card.none")));
+            ui.label(theme.label(theme.translate("writes_card.none")));
         }
         Some(Ok(writes)) => {
             for write in writes {
@@ -110,7 +110,7 @@ fn writes_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
 
 fn statuses_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "statuses_card.title", |ui| {
-        for status in device.statuses() {
+        for status in device.logged_status_codes() {
             ui.horizontal(|ui| {
                 ui.label(theme.monospace(time(status.at)));
                 ui.add(egui::Label::new(&status.description).truncate());
@@ -126,16 +126,16 @@ pub(super) fn time(at: Timestamp) -> String {
 fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
     let palette = theme.palette;
     let (icon, colour, words) = match write.conclusion.as_ref().map(|end| &end.outcome) {
-        Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, theme.say("writes_card.done")),
-        Some(Outcome::Cancelled) => (icons::STOP, palette.warn, theme.say("writes_card.cancelled")),
+        Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, theme.translate("writes_card.done")),
+        Some(Outcome::Cancelled) => (icons::STOP, palette.warn, theme.translate("writes_card.cancelled")),
         Some(Outcome::Failed(why)) => (icons::X_CIRCLE, palette.bad, why.clone()),
-        None => (icons::QUESTION, palette.warn, theme.say("writes_card.open")),
+        None => (icons::QUESTION, palette.warn, theme.translate("writes_card.open")),
     };
     ui.horizontal(|ui| {
         ui.label(theme.monospace(time(write.at)));
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
         let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", write.cycles());
-        ui.label(theme.label(theme.words(&cycles)));
+        ui.label(theme.label(theme.format_text(&cycles)));
         ui.add(egui::Label::new(theme.monospace(&write.description)).truncate());
     });
 }

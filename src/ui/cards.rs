@@ -2,13 +2,13 @@
 
 use egui::{Button, Id, RichText, Role, Ui, WidgetInfo};
 
-use super::controls::fill;
+use super::controls::fill_width;
 use super::label_column::with_label_column;
 use super::{Theme, icons};
 use crate::app::Text;
 
 /// Window height in points below which folding cards are closed at first.
-const LOW: f32 = 720.0;
+const LOW_WINDOW_HEIGHT: f32 = 720.0;
 
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with_trailing(ui, theme, title, |_| {}, content)
@@ -22,11 +22,11 @@ pub(crate) fn card_with_trailing<R>(
     aside: impl FnOnce(&mut Ui),
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
-    let heading = theme.words(&title.into());
+    let heading = theme.format_text(&title.into());
     theme
-        .card()
+        .card_frame()
         .show(ui, |ui| {
-            fill(ui);
+            fill_width(ui);
             ui.horizontal(|ui| {
                 ui.label(theme.heading(heading.clone()));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
@@ -65,13 +65,13 @@ pub(crate) fn folding_card_with_trailing(
     content: impl FnOnce(&mut Ui),
 ) {
     let title = title.into();
-    if ui.ctx().content_rect().height() >= LOW {
+    if ui.ctx().content_rect().height() >= LOW_WINDOW_HEIGHT {
         return card_with_trailing(ui, theme, title, aside, content);
     }
-    let heading = theme.words(&title);
+    let heading = theme.format_text(&title);
     let id = Id::unique("folding_card").with(title.id());
-    theme.card().show(ui, |ui| {
-        fill(ui);
+    theme.card_frame().show(ui, |ui| {
+        fill_width(ui);
         let mut is_open = ui.data(|data| data.get_temp(id)).unwrap_or(false);
         ui.horizontal(|ui| {
             if disclosure(ui, theme.heading(heading.clone()), &mut is_open) {

@@ -6,12 +6,12 @@ use super::controls::paragraph;
 use super::{Theme, icons};
 use crate::analysis::check::Verdict;
 use crate::app::Text;
-use crate::app::check::{CheckLine, verdict};
+use crate::app::check::{CheckLine, verdict_text};
 
 /// Draws the result lines of the last check. Without a result, describes what a check does.
 pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
     let Some(lines) = lines else {
-        paragraph(ui, theme.label(theme.words(&nothing.into())));
+        paragraph(ui, theme.label(theme.format_text(&nothing.into())));
         return;
     };
     let palette = theme.palette;
@@ -23,11 +23,11 @@ pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckLine]>, 
             Verdict::Bad => (icons::X_CIRCLE, palette.bad),
         };
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icon).color(colour)).on_hover_text(theme.words(&verdict(line.verdict)));
+            ui.label(RichText::new(icon).color(colour)).on_hover_text(theme.format_text(&verdict_text(line.verdict)));
             ui.vertical(|ui| {
-                ui.label(theme.words(&line.step));
+                ui.label(theme.format_text(&line.step));
                 for finding in &line.findings {
-                    ui.add(egui::Label::new(theme.caption(theme.words(finding))).wrap().selectable(true));
+                    ui.add(egui::Label::new(theme.caption(theme.format_text(finding))).wrap().selectable(true));
                 }
             });
         });

@@ -52,7 +52,7 @@ pub struct NamedAction {
 /// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, because they could be mistaken
 /// for those with fewer.
 pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
-    let mut commands = of_program(theme, studio, views);
+    let mut commands = program_commands(theme, studio, views);
     if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {
         let has_undo_keys = views.tabs.device(device.tab()).is_some_and(DeviceView::has_undo_keys);
         let of_device = common_device_commands(theme, device, views).into_iter();
@@ -63,7 +63,7 @@ pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -
     commands
 }
 
-pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+pub(super) fn all_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = Vec::new();
     if let Some(device) = studio.selected_device() {
         commands.extend(common_device_commands(theme, device, views));
@@ -75,35 +75,33 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
             }));
         }
         commands.extend(backups(theme, device));
-        commands.extend(targets(theme, studio, device));
+        commands.extend(write_commands(theme, studio, device));
     }
     for device in studio.devices() {
         let pages = views.tabs.pages(device.tab()).into_iter().enumerate();
-        commands.extend(
-            pages.map(|(at, page)| {
-                Command::new(device.name(), theme.say(page.word), CommandEffect::Page(device.id(), at))
-            }),
-        );
+        commands.extend(pages.map(|(at, page)| {
+            Command::new(device.name(), theme.translate(page.word), CommandEffect::Page(device.id(), at))
+        }));
     }
-    for tool in views.tabs.tools() {
-        let (tab, title) = (tool.kind().tab(), theme.say(tool.title()));
+    for tool in views.tabs.tool_views() {
+        let (tab, title) = (tool.kind().tab(), theme.translate(tool.title()));
         let pages = tool.pages().into_iter().enumerate();
         commands.extend(
-            pages.map(|(at, page)| Command::new(&title, theme.say(page.word), CommandEffect::ToolPage(tab, at))),
+            pages.map(|(at, page)| Command::new(&title, theme.translate(page.word), CommandEffect::ToolPage(tab, at))),
         );
     }
-    commands.extend(of_program(theme, studio, views));
+    commands.extend(program_commands(theme, studio, views));
     commands
 }
 
-fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
-    let command = |word: &'static str, effect| Command::new("", theme.say(word), effect);
+fn program_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+    let command = |word: &'static str, effect| Command::new("", theme.translate(word), effect);
     let act = |word: &'static str, action| command(word, CommandEffect::Act(action));
     let mut commands = vec![
-        act("shell.open", Action::AskOpen).by(COMMAND, Key::O),
+        act("shell.open", Action::AskOpen).with_shortcut(COMMAND, Key::O),
         act("shell.connect", Action::Connect(connect::ConnectAction::Open)),
         act("shell.virtual_device", Action::OpenVirtual),
-        act("shell.stop", Action::Stop).enabled_if(studio.moves() || studio.can_stop() || studio.has_control()),
+        act("shell.stop", Action::Stop).enabled_if(studio.is_moving() || studio.can_stop() || studio.has_control()),
     ];
     let keys = TAB_KEYS.into_iter().map(Some).chain(std::iter::repeat_with(|| None));
     commands.extend(views.tabs.tabs().zip(keys).map(|(tab, key)| {
@@ -120,15 +118,16 @@ fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
         Language::German => act("shell.language", Action::SetLanguage(Language::English)),
     });
     let (word, opens) = if settings.lower_open { ("status_line.close", false) } else { ("status_line.open", true) };
-    commands.push(act(word, Action::OpenLowerPanel(opens)).by(COMMAND, Key::T));
-    commands.push(command("shell.help", CommandEffect::ToggleHelp).by(Modifiers::NONE, HELP_KEY));
+    commands.push(act(word, Action::OpenLowerPanel(opens)).with_shortcut(COMMAND, Key::T));
+    commands.push(command("shell.help", CommandEffect::ToggleHelp).with_shortcut(Modifiers::NONE, HELP_KEY));
     commands.push(command("shell.about", CommandEffect::About));
     commands.push(command("shell.reset_layout", CommandEffect::ResetLayout));
     commands
 }
 
 fn common_device_commands(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Command> {
-    let act = |word: &'static str, action| Command::new(device.name(), theme.say(word), CommandEffect::Act(action));
+    let act =
+        |word: &'static str, action| Command::new(device.name(), theme.translate(word), CommandEffect::Act(action));
     let ask = |word: &'static str, command| act(word, device.command(command));
     let is_offline = *device.phase() == Phase::Offline;
     let live = if device.is_polling() {
@@ -138,24 +137,28 @@ fn common_device_commands(theme: &Theme, device: &AnyDevice, views: &Views) -> V
         ask("palette.live_start", DeviceCommand::Poll(Some(every))).enabled_if(device.is_ready())
     };
     vec![
-        ask("palette.read_again", DeviceCommand::Read).by(Modifiers::NONE, Key::F5).enabled_if(device.is_readable()),
+        ask("palette.read_again", DeviceCommand::Read)
+            .with_shortcut(Modifiers::NONE, Key::F5)
+            .enabled_if(device.is_readable()),
         ask("memory.review", DeviceCommand::Review)
-            .by(COMMAND, Key::Enter)
+            .with_shortcut(COMMAND, Key::Enter)
             .enabled_if(!is_offline && device.is_dirty()),
-        act("shell.save", Action::Save(device.id())).by(COMMAND, Key::S).enabled_if(device.is_savable()),
-        ask("profile_card.save_as", DeviceCommand::AskSave).by(COMMAND_SHIFT, Key::S).enabled_if(device.is_savable()),
+        act("shell.save", Action::Save(device.id())).with_shortcut(COMMAND, Key::S).enabled_if(device.is_savable()),
+        ask("profile_card.save_as", DeviceCommand::AskSave)
+            .with_shortcut(COMMAND_SHIFT, Key::S)
+            .enabled_if(device.is_savable()),
         ask("shell.restore", DeviceCommand::AskRestore).enabled_if(device.is_ready() && device.has_memory()),
         ask("shell.compare", DeviceCommand::AskCompare).enabled_if(device.is_comparable()),
         ask("memory.undo", DeviceCommand::Undo)
-            .by(COMMAND, Key::Z)
+            .with_shortcut(COMMAND, Key::Z)
             .disable_while_typing()
             .enabled_if(device.can_undo()),
         ask("memory.redo", DeviceCommand::Redo)
-            .by(COMMAND_SHIFT, Key::Z)
+            .with_shortcut(COMMAND_SHIFT, Key::Z)
             .disable_while_typing()
             .enabled_if(device.can_redo()),
         ask("memory.redo", DeviceCommand::Redo)
-            .by(COMMAND, Key::Y)
+            .with_shortcut(COMMAND, Key::Y)
             .disable_while_typing()
             .enabled_if(device.can_redo()),
         ask("memory.revert", DeviceCommand::RevertAll).enabled_if(device.is_dirty()),
@@ -171,18 +174,18 @@ fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     let restore = |backup: &Backup| {
         let text = Text::new("palette.restore_backup").with("time", time(backup.taken));
         let action = device.command(DeviceCommand::Restore(backup.path.clone()));
-        Command::new(device.name(), theme.words(&text), CommandEffect::Act(action)).enabled_if(device.is_ready())
+        Command::new(device.name(), theme.format_text(&text), CommandEffect::Act(action)).enabled_if(device.is_ready())
     };
     backups.iter().map(restore).collect()
 }
 
 /// Returns the commands that write an open profile to a connected device of the matching kind.
-fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
+fn write_commands(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
     let is_target = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let write = |target: &AnyDevice| {
         let text = Text::new("palette.write_into").with("device", target.name());
         let action = device.command(DeviceCommand::WriteInto(target.id()));
-        Command::new(device.name(), theme.words(&text), CommandEffect::Act(action)).enabled_if(target.is_ready())
+        Command::new(device.name(), theme.format_text(&text), CommandEffect::Act(action)).enabled_if(target.is_ready())
     };
     let is_profile = *device.phase() == Phase::Offline;
     studio.devices().iter().map(Box::as_ref).filter(is_target).filter(|_| is_profile).map(write).collect()
@@ -191,7 +194,7 @@ fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
 impl NamedAction {
     /// Creates an action with the name of its button. `word` is a text of the catalogue of common messages.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
-        NamedAction { name: theme.say(word), is_enabled, action }
+        NamedAction { name: theme.translate(word), is_enabled, action }
     }
 }
 
@@ -201,7 +204,7 @@ impl Command {
         Command { about, name, shortcut: None, yields_to_typing: false, is_enabled: true, effect }
     }
 
-    fn by(self, modifiers: Modifiers, key: Key) -> Self {
+    fn with_shortcut(self, modifiers: Modifiers, key: Key) -> Self {
         Command { shortcut: Some(KeyboardShortcut::new(modifiers, key)), ..self }
     }
 

@@ -6,19 +6,19 @@ use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 pub use super::cards::card;
 pub(crate) use super::cards::{card_with_trailing, disclosure, folding_card, folding_card_with_trailing};
+pub(crate) use super::entries::{clear_secret, labelled_entry, mono_entry, secret_entry};
 pub use super::entries::{committed_entry, text_entry};
-pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
 pub(crate) use super::label_column::label_width;
 pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 
 /// Minimum width in points at which a label is drawn beside an entry. In narrower spaces, an icon replaces the label.
-const BESIDE: f32 = 64.0;
+const MIN_LABEL_WIDTH: f32 = 64.0;
 /// Minimum width of a dialog in points.
-const MODAL: f32 = 240.0;
+const MIN_MODAL_WIDTH: f32 = 240.0;
 /// Expands the UI to the whole available width. That width may be negative in a very small window.
-pub(crate) fn fill(ui: &mut Ui) {
+pub(crate) fn fill_width(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
 
@@ -27,9 +27,9 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
 }
 
 /// Draws the reason why an item cannot be shown or an action is not possible.
-pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
+pub(crate) fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
-        Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
+        Some(problem) => paragraph(ui, RichText::new(theme.format_text(problem)).color(theme.palette.bad)),
         // The ids of the entries below must not depend on the message. Otherwise, typing would be interrupted.
         None => ui.skip_ahead_auto_ids(1),
     }
@@ -42,7 +42,7 @@ pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crat
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_size(vec2(0.0, size.y));
         if let Some(problem) = problem {
-            message_label(ui, theme, theme.words(problem), theme.palette.bad.into());
+            message_label(ui, theme, theme.format_text(problem), theme.palette.bad.into());
         }
     });
 }
@@ -50,8 +50,8 @@ pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crat
 /// Draws the reason why an entry is invalid to its right, where nothing moves when a message appears.
 pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let Some(problem) = problem else { return };
-    let (words, ink) = (theme.words(problem), theme.palette.bad);
-    if ui.available_width() < BESIDE {
+    let (words, ink) = (theme.format_text(problem), theme.palette.bad);
+    if ui.available_width() < MIN_LABEL_WIDTH {
         ui.label(RichText::new(icons::WARNING_CIRCLE).color(ink)).on_hover_text(words);
     } else {
         message_label(ui, theme, words, ink.into());
@@ -83,10 +83,10 @@ pub(super) fn modal<R>(
     width: f32,
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
-    let frame = theme.card().inner_margin(theme.space.groups);
+    let frame = theme.card_frame().inner_margin(theme.space.groups);
     let id = egui::Id::unique(name);
     let shown = egui::Modal::new(id).frame(frame).show(ctx, |ui| {
-        ui.set_width(width.max(MODAL));
+        ui.set_width(width.max(MIN_MODAL_WIDTH));
         content(ui)
     });
     // The dialog can be centred only after its size is known, which requires another frame.
@@ -105,7 +105,7 @@ pub(super) fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-pub(crate) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
+pub(crate) fn labelled_button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)
 }
 
@@ -125,7 +125,7 @@ pub(crate) fn button_with_reason(
     let response = enabled_button(ui, allowed.is_ok(), icon, word);
     match allowed {
         Ok(()) => response,
-        Err(why) => response.on_disabled_hover_text(theme.words(why)),
+        Err(why) => response.on_disabled_hover_text(theme.format_text(why)),
     }
 }
 
@@ -166,13 +166,13 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
 pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
-        theme.gap(ui);
+        theme.add_gap(ui);
         ui.add(egui::Label::new(theme.label(words)).wrap());
         if let Some((icon, word, enabled)) = action {
             ui.add_space(theme.space.inside);
             pressed = enabled_button(ui, enabled, icon, word).clicked();
         }
-        theme.gap(ui);
+        theme.add_gap(ui);
     });
     pressed
 }
@@ -190,7 +190,7 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
 }
 
 /// Draws a drop-down list with a name for screen readers.
-pub(crate) fn choice<T: PartialEq + Copy>(
+pub(crate) fn dropdown<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
     value: &mut T,
@@ -258,7 +258,7 @@ pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
 }
 
-pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
+pub(crate) fn verdict_badge(theme: &Theme, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
     let palette = theme.palette;
     match verdict {
         Verdict::Ok => (icons::CHECK_CIRCLE, palette.good),
@@ -268,10 +268,10 @@ pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::
 }
 
 pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate::app::Text) {
-    let (icon, colour) = verdict(theme, own);
+    let (icon, colour) = verdict_badge(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, RichText::new(theme.words(words)).color(colour));
+        paragraph(ui, RichText::new(theme.format_text(words)).color(colour));
     });
 }
 
@@ -310,7 +310,7 @@ pub(crate) fn encoder_page<C>(
     let left = |ui: &mut Ui, context: &mut C| {
         identity(ui, context);
         if !is_profile {
-            theme.gap(ui);
+            theme.add_gap(ui);
             check(ui, context);
         }
     };
@@ -329,7 +329,7 @@ pub(crate) fn split<C>(
 ) {
     if ui.available_width() < least {
         left(ui, &mut context);
-        theme.gap(ui);
+        theme.add_gap(ui);
         right(ui, &mut context);
         return;
     }

@@ -34,7 +34,7 @@ pub trait TabPage: Copy + PartialEq + Default + 'static {
     const PAGES: &'static [(Self, PageInfo)];
 
     /// Returns the index of the page within its tab.
-    fn place(self) -> usize {
+    fn index(self) -> usize {
         Self::PAGES.iter().position(|(own, _)| *own == self).unwrap_or_default()
     }
 }
@@ -227,7 +227,7 @@ struct Memory<M> {
 
 impl<M: Default> Memory<M> {
     /// Returns the memory for the given device. The text and selections of another device are cleared first.
-    fn of(&mut self, serial_number: Option<&str>) -> &mut M {
+    fn for_device(&mut self, serial_number: Option<&str>) -> &mut M {
         if let Some(own) = serial_number
             && self.serial_number.as_deref() != Some(own)
             && self.serial_number.replace(own.to_owned()).is_some()
@@ -240,7 +240,7 @@ impl<M: Default> Memory<M> {
 
 impl<V: TypedDeviceView> SessionView for Session<V> {
     fn page(&self) -> usize {
-        self.page.place()
+        self.page.index()
     }
 
     fn open(&mut self, page: usize) {
@@ -254,7 +254,7 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
 
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
         let Some(device) = shared.1.get::<V::Device>() else { return };
-        let memory = self.memory.of(V::serial_number(device));
+        let memory = self.memory.for_device(V::serial_number(device));
         V::page_ui(ui, theme, shared, device, (self.page, memory), actions);
     }
 
@@ -265,7 +265,7 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
 
     fn watch_menu(&mut self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
         let Some(device) = device.get::<V::Device>() else { return };
-        V::watch_menu(ui, theme, device, self.memory.of(V::serial_number(device)), actions);
+        V::watch_menu(ui, theme, device, self.memory.for_device(V::serial_number(device)), actions);
     }
 }
 
@@ -281,7 +281,7 @@ pub trait ToolView: Sync {
     fn pages(&self) -> Vec<PageInfo>;
 
     /// Creates the view for a window.
-    fn begin(&self) -> Box<dyn ToolPages>;
+    fn create_pages(&self) -> Box<dyn ToolPages>;
 }
 
 /// A window's view of a tab that requires no device, with its open page, text buffers and selections.
@@ -316,7 +316,7 @@ impl TabViews {
 
     pub(crate) fn pages(self, tab: Tab) -> Vec<PageInfo> {
         let of_device = self.device(tab).map(DeviceView::pages);
-        of_device.or_else(|| self.tool(tab).map(ToolView::pages)).unwrap_or_default()
+        of_device.or_else(|| self.tool_view(tab).map(ToolView::pages)).unwrap_or_default()
     }
 
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
@@ -324,8 +324,8 @@ impl TabViews {
     }
 
     pub(crate) fn title(self, theme: &Theme, tab: Tab) -> String {
-        let title = self.tool(tab).map(|view| theme.say(view.title()));
-        title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()
+        let title = self.tool_view(tab).map(|view| theme.translate(view.title()));
+        title.or_else(|| self.device(tab).map(|view| view.kind().bus_name().to_owned())).unwrap_or_default()
     }
 
     pub(crate) fn device_tabs(self) -> impl Iterator<Item = Tab> {
@@ -336,11 +336,11 @@ impl TabViews {
         self.devices.iter().copied().find(|view| view.kind().tab() == tab)
     }
 
-    pub(crate) fn tools(self) -> &'static [&'static dyn ToolView] {
+    pub(crate) fn tool_views(self) -> &'static [&'static dyn ToolView] {
         self.tools
     }
 
-    fn tool(self, tab: Tab) -> Option<&'static dyn ToolView> {
+    fn tool_view(self, tab: Tab) -> Option<&'static dyn ToolView> {
         self.tools.iter().copied().find(|view| view.kind().tab() == tab)
     }
 }
@@ -352,10 +352,10 @@ mod tests {
     #[test]
     fn entries_are_dropped_when_another_device_answers() {
         let mut memory = Memory::<String>::default();
-        memory.of(None).push_str("48");
-        assert_eq!(memory.of(Some("00123")), "48", "the first device that is known");
-        assert_eq!(memory.of(None), "48", "read again");
-        assert_eq!(memory.of(Some("00123")), "48");
-        assert_eq!(memory.of(Some("00124")), "");
+        memory.for_device(None).push_str("48");
+        assert_eq!(memory.for_device(Some("00123")), "48", "the first device that is known");
+        assert_eq!(memory.for_device(None), "48", "read again");
+        assert_eq!(memory.for_device(Some("00123")), "48");
+        assert_eq!(memory.for_device(Some("00124")), "");
     }
 }

@@ -17,13 +17,13 @@ pub(super) enum Pane {
 }
 
 /// Initial share of the row width taken by the Live panel.
-const LIVE: f32 = 0.3;
+const LIVE_SHARE: f32 = 0.3;
 /// Width in points of the Live panel without its plot.
-const VALUES: f32 = 248.0;
+const VALUES_WIDTH: f32 = 248.0;
 
 impl Pane {
     const ALL: [Pane; 5] = [Pane::Workspace, Pane::Live, Pane::Trace, Pane::Jobs, Pane::Log];
-    const LOWER: [Pane; 3] = [Pane::Trace, Pane::Jobs, Pane::Log];
+    const LOWER_PANES: [Pane; 3] = [Pane::Trace, Pane::Jobs, Pane::Log];
 }
 
 pub(super) struct Docks {
@@ -39,11 +39,11 @@ impl Docks {
     /// Loads the stored layout. Uses the default layout if none is stored.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
-        Docks { tree: tree.unwrap_or_else(default_layout), edited: false, alone: None, with_plot: LIVE }
+        Docks { tree: tree.unwrap_or_else(default_layout), edited: false, alone: None, with_plot: LIVE_SHARE }
     }
 
     /// Returns the serialized layout if it has changed since the last call.
-    pub(super) fn changed(&mut self) -> Option<String> {
+    pub(super) fn take_changed_layout(&mut self) -> Option<String> {
         std::mem::take(&mut self.edited).then(|| ron::to_string(&self.tree).ok()).flatten()
     }
 
@@ -52,7 +52,7 @@ impl Docks {
         self.edited = true;
     }
 
-    pub(super) fn ui(
+    pub(super) fn show(
         &mut self,
         ui: &mut egui::Ui,
         theme: &Theme,
@@ -85,7 +85,7 @@ impl Docks {
                 let before = row.shares[tile] / (row.shares[tile] + beside);
                 let part = if alone {
                     self.with_plot = before;
-                    (VALUES / width.max(VALUES * 2.0)).min(before)
+                    (VALUES_WIDTH / width.max(VALUES_WIDTH * 2.0)).min(before)
                 } else {
                     self.with_plot
                 };
@@ -119,7 +119,7 @@ impl Docks {
 
     fn is_in_lower_dock(&self, tile: TileId) -> bool {
         match self.tree.tiles.get(tile) {
-            Some(Tile::Pane(pane)) => Pane::LOWER.contains(pane),
+            Some(Tile::Pane(pane)) => Pane::LOWER_PANES.contains(pane),
             Some(Tile::Container(container)) => container.children().all(|child| self.is_in_lower_dock(*child)),
             None => false,
         }
@@ -141,7 +141,7 @@ fn default_layout() -> Tree<Pane> {
     let live = tiles.insert_tab_tile(vec![live]);
     let lower = [Pane::Trace, Pane::Jobs, Pane::Log].map(|pane| tiles.insert_pane(pane));
     let lower = tiles.insert_tab_tile(lower.to_vec());
-    let upper = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Horizontal, [workspace, live], 1.0 - LIVE);
+    let upper = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Horizontal, [workspace, live], 1.0 - LIVE_SHARE);
     let upper = tiles.insert_container(Container::Linear(upper));
     let root = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Vertical, [upper, lower], 0.7);
     let root = tiles.insert_container(Container::Linear(root));
@@ -174,7 +174,7 @@ impl egui_tiles::Behavior<Pane> for DockBehaviour<'_> {
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> egui::WidgetText {
         self.theme
-            .say(match pane {
+            .translate(match pane {
                 Pane::Workspace => "panel.workspace",
                 Pane::Live => "panel.live",
                 Pane::Trace => "panel.trace",

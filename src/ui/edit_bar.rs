@@ -10,7 +10,7 @@ use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
 /// Width in points below which some buttons have no labels. It applies beside a profile, and beside a device's number
 /// of edits.
-const NARROW: f32 = 660.0;
+const NARROW_WIDTH: f32 = 660.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EditKind {
@@ -29,32 +29,33 @@ pub fn edit_bar_ui(
     let dirty = device.is_dirty();
     let width = ui.available_width();
     ui.horizontal(|ui| {
-        if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &theme.say("memory.undo")).clicked() {
+        if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &theme.translate("memory.undo")).clicked() {
             actions.push(device.command(DeviceCommand::Undo));
         }
-        if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &theme.say("memory.redo")).clicked() {
+        if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &theme.translate("memory.redo")).clicked() {
             actions.push(device.command(DeviceCommand::Redo));
         }
-        let narrow = width < NARROW;
+        let narrow = width < NARROW_WIDTH;
         let revert = if narrow { icon_button } else { enabled_button };
-        if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.say("memory.revert")).clicked() {
+        if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.translate("memory.revert")).clicked() {
             actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if *device.phase() == Phase::Offline {
-                if primary_button(ui, theme, dirty, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
+                if primary_button(ui, theme, dirty, icons::FLOPPY_DISK, &theme.translate("profile_card.save")).clicked()
+                {
                     actions.push(Action::Save(device.id()));
                 }
                 write_targets_ui(ui, theme, studio, device, actions);
             } else {
-                let word = theme.say("memory.review");
+                let word = theme.translate("memory.review");
                 let write = primary_button(ui, theme, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
-                if write.on_hover_text(theme.say("memory.review_hint")).clicked() {
+                if write.on_hover_text(theme.translate("memory.review_hint")).clicked() {
                     actions.push(device.command(DeviceCommand::Review));
                 }
             }
             if dirty {
-                let count = device.edits();
+                let count = device.edit_count();
                 let text = Text::new(match (device.source(), count, edited) {
                     (Source::Link(_), 1, EditKind::Bytes) => "memory.edited_one",
                     (Source::Link(_), _, EditKind::Bytes) => "memory.edited",
@@ -66,7 +67,7 @@ pub fn edit_bar_ui(
                     (Source::File { .. } | Source::New { .. }, _, EditKind::Values) => "values.unsaved",
                 })
                 .with("count", count);
-                edits_ui(ui, theme, count, &theme.words(&text));
+                edits_ui(ui, theme, count, &theme.format_text(&text));
             }
         });
     });
@@ -87,7 +88,7 @@ fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
 fn write_targets_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
-    let word = theme.say("memory.write_into");
+    let word = theme.translate("memory.write_into");
     ui.add_enabled_ui(!targets.is_empty(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
             for target in &targets {
@@ -97,6 +98,6 @@ fn write_targets_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDev
                 }
             }
         });
-        name(menu.response, true, &word).on_disabled_hover_text(theme.say("memory.no_target"));
+        name(menu.response, true, &word).on_disabled_hover_text(theme.translate("memory.no_target"));
     });
 }

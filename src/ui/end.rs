@@ -29,7 +29,7 @@ thread_local! {
 
 /// Installs the handlers for signals and for the end of the window's thread.
 pub(super) fn install_handlers(studio: &Studio) {
-    let (brakes, mailbox) = (studio.brakes(), studio.mailbox());
+    let (brakes, mailbox) = (studio.drive_stop_handles(), studio.mailbox());
     RELEASE_GUARD.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
     let again = AtomicBool::new(false);
     let heard = ctrlc::set_handler(move || {

@@ -51,7 +51,7 @@ pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &s
 }
 
 /// Clears a secret entry and any state from which the secret could be restored.
-pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
+pub(crate) fn clear_secret(ui: &Ui, response: &Response, text: &mut String) {
     text.clear();
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
@@ -65,7 +65,7 @@ pub(crate) fn labelled_entry(
     width: f32,
     hint: &str,
 ) -> Response {
-    let word = theme.words(&what.into());
+    let word = theme.format_text(&what.into());
     entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 

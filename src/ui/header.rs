@@ -2,15 +2,15 @@
 
 use egui::{RichText, Stroke, Ui};
 
-use super::controls::{badge, button, connection_dot, enabled_button, icon_button, name};
-use super::page::apart;
+use super::controls::{badge, connection_dot, enabled_button, icon_button, labelled_button, name};
+use super::page::with_stable_ids;
 use super::stop_debounce::{press_began, press_time, register_stop_press};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
 
 /// Width in points of the STOP button without any motion.
-const STOP: f32 = 72.0;
+const STOP_BUTTON_WIDTH: f32 = 72.0;
 
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
@@ -34,8 +34,8 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
                 }
             },
         );
-        let tools = apart(ui, "tools", |ui| {
-            tools(ui, theme, studio, views, actions);
+        let tools = with_stable_ids(ui, "tools", |ui| {
+            tools_ui(ui, theme, studio, views, actions);
             ui.min_rect().width()
         });
         if (tools - width).abs() > 0.5 {
@@ -45,28 +45,28 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
     });
 }
 
-fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+fn tools_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window, only icons are drawn, with their texts as tooltips. The STOP button of double width takes
     // more space.
     let narrow = ui.ctx().content_rect().width() < if shows_stop_overlay(studio) { 1240.0 } else { 1100.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
-        let word = theme.say(id);
+        let word = theme.translate(id);
         if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
     };
     if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
     }
     let savable = studio.selected_device().is_some_and(AnyDevice::is_savable);
-    if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.say("shell.save_hint")).clicked() {
+    if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.translate("shell.save_hint")).clicked() {
         actions.extend(studio.selected_device().map(|own| Action::Save(own.id())));
     }
     let shown = studio.selected_device();
     let restorable = shown.is_some_and(|own| own.is_ready() && own.has_memory());
-    if icon_button(ui, restorable, icons::CLOCK_COUNTER_CLOCKWISE, &theme.say("shell.restore")).clicked() {
+    if icon_button(ui, restorable, icons::CLOCK_COUNTER_CLOCKWISE, &theme.translate("shell.restore")).clicked() {
         actions.extend(shown.map(|own| own.command(DeviceCommand::AskRestore)));
     }
     let comparable = shown.is_some_and(AnyDevice::is_comparable);
-    if icon_button(ui, comparable, icons::ARROWS_OUT_LINE_HORIZONTAL, &theme.say("shell.compare")).clicked() {
+    if icon_button(ui, comparable, icons::ARROWS_OUT_LINE_HORIZONTAL, &theme.translate("shell.compare")).clicked() {
         actions.extend(shown.map(|own| own.command(DeviceCommand::AskCompare)));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
@@ -78,8 +78,8 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
         Language::English => (Language::German, "DE"),
         Language::German => (Language::English, "EN"),
     };
-    let response = ui.button(other_code).on_hover_text(theme.say("shell.language"));
-    if name(response, true, &theme.say("shell.language")).clicked() {
+    let response = ui.button(other_code).on_hover_text(theme.translate("shell.language"));
+    if name(response, true, &theme.translate("shell.language")).clicked() {
         actions.push(Action::SetLanguage(other));
     }
     let (theme_icon, other) = match settings.theme {
@@ -90,26 +90,26 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
         ColorScheme::Light => "shell.light",
         ColorScheme::Dark => "shell.dark",
     };
-    if icon_button(ui, true, theme_icon, &theme.say(theme_word)).clicked() {
+    if icon_button(ui, true, theme_icon, &theme.translate(theme_word)).clicked() {
         actions.push(Action::SetTheme(other));
     }
-    if icon_button(ui, true, icons::QUESTION, &theme.say("shell.help")).clicked() {
+    if icon_button(ui, true, icons::QUESTION, &theme.translate("shell.help")).clicked() {
         views.help = !views.help;
     }
-    if icon_button(ui, true, icons::INFO, &theme.say("shell.about")).clicked() {
+    if icon_button(ui, true, icons::INFO, &theme.translate("shell.about")).clicked() {
         views.about = true;
     }
 }
 
 /// Draws the menu of sessions, which opens from the name of the selected session.
 fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
+    let shown = studio.selected_device().map_or_else(|| theme.translate("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
     let text = RichText::new(format!("{}  {}", shortened_text(&shown, most), icons::CARET_DOWN))
         .font(theme.bold_font(theme.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
-        ui.label(theme.caption(theme.say("shell.sessions")));
+        ui.label(theme.caption(theme.translate("shell.sessions")));
         for device in studio.devices() {
             ui.horizontal(|ui| {
                 phase_dot_ui(ui, theme, device.as_ref());
@@ -122,7 +122,7 @@ fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Ac
                     ui.label(RichText::new(icons::PENCIL_SIMPLE).color(theme.palette.staged));
                 }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if icon_button(ui, true, icons::X, &theme.say("shell.close_session")).clicked() {
+                    if icon_button(ui, true, icons::X, &theme.translate("shell.close_session")).clicked() {
                         actions.push(Action::CloseSession(device.id()));
                         ui.close();
                     }
@@ -139,19 +139,19 @@ fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Ac
                 (device.is_comparable(), icons::ARROWS_OUT_LINE_HORIZONTAL, "shell.compare", DeviceCommand::AskCompare),
             ];
             for (enabled, icon, word, command) in entries {
-                if enabled_button(ui, enabled, icon, &theme.say(word)).clicked() {
+                if enabled_button(ui, enabled, icon, &theme.translate(word)).clicked() {
                     actions.push(device.command(command));
                     ui.close();
                 }
             }
             ui.separator();
         }
-        if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
+        if labelled_button(ui, icons::PLUGS_CONNECTED, &theme.translate("shell.connect")).clicked() {
             actions.push(Action::Connect(connect::ConnectAction::Open));
             ui.close();
         }
     });
-    name(menu.response, true, &theme.say("shell.sessions"));
+    name(menu.response, true, &theme.translate("shell.sessions"));
 }
 
 /// Shortens a name for the header. The serial number is kept, because it distinguishes devices of the same kind.
@@ -183,7 +183,7 @@ fn phase_dot_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
 fn status_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) {
     let palette = theme.palette;
     if device.is_virtual() {
-        badge(ui, theme, &theme.say("shell.virtual"), palette.warn);
+        badge(ui, theme, &theme.translate("shell.virtual"), palette.warn);
     }
     phase_dot_ui(ui, theme, device);
     let (text, colour) = match (device.phase(), motion) {
@@ -196,7 +196,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text
         (Phase::Offline, _) if is_read_only(device) => (Text::new("shell.read_only"), palette.warn),
         (Phase::Offline, _) => (Text::new("shell.offline"), palette.muted),
     };
-    ui.label(RichText::new(theme.words(&text)).color(colour));
+    ui.label(RichText::new(theme.format_text(&text)).color(colour));
 }
 
 /// Returns whether the profile has a newer schema. Such a profile can be neither saved nor written.
@@ -206,10 +206,10 @@ fn is_read_only(device: &AnyDevice) -> bool {
 
 fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let Some(device) = studio.selected_device() else { return };
-    let words = device.place();
+    let words = device.data_source();
     let label =
         egui::Label::new(theme.monospace(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
-    let hint = format!("{words}\n{}", theme.say("shell.copy_link"));
+    let hint = format!("{words}\n{}", theme.translate("shell.copy_link"));
     if ui.add(label).on_hover_text(hint).clicked() {
         ui.copy_text(words);
     }
@@ -223,9 +223,9 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     // Live values alone are no reason for an alarm.
     let is_alarming = moves || studio.is_working() || studio.has_control();
     let (word, hint) = if studio.has_drives() {
-        (theme.say("hd_bar.stop"), theme.say("hd_bar.stop_hint"))
+        (theme.translate("hd_bar.stop"), theme.translate("hd_bar.stop_hint"))
     } else {
-        (theme.say("shell.stop"), theme.say("shell.stop_hint"))
+        (theme.translate("shell.stop"), theme.translate("shell.stop_hint"))
     };
     let text = format!("{}  {word}", icons::STOP);
     let palette = theme.palette;
@@ -236,7 +236,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     } else {
         egui::Button::new(RichText::new(text).color(palette.muted))
     };
-    let width = if moves { STOP * 2.0 } else { STOP };
+    let width = if moves { STOP_BUTTON_WIDTH * 2.0 } else { STOP_BUTTON_WIDTH };
     let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
     ui.data_mut(|data| data.insert_temp(stop_button_id(), response.rect.min));
     let pressed = press_began(ui, &response);
@@ -250,7 +250,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
 
 /// Returns whether a drive is moving that can be stopped from here.
 fn shows_stop_overlay(studio: &Studio) -> bool {
-    studio.moves() && studio.can_stop_motion()
+    studio.is_moving() && studio.can_stop_motion()
 }
 
 /// Draws the STOP button in its usual place while a drive moves. It is on top of anything that covers the window.

@@ -22,7 +22,7 @@ impl KeyboardFilter {
     /// Removes the events that no widget may receive from the current frame. Returns whether all motion must stop.
     /// `moves` states whether this window is moving a drive. `asks` states whether consent is requested. Only a key
     /// that was released since the request can give consent.
-    pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
+    pub(super) fn filter_events(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
             self.fresh.reset_keys();
         }

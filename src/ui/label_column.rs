@@ -5,7 +5,7 @@ use egui::{Id, RichText, Ui, vec2};
 use super::Theme;
 
 /// Default width of the label column. A longer label widens it.
-const LABELS: f32 = 132.0;
+const DEFAULT_LABEL_WIDTH: f32 = 132.0;
 /// Largest shares of the width for the label column, by default and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
@@ -22,22 +22,22 @@ impl LabelColumn {
         Id::unique("column of labels")
     }
 
-    fn of(ui: &Ui) -> Self {
+    fn load(ui: &Ui) -> Self {
         ui.data(|data| data.get_temp(Self::id())).unwrap_or_default()
     }
 
-    fn set(self, ui: &Ui) {
+    fn store(self, ui: &Ui) {
         ui.data_mut(|data| data.insert_temp(Self::id(), self));
     }
 }
 
 /// Draws the content of the card with the given heading. Its label column is wide enough for the longest label.
 pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
-    let (outer, id) = (LabelColumn::of(ui), ui.scope_id().with((LabelColumn::id(), heading)));
+    let (outer, id) = (LabelColumn::load(ui), ui.scope_id().with((LabelColumn::id(), heading)));
     let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    LabelColumn { longest, drawn: 0.0 }.set(ui);
+    LabelColumn { longest, drawn: 0.0 }.store(ui);
     let result = content(ui);
-    let LabelColumn { drawn, .. } = LabelColumn::of(ui);
+    let LabelColumn { drawn, .. } = LabelColumn::load(ui);
     // The column never becomes narrower. Cards with one heading may alternate, and a line that comes and goes must not
     // move the others.
     if drawn > longest {
@@ -45,14 +45,14 @@ pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnO
         // The content is drawn again in the next frame, because input would count twice in this one.
         ui.ctx().request_repaint();
     }
-    outer.set(ui);
+    outer.store(ui);
     result
 }
 
 pub(crate) fn label_width(ui: &Ui) -> f32 {
     let (usual, most) = LABEL_SHARES;
     let room = ui.available_width().max(0.0);
-    LABELS.min(room * usual).max(LabelColumn::of(ui).longest.min(room * most))
+    DEFAULT_LABEL_WIDTH.min(room * usual).max(LabelColumn::load(ui).longest.min(room * most))
 }
 
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
@@ -79,8 +79,8 @@ fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
     let width = label_width(ui);
     let text = egui::WidgetText::from(theme.label(label));
     let galley = text.clone().into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body);
-    let column = LabelColumn::of(ui);
-    LabelColumn { drawn: column.drawn.max(galley.size().x.ceil()), ..column }.set(ui);
+    let column = LabelColumn::load(ui);
+    LabelColumn { drawn: column.drawn.max(galley.size().x.ceil()), ..column }.store(ui);
     ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
         ui.set_min_width(width);
         ui.add(egui::Label::new(text).truncate());

@@ -4,13 +4,13 @@
 use std::time::Duration;
 
 /// Shortest interval, at which motion looks smooth.
-const SHORTEST: Duration = Duration::from_millis(50);
+const MIN_INTERVAL: Duration = Duration::from_millis(50);
 /// Longest interval, at which values can still be followed.
-const LONGEST: Duration = Duration::from_millis(125);
+const MAX_INTERVAL: Duration = Duration::from_millis(125);
 /// Share of one processor core that the whole program may use while it displays live values.
-const SHARE: f64 = 0.2;
+const PROCESSOR_SHARE: f64 = 0.2;
 /// Time over which the share is measured.
-const MEASURED: Duration = Duration::from_secs(1);
+const MEASURING_TIME: Duration = Duration::from_secs(1);
 
 pub(super) struct LivePace {
     interval: Duration,
@@ -20,7 +20,7 @@ pub(super) struct LivePace {
 
 impl Default for LivePace {
     fn default() -> Self {
-        LivePace { interval: SHORTEST, last: None }
+        LivePace { interval: MIN_INTERVAL, last: None }
     }
 }
 
@@ -34,13 +34,13 @@ impl LivePace {
             return self.interval;
         };
         let elapsed = now.saturating_sub(since);
-        if elapsed >= MEASURED {
+        if elapsed >= MEASURING_TIME {
             self.last = Some((now, used));
             // After a pause without live values, the measured share does not describe them.
-            if elapsed < 2 * MEASURED {
+            if elapsed < 2 * MEASURING_TIME {
                 let share = used.saturating_sub(before).as_secs_f64() / elapsed.as_secs_f64();
-                let wanted = self.interval.mul_f64((share / SHARE).clamp(0.5, 2.0));
-                self.interval = ((self.interval + wanted) / 2).clamp(SHORTEST, LONGEST);
+                let wanted = self.interval.mul_f64((share / PROCESSOR_SHARE).clamp(0.5, 2.0));
+                self.interval = ((self.interval + wanted) / 2).clamp(MIN_INTERVAL, MAX_INTERVAL);
             }
         }
         self.interval
@@ -89,24 +89,24 @@ mod tests {
 
     #[test]
     fn frames_are_as_far_apart_as_their_cost_requires() {
-        assert_eq!(settled(Duration::from_millis(2)), SHORTEST, "2 of 50 ms are 4 %");
+        assert_eq!(settled(Duration::from_millis(2)), MIN_INTERVAL, "2 of 50 ms are 4 %");
         let interval = settled(Duration::from_millis(18));
         assert!((85..=95).contains(&interval.as_millis()), "18 of 90 ms are 20 %: {interval:?}");
-        assert_eq!(settled(Duration::from_millis(60)), LONGEST);
+        assert_eq!(settled(Duration::from_millis(60)), MAX_INTERVAL);
     }
 
     #[test]
     fn the_interval_returns_when_frames_become_cheap() {
         let (now, second) = (Duration::ZERO, Duration::from_secs(1));
-        let mut pace = LivePace { interval: LONGEST, last: Some((now, Duration::ZERO)) };
+        let mut pace = LivePace { interval: MAX_INTERVAL, last: Some((now, Duration::ZERO)) };
         for seconds in 1..=10 {
             pace.next(now + seconds * second, Some(seconds * Duration::from_millis(20)));
         }
-        assert_eq!(pace.interval, SHORTEST);
+        assert_eq!(pace.interval, MIN_INTERVAL);
         let mut unknown = LivePace::default();
-        assert_eq!(unknown.next(now, None), SHORTEST);
+        assert_eq!(unknown.next(now, None), MIN_INTERVAL);
         // A break of an hour, in which much was computed.
-        let mut paused = LivePace { interval: SHORTEST, last: Some((now, Duration::ZERO)) };
-        assert_eq!(paused.next(now + 3600 * second, Some(3600 * second)), SHORTEST);
+        let mut paused = LivePace { interval: MIN_INTERVAL, last: Some((now, Duration::ZERO)) };
+        assert_eq!(paused.next(now + 3600 * second, Some(3600 * second)), MIN_INTERVAL);
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn navigation_ui(
     // The footer is at the bottom, wherever the pages end.
     let footer = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
     let mut footer = ui.new_child(egui::UiBuilder::new().max_rect(footer));
-    if icon_button(&mut footer, true, icons::ARROWS_CLOCKWISE, &theme.say("shell.reset_layout")).clicked() {
+    if icon_button(&mut footer, true, icons::ARROWS_CLOCKWISE, &theme.translate("shell.reset_layout")).clicked() {
         docks.reset();
     }
 }
@@ -40,7 +40,7 @@ pub(super) fn navigation_ui(
 fn open_pages_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
-    let pressed = if let Some(tool) = views.tool(tab) {
+    let pressed = if let Some(tool) = views.tool_pages(tab) {
         let pressed = pages_ui(ui, theme, &pages, tool.page(), |_| false);
         pressed.inspect(|page| tool.open(*page))
     } else {
@@ -65,7 +65,7 @@ fn pages_ui(
 ) -> Option<usize> {
     let mut pressed = None;
     for (at, page) in pages.iter().enumerate() {
-        let word = theme.say(page.word);
+        let word = theme.translate(page.word);
         let text = egui::RichText::new(format!("{}  {word}", page.icon));
         let response = entry_ui(ui, shown == at, text, &word);
         if edited(at) {

@@ -4,24 +4,24 @@ use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 
 use super::Theme;
 
-const NARROW: f32 = 720.0;
+const NARROW_WIDTH: f32 = 720.0;
 /// Space above a page, and the maximum space below.
-const ABOVE: i8 = 16;
+const SPACE_ABOVE: i8 = 16;
 
 pub(crate) fn side_margin(ui: &Ui, theme: &Theme) -> i8 {
-    let narrow = ui.available_width() < NARROW;
+    let narrow = ui.available_width() < NARROW_WIDTH;
     (if narrow { theme.space.groups } else { theme.space.around }) as i8
 }
 
-pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
+pub(crate) fn page_margin(ui: &Ui, theme: &Theme) -> Margin {
     let sides = side_margin(ui, theme);
-    Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
+    Margin { left: sides, right: sides, top: SPACE_ABOVE, bottom: sides.min(SPACE_ABOVE) }
 }
 
 /// Draws a page that scrolls as a whole. `id` must differ from that of other pages. The scroll bar is in the margin, so
 /// nothing moves when it appears.
 pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
-    let frame = Frame::NONE.inner_margin(around(ui, theme));
+    let frame = Frame::NONE.inner_margin(page_margin(ui, theme));
     ui.scope(|ui| {
         let inside = std::mem::take(&mut ui.spacing_mut().scroll.floating_allocated_width);
         ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
@@ -34,7 +34,7 @@ pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: i
 /// Draws widgets whose ids do not depend on the widgets drawn before them. `name` must be unique in `ui`. Without this,
 /// a widget that appears or disappears above would change their ids. The keyboard focus would be lost, and a click
 /// between press and release.
-pub(super) fn apart<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub(super) fn with_stable_ids<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(name);
     ui.scope_builder(UiBuilder::new().scope_id(id), content).inner
 }

@@ -6,9 +6,9 @@
 use eframe::Renderer;
 
 /// Environment variable that selects a renderer, for a computer on which one opens the window but does not draw well.
-const SELECTED: &str = "ENCODER_STUDIO_RENDERER";
+const RENDERER_VARIABLE: &str = "ENCODER_STUDIO_RENDERER";
 
-/// Names of the renderers in [`SELECTED`].
+/// Names of the renderers in [`RENDERER_VARIABLE`].
 const NAMES: &[(&str, Renderer)] = &[
     ("opengl", Renderer::Glow),
     #[cfg(windows)]
@@ -16,8 +16,8 @@ const NAMES: &[(&str, Renderer)] = &[
 ];
 
 /// Returns the renderers to be tried: the one that the user has selected, or else all.
-pub(super) fn renderers() -> Vec<Renderer> {
-    renderers_for(std::env::var(SELECTED).ok().as_deref())
+pub(super) fn renderers_to_try() -> Vec<Renderer> {
+    renderers_for(std::env::var(RENDERER_VARIABLE).ok().as_deref())
 }
 
 /// With another word, such as `none`, no renderer is left.

@@ -7,23 +7,25 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 
 use super::controls::{enabled_button, modal, paragraph, primary_button, right_aligned, row, spinner};
-use super::page::apart;
+use super::page::with_stable_ids;
 use super::{Theme, icons};
 use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, PermitToggle, Question, ReviewSheet, Stage};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
-    let Some(sheet) = device.sheet() else { return };
+    let Some(sheet) = device.review_sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
     // Show as many operations as fit beside the texts of the dialog.
-    let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
+    let room = (ctx.content_rect().height() - OTHER_HEIGHT).clamp(MIN_LIST_HEIGHT, MAX_LIST_HEIGHT);
     modal(ctx, theme, "review", width, |ui| {
-        ui.label(theme.heading(theme.words(&sheet.title)));
+        ui.label(theme.heading(theme.format_text(&sheet.title)));
         ui.label(theme.label(device.name()));
         ui.add_space(theme.space.between);
         // The keyboard focus must not pass from a button of one stage to the next. A key that cancels there must not
         // write here.
-        apart(ui, std::mem::discriminant(&sheet.stage), |ui| content_ui(ui, theme, device, (&sheet, room), actions));
+        with_stable_ids(ui, std::mem::discriminant(&sheet.stage), |ui| {
+            content_ui(ui, theme, device, (&sheet, room), actions)
+        });
     });
 }
 
@@ -38,7 +40,7 @@ fn content_ui(
         Stage::Planning => {
             ui.horizontal(|ui| {
                 spinner(ui, theme);
-                ui.label(theme.label(theme.say("review.planning")));
+                ui.label(theme.label(theme.translate("review.planning")));
             });
             buttons_ui(ui, theme, device, actions, "review.cancel", |_, _| {});
         }
@@ -51,7 +53,7 @@ fn content_ui(
                     (icons::INFO, theme.palette.accent, "review.nothing_so")
                 };
                 ui.label(RichText::new(icon).color(colour));
-                ui.label(theme.say(words));
+                ui.label(theme.translate(words));
             });
             remarks_ui(ui, theme, sheet);
             options_ui(ui, theme, device, sheet, actions);
@@ -61,7 +63,7 @@ fn content_ui(
             operations_ui(ui, theme, (&sheet.lines, room), None);
             remarks_ui(ui, theme, sheet);
             options_ui(ui, theme, device, sheet, actions);
-            ui.label(theme.label(theme.say(sheet.execution_mode.summary_id())));
+            ui.label(theme.label(theme.translate(sheet.execution_mode.summary_id())));
             buttons_ui(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon =
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
@@ -72,7 +74,7 @@ fn content_ui(
                     theme,
                     device.is_ready() && may_wear,
                     icon,
-                    &theme.say(sheet.execution_mode.button_id()),
+                    &theme.translate(sheet.execution_mode.button_id()),
                 )
                 .clicked()
                 {
@@ -85,14 +87,14 @@ fn content_ui(
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
             setup_notice_ui(ui, theme, sheet);
-            let stopping = device.running().is_some_and(|running| running.stopping);
+            let stopping = device.running_job().is_some_and(|running| running.stopping);
             right_aligned(ui, |ui| {
-                let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+                let word = theme.translate(if stopping { "shell.stopping" } else { "shell.cancel" });
                 if enabled_button(ui, !stopping, icons::X, &word).clicked() {
                     actions.push(Action::Stop);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    paragraph(ui, theme.label(theme.say("review.writing")));
+                    paragraph(ui, theme.label(theme.translate("review.writing")));
                 });
             });
         }
@@ -100,14 +102,14 @@ fn content_ui(
             operations_ui(ui, theme, (&sheet.lines, room), Some(usize::MAX));
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).size(theme.sizes.section).color(theme.palette.good));
-                ui.label(theme.words(verified));
+                ui.label(theme.format_text(verified));
             });
             setup_notice_ui(ui, theme, sheet);
             if let Some(backup) = backup {
-                row(ui, theme, &theme.say("review.backup"), theme.monospace(backup.display().to_string()));
+                row(ui, theme, &theme.translate("review.backup"), theme.monospace(backup.display().to_string()));
             }
             if let Some(why) = logbook {
-                remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.words(why));
+                remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.format_text(why));
             }
             buttons_ui(ui, theme, device, actions, "review.close", |_, _| {});
         }
@@ -125,7 +127,7 @@ fn content_ui(
                     } else {
                         ui.add_space(indent);
                     }
-                    ui.add(egui::Label::new(theme.words(text)).wrap().selectable(true));
+                    ui.add(egui::Label::new(theme.format_text(text)).wrap().selectable(true));
                 });
             }
             setup_notice_ui(ui, theme, sheet);
@@ -143,10 +145,10 @@ fn buttons_ui(
     close: &'static str,
     primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
 ) {
-    theme.gap(ui);
+    theme.add_gap(ui);
     right_aligned(ui, |ui| {
         primary(ui, actions);
-        if enabled_button(ui, true, "", &theme.say(close)).clicked() {
+        if enabled_button(ui, true, "", &theme.translate(close)).clicked() {
             actions.push(Action::Review(device.id(), ReviewAction::Close));
         }
     });
@@ -166,9 +168,9 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
                 let ink = if is_done { palette.good } else { palette.staged };
                 let (icon, colour) =
                     if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };
-                let item = theme.words(&line.item);
+                let item = theme.format_text(&line.item);
                 let short = match line.changes.as_slice() {
-                    [change] if change.part.is_none() => short(ui, theme, &item, change, ink),
+                    [change] if change.part.is_none() => layout_change(ui, theme, &item, change, ink),
                     _ => None,
                 };
                 ui.horizontal(|ui| {
@@ -196,13 +198,13 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
 }
 
 /// Returns the old and new value laid out on one line. Returns `None` if they do not fit beside the item.
-fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
+fn layout_change(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
     let parts = [
-        (theme.words(&change.old), theme.palette.muted),
+        (theme.format_text(&change.old), theme.palette.muted),
         ("  →  ".to_owned(), theme.palette.muted),
-        (theme.words(&change.new), ink),
+        (theme.format_text(&change.new), ink),
     ];
     for (words, ink) in parts {
         job.append(&words, 0.0, TextFormat::simple(font.clone(), ink.into()));
@@ -210,7 +212,7 @@ fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> 
     job.wrap.max_width = f32::INFINITY;
     let galley = ui.painter().layout_job(job);
     let item = ui.painter().layout_no_wrap(item.to_owned(), FontId::proportional(theme.sizes.body), ink.into());
-    let beside = item.size().x + ICON + theme.space.groups;
+    let beside = item.size().x + ICON_WIDTH + theme.space.groups;
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
@@ -219,7 +221,7 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
         ui.horizontal(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
             ui.add_space(theme.space.around);
-            ui.label(theme.monospace(theme.words(part)));
+            ui.label(theme.monospace(theme.format_text(part)));
         });
     }
     let words = [(&change.old, theme.palette.muted), (&change.new, ink)];
@@ -227,33 +229,33 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
             ui.add_space(theme.space.around);
-            let head = ui.label(theme.caption(theme.say(head)));
-            ui.add_space((HEADS - head.rect.width()).max(0.0));
-            paragraph(ui, theme.monospace(theme.words(words)).color(colour));
+            let head = ui.label(theme.caption(theme.translate(head)));
+            ui.add_space((HEADINGS_WIDTH - head.rect.width()).max(0.0));
+            paragraph(ui, theme.monospace(theme.format_text(words)).color(colour));
         });
     }
 }
 
 /// Minimum and maximum height of the operation list, and the height of everything else in and around the dialog.
-const LEAST: f32 = 200.0;
-const MOST: f32 = 440.0;
-const REST: f32 = 400.0;
+const MIN_LIST_HEIGHT: f32 = 200.0;
+const MAX_LIST_HEIGHT: f32 = 440.0;
+const OTHER_HEIGHT: f32 = 400.0;
 /// Width of the icon before an item, including the gap after the icon.
-const ICON: f32 = 24.0;
+const ICON_WIDTH: f32 = 24.0;
 /// Width of the column for the "old" and "new" labels.
-const HEADS: f32 = 56.0;
+const HEADINGS_WIDTH: f32 = 56.0;
 
 fn remarks_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let palette = theme.palette;
     setup_notice_ui(ui, theme, sheet);
     for text in &sheet.warnings {
-        remark_ui(ui, icons::WARNING, palette.warn, &theme.words(text));
+        remark_ui(ui, icons::WARNING, palette.warn, &theme.format_text(text));
     }
     for text in &sheet.needs {
-        remark_ui(ui, icons::INFO, palette.accent, &theme.words(text));
+        remark_ui(ui, icons::INFO, palette.accent, &theme.format_text(text));
     }
     if let Some(cost) = &sheet.cost {
-        remark_ui(ui, icons::MEMORY, palette.muted, &theme.words(cost));
+        remark_ui(ui, icons::MEMORY, palette.muted, &theme.format_text(cost));
     }
 }
 
@@ -263,7 +265,7 @@ fn setup_notice_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let colour = theme.palette.bad;
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::WARNING).color(colour));
-        paragraph(ui, RichText::new(theme.words(text)).color(colour));
+        paragraph(ui, RichText::new(theme.format_text(text)).color(colour));
     });
 }
 
@@ -275,11 +277,11 @@ fn remark_ui(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
 }
 
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
-    remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
+    remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.format_text(&question.title));
     ui.horizontal(|ui| {
-        ui.add_space(ICON);
+        ui.add_space(ICON_WIDTH);
         for (is_on, word) in [(false, &question.no), (true, &question.yes)] {
-            if ui.radio(question.is_on == is_on, theme.words(word)).clicked() && question.is_on != is_on {
+            if ui.radio(question.is_on == is_on, theme.format_text(word)).clicked() && question.is_on != is_on {
                 actions.push(Action::Review(device.id(), ReviewAction::Toggle(question.permit)));
             }
         }
@@ -295,9 +297,9 @@ fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewShee
         question_ui(ui, theme, device, question, actions);
     }
     for PermitToggle { permit, mut is_on } in sheet.toggles.iter().copied() {
-        let mut response = ui.checkbox(&mut is_on, theme.say(permit.word()));
-        if let Some(hint) = permit.hint() {
-            response = response.on_hover_text(theme.say(hint));
+        let mut response = ui.checkbox(&mut is_on, theme.translate(permit.keyword()));
+        if let Some(hint) = permit.hint_id() {
+            response = response.on_hover_text(theme.translate(hint));
         }
         if response.changed() {
             actions.push(Action::Review(device.id(), ReviewAction::Toggle(permit)));
@@ -305,7 +307,7 @@ fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewShee
     }
     let force_wear = if sheet.is_uncounted { "review.force_uncounted" } else { "review.force_wear" };
     if let Some(mut force) = sheet.force_wear
-        && ui.checkbox(&mut force, theme.say(force_wear)).changed()
+        && ui.checkbox(&mut force, theme.translate(force_wear)).changed()
     {
         actions.push(Action::Review(device.id(), ReviewAction::ForceWear(force)));
     }

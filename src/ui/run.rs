@@ -5,7 +5,7 @@ use std::thread;
 use std::time::Instant;
 
 use super::live_pace::processor_time;
-use super::renderer::renderers;
+use super::renderer::renderers_to_try;
 use super::{TabViews, Window, end, install_fonts};
 use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
@@ -24,7 +24,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());
     }
-    let store = Store::for_user().map_err(|error| explain::store(&error).terminal_text())?;
+    let store = Store::for_user().map_err(|error| explain::store_error_text(&error).terminal_text())?;
     let log = LogFile::begin(&store.log_path());
     let cleaned = store.clone();
     // This is not awaited, so a slow disk does not delay the window.
@@ -39,9 +39,9 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         }
     });
     let mut studio =
-        Studio::new(StudioEnvironment { given: start.given, ..StudioEnvironment::real(store, kinds) }, wake);
+        Studio::new(StudioEnvironment { given: start.given, ..StudioEnvironment::production(store, kinds) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
-    studio.begin(start.link, start.profile);
+    studio.start_with(start.link, start.profile);
     end::install_handlers(&studio);
     let options = |renderer| eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -57,7 +57,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     // A renderer that fails leaves them to the next one.
     let mut parts = Some((studio, look, tabs));
     let mut result = Err(NOT_OPENED.to_owned());
-    for renderer in renderers() {
+    for renderer in renderers_to_try() {
         let create: eframe::AppCreator<'_> = Box::new(|cc| {
             let (studio, look, tabs) = parts.take().ok_or("the window exists already")?;
             install_fonts(&cc.egui_ctx);

@@ -5,8 +5,8 @@
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, Layout, Panel, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
 
-use super::controls::{button, enabled_button, icon_button, severity, spinner};
-use super::page::apart;
+use super::controls::{enabled_button, icon_button, labelled_button, severity, spinner};
+use super::page::with_stable_ids;
 use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::session::Phase;
@@ -14,9 +14,9 @@ use crate::app::{Action, AnyDevice, DeviceCommand, Notice, Studio, TraceFault, T
 use crate::link::Direction;
 
 /// Height of the status line, enough for two lines of small text.
-const HEIGHT: f32 = 36.0;
+const BAR_HEIGHT: f32 = 36.0;
 /// Share of the width for the running job while a notice is shown beside it.
-const SHARE: f32 = 0.45;
+const JOB_WIDTH_SHARE: f32 = 0.45;
 const TIME: &str = "%H:%M:%S%.3f";
 
 pub(super) fn status_line_ui(
@@ -28,7 +28,7 @@ pub(super) fn status_line_ui(
 ) {
     let margin = egui::Margin { left: 8, right: 12, top: 0, bottom: 0 };
     let frame = egui::Frame::NONE.fill(theme.palette.raised.into()).inner_margin(margin);
-    let line = Panel::bottom("status").exact_size(HEIGHT).frame(frame).show(ui, |ui| {
+    let line = Panel::bottom("status").exact_size(BAR_HEIGHT).frame(frame).show(ui, |ui| {
         let whole = UiBuilder::new().sense(Sense::click());
         let response = ui.scope_builder(whole, |ui| {
             ui.horizontal_centered(|ui| {
@@ -40,13 +40,13 @@ pub(super) fn status_line_ui(
             });
         });
         if response.response.clicked() {
-            actions.push(match studio.services.log.standing() {
+            actions.push(match studio.services.log.current() {
                 Some(_) => Action::Dismiss,
                 None => Action::OpenLowerPanel(!studio.settings.lower_open),
             });
         }
     });
-    if let Some(notice) = studio.services.log.standing() {
+    if let Some(notice) = studio.services.log.current() {
         let (_, colour) = severity(theme, notice.severity);
         let place = line.response.rect;
         ui.painter().hline(place.x_range(), place.top(), egui::Stroke::new(2.0, colour));
@@ -57,18 +57,18 @@ fn chevron_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Act
     let open = studio.settings.lower_open;
     let (icon, word) =
         if open { (icons::CARET_DOWN, "status_line.close") } else { (icons::CARET_RIGHT, "status_line.open") };
-    if icon_button(ui, true, icon, &theme.say(word)).clicked() {
+    if icon_button(ui, true, icon, &theme.translate(word)).clicked() {
         actions.push(Action::OpenLowerPanel(!open));
     }
 }
 
 /// Draws the status line from right to left. The buttons then keep their position, however long the text is.
 fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let notice = studio.services.log.standing();
+    let notice = studio.services.log.current();
     let device = device_in_tab(studio, studio.settings.tab);
-    apart(ui, "dismiss", |ui| match notice {
+    with_stable_ids(ui, "dismiss", |ui| match notice {
         Some(_) => {
-            if icon_button(ui, true, icons::X, &theme.say("shell.dismiss")).clicked() {
+            if icon_button(ui, true, icons::X, &theme.translate("shell.dismiss")).clicked() {
                 actions.push(Action::Dismiss);
             }
         }
@@ -78,9 +78,9 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
     });
     let works = device.filter(|device| has_running_job(*device));
     let lost = device.and_then(connection_problem);
-    apart(ui, "activity", |ui| {
+    with_stable_ids(ui, "activity", |ui| {
         if let Some(device) = works {
-            let share = if notice.is_some() { SHARE } else { 1.0 };
+            let share = if notice.is_some() { JOB_WIDTH_SHARE } else { 1.0 };
             let size = vec2(ui.available_width() * share, ui.available_height());
             ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
                 if let Some(session) = views.session(device) {
@@ -94,9 +94,9 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
     ui.with_layout(Layout::left_to_right(Align::Center), |ui| match (notice, lost) {
         (Some(notice), _) => notice_ui(ui, theme, notice),
         (None, Some((device, why))) => {
-            let mut words = theme.words(why);
+            let mut words = theme.format_text(why);
             if device.is_dirty() {
-                words = format!("{words} {}", theme.say("shell.edits_kept"));
+                words = format!("{words} {}", theme.translate("shell.edits_kept"));
             }
             ui.label(RichText::new(icons::PLUGS).size(theme.sizes.section).color(theme.palette.bad));
             message(ui, theme, words, theme.palette.text.into());
@@ -109,7 +109,7 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
 /// Returns whether a job is running or a link is being opened. An open review does not count, because it shows its own
 /// progress.
 fn has_running_job(device: &AnyDevice) -> bool {
-    *device.phase() == Phase::Opening || device.running().is_some() && !device.is_reviewing()
+    *device.phase() == Phase::Opening || device.running_job().is_some() && !device.is_reviewing()
 }
 
 /// Returns the device and the reason if the connection was lost or the device does not reply.
@@ -122,15 +122,15 @@ fn connection_problem(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Te
 
 /// Draws the buttons for reconnecting, in reverse order.
 fn reconnect_buttons_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
-    if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
+    if labelled_button(ui, icons::PLUGS_CONNECTED, &theme.translate("shell.connect")).clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
     }
     if matches!(device.phase(), Phase::Silent(_)) {
-        let word = theme.say("memory.read");
+        let word = theme.translate("memory.read");
         if enabled_button(ui, device.is_readable(), icons::ARROW_CLOCKWISE, &word).clicked() {
             actions.push(device.command(DeviceCommand::Read));
         }
-    } else if button(ui, icons::ARROW_CLOCKWISE, &theme.say("shell.reconnect")).clicked() {
+    } else if labelled_button(ui, icons::ARROW_CLOCKWISE, &theme.translate("shell.reconnect")).clicked() {
         actions.push(device.command(DeviceCommand::Reconnect));
     }
 }
@@ -142,8 +142,8 @@ fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice) {
 }
 
 fn notice_text(theme: &Theme, notice: &Notice) -> String {
-    let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
-    format!("{}{}", notice.prefix(|text| theme.words(text)), words.join(" "))
+    let words: Vec<String> = notice.texts.iter().map(|text| theme.format_text(text)).collect();
+    format!("{}{}", notice.device_prefix(|text| theme.format_text(text)), words.join(" "))
 }
 
 /// Draws a message in the remaining space. If one line is too short, it is in small text on two lines.
@@ -179,7 +179,7 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
             ui.add(egui::Label::new(words).truncate());
         }
         (_, None) => {
-            ui.label(theme.label(theme.say("log.nothing")));
+            ui.label(theme.label(theme.translate("log.nothing")));
         }
     }
 }
@@ -207,7 +207,7 @@ fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
         ui.set_max_width(most);
         ui.add(egui::Label::new(theme.monospace(&line.bytes).color(colour)).truncate());
     });
-    ui.add(egui::Label::new(RichText::new(line.words(theme.language)).color(colour)).truncate());
+    ui.add(egui::Label::new(RichText::new(line.to_string_in(theme.language)).color(colour)).truncate());
 }
 
 /// Draws the running job and the stop button, right-aligned. The job shows its progress, or the text `instead`.
@@ -218,22 +218,22 @@ pub(crate) fn running_ui(
     instead: Option<String>,
     actions: &mut Vec<Action>,
 ) {
-    let running = device.running();
+    let running = device.running_job();
     let is_told_below = instead.is_some();
     let words = match &running {
         _ if is_told_below => instead.unwrap_or_default(),
         Some(running) => {
-            let what = theme.words(&running.title);
+            let what = theme.format_text(&running.title);
             match &running.progress {
-                Some((done, total, doing)) => format!("{what}  {done}/{total}  {}", theme.words(doing)),
+                Some((done, total, doing)) => format!("{what}  {done}/{total}  {}", theme.format_text(doing)),
                 None => what,
             }
         }
-        None => theme.say("shell.opening"),
+        None => theme.translate("shell.opening"),
     };
     if let Some(running) = running {
         let stopping = running.stopping;
-        let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+        let word = theme.translate(if stopping { "shell.stopping" } else { "shell.cancel" });
         if enabled_button(ui, !stopping, icons::X, &word).clicked() {
             actions.push(Action::Stop);
         }

@@ -34,32 +34,32 @@ impl Theme {
         }
     }
 
-    pub fn say(&self, id: &'static str) -> String {
-        Text::new(id).words(self.language)
+    pub fn translate(&self, id: &'static str) -> String {
+        Text::new(id).to_string_in(self.language)
     }
 
-    pub fn words(&self, text: &Text) -> String {
-        text.words(self.language)
+    pub fn format_text(&self, text: &Text) -> String {
+        text.to_string_in(self.language)
     }
 
     /// Formats a number with the decimal sign of the current language.
-    pub fn number(&self, value: f64, decimals: usize) -> String {
-        crate::app::decimal(value, decimals, self.language)
+    pub fn format_number(&self, value: f64, decimals: usize) -> String {
+        crate::app::format_decimal(value, decimals, self.language)
     }
 
     /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would only
     /// show rounding errors.
-    pub fn plain(&self, value: f64) -> String {
+    pub fn format_plain(&self, value: f64) -> String {
         const DIGITS: i32 = 12;
         let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
         let rounded = format!("{value:.*}", usize::try_from(DIGITS - before).unwrap_or(0));
         let decimals = rounded.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len());
-        self.number(value, decimals)
+        self.format_number(value, decimals)
     }
 
     /// Formats a number in hexadecimal digits, padded to its width.
-    pub fn word(&self, word: Word) -> String {
-        self.words(&Text::new("live.word").with("hex", word).with("count", word.bits))
+    pub fn format_word(&self, word: Word) -> String {
+        self.format_text(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
 
     pub fn label(&self, words: impl Into<String>) -> RichText {
@@ -72,7 +72,7 @@ impl Theme {
     }
 
     /// Adds the space between two groups. It is `space.groups`, less the spacing that egui puts before the next widget.
-    pub fn gap(&self, ui: &mut egui::Ui) {
+    pub fn add_gap(&self, ui: &mut egui::Ui) {
         ui.add_space((self.space.groups - ui.spacing().item_spacing.y).max(0.0));
     }
 
@@ -96,7 +96,7 @@ impl Theme {
     }
 
     /// Returns the frame of a card. It is raised and has a border but no shadow.
-    pub fn card(&self) -> egui::Frame {
+    pub fn card_frame(&self) -> egui::Frame {
         egui::Frame::NONE
             .fill(self.palette.raised.into())
             .stroke(Stroke::new(1.0, self.palette.line))
@@ -147,11 +147,11 @@ impl Theme {
             style.animation_time = 0.1;
             // The cursor does not blink, because a frame is drawn only when something changes.
             style.visuals.text_cursor.blink = false;
-            self.colour(&mut style.visuals);
+            self.apply_colours(&mut style.visuals);
         });
     }
 
-    fn colour(&self, visuals: &mut egui::Visuals) {
+    fn apply_colours(&self, visuals: &mut egui::Visuals) {
         let palette = self.palette;
         let faint = Color32::from(palette.accent).gamma_multiply(0.12);
         visuals.override_text_color = None;

@@ -28,7 +28,7 @@ impl Views {
         Views {
             tabs,
             sessions: BTreeMap::new(),
-            tools: tabs.tools().iter().map(|view| (view.kind().tab(), view.begin())).collect(),
+            tools: tabs.tool_views().iter().map(|view| (view.kind().tab(), view.create_pages())).collect(),
             connect: ConnectView::default(),
             file: None,
             about: false,
@@ -46,7 +46,7 @@ impl Views {
         Some(self.sessions.entry(device.id()).or_insert_with(|| view.session()).as_mut())
     }
 
-    pub(super) fn tool(&mut self, tab: Tab) -> Option<&mut dyn ToolPages> {
+    pub(super) fn tool_pages(&mut self, tab: Tab) -> Option<&mut dyn ToolPages> {
         let (_, tool) = self.tools.iter_mut().find(|(own, _)| *own == tab)?;
         Some(tool.as_mut())
     }
@@ -54,7 +54,7 @@ impl Views {
     /// Returns the open page of the open tab. A device tab without an open device has its first page open.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
-        let page = match (self.tool(tab), device_in_tab(studio, tab)) {
+        let page = match (self.tool_pages(tab), device_in_tab(studio, tab)) {
             (Some(tool), _) => tool.page(),
             (None, Some(device)) => self.session(device)?.page(),
             (None, None) => 0,

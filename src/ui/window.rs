@@ -12,7 +12,7 @@ use super::input_order::DeferredInput;
 use super::keys::KeyboardFilter;
 use super::live_pace::LivePace;
 use super::navigation::navigation_ui;
-use super::page::apart;
+use super::page::with_stable_ids;
 use super::widgets::{HoldButtonContext, set_hold_button_context};
 use super::{Theme, Views, header, review, status_line, stop_debounce};
 use crate::app::{Action, AnyDevice, Studio, ThemeData};
@@ -82,7 +82,7 @@ impl Window {
             theme.apply_to(&ctx);
         }
         self.draw_panels(ui, &theme, &mut actions);
-        self.dialogs(&ctx, &theme, &mut actions);
+        self.dialogs_ui(&ctx, &theme, &mut actions);
         header::stop_overlay_ui(&ctx, &theme, &self.studio, &mut actions);
         self.handle_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
@@ -90,10 +90,10 @@ impl Window {
             ctx.request_repaint();
         }
         for action in actions {
-            self.studio.act(action);
+            self.studio.handle_action(action);
         }
         if let Some(question) = self.studio.take_file_question() {
-            dialogs::ask(question, &theme, self.studio.mailbox());
+            dialogs::ask_for_file(question, &theme, self.studio.mailbox());
         }
         if let Some(question) = self.studio.take_path_question() {
             self.show_path_entry(question);
@@ -121,17 +121,17 @@ impl Window {
             .exact_size(if ui.available_width() < 1000.0 { 148.0 } else { 158.0 })
             .frame(flat(palette.surface).inner_margin(8))
             .show(ui, |ui| {
-                apart(ui, "entries", |ui| navigation_ui(ui, theme, studio, views, docks, actions));
+                with_stable_ids(ui, "entries", |ui| navigation_ui(ui, theme, studio, views, docks, actions));
             });
         egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
-            docks.ui(ui, theme, studio, views, actions);
+            docks.show(ui, theme, studio, views, actions);
         });
-        if let Some(layout) = docks.changed() {
+        if let Some(layout) = docks.take_changed_layout() {
             actions.push(Action::KeepLayout(layout));
         }
     }
 
-    fn dialogs(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
+    fn dialogs_ui(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if let Some(device) = self.studio.selected_device() {
             review::review_ui(ctx, theme, device, actions);
         }
@@ -152,9 +152,9 @@ impl Window {
             self.views.help = false;
         }
         if let Some(mut palette) = self.views.palette.take() {
-            let commands = commands::all(theme, &self.studio, &self.views);
+            let commands = commands::all_commands(theme, &self.studio, &self.views);
             match dialogs::palette_ui(ctx, theme, &mut palette, commands) {
-                Some(effect) => self.carry_out(effect, actions),
+                Some(effect) => self.execute_effect(effect, actions),
                 None => self.views.palette = Some(palette),
             }
         }
@@ -167,7 +167,7 @@ impl Window {
     /// dismissed. Others disappear by themselves.
     fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
-        let Some(notice) = self.studio.services.log.standing() else {
+        let Some(notice) = self.studio.services.log.current() else {
             self.notice_since = None;
             return;
         };
@@ -192,9 +192,9 @@ impl Window {
         self.close_heard = true;
         // No frame contains the jog buttons of a minimised window.
         if self.studio.is_motion_active() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
-            self.studio.act(Action::LetGo);
+            self.studio.handle_action(Action::LetGo);
         }
-        if !self.studio.is_closing() && !self.studio.brakes().has_begun() {
+        if !self.studio.is_closing() && !self.studio.drive_stop_handles().has_begun() {
             if ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
                 // Take samples and frames in before they are too many.
                 self.studio.poll();
@@ -218,7 +218,7 @@ impl Window {
             return;
         }
         ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-        self.studio.act(Action::Close);
+        self.studio.handle_action(Action::Close);
         if self.studio.question.is_some() && minimised {
             ctx.send_viewport_cmd(egui::ViewportCommand::Minimized(false));
             ctx.send_viewport_cmd(egui::ViewportCommand::Focus);
@@ -232,7 +232,7 @@ impl Window {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
         let (moves, asks) = (self.studio.is_turned_by_hand(), self.is_asking());
-        if self.keys.take(ctx, moves, asks) {
+        if self.keys.filter_events(ctx, moves, asks) {
             actions.push(Action::StopMotion);
         }
         let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
@@ -244,7 +244,7 @@ impl Window {
         if covered || !ctx.input(|input| input.focused) {
             // The held button is not visible, or the release of its key will not be reported. The effect is already in
             // this frame. An action would request another frame each time.
-            self.studio.act(Action::LetGo);
+            self.studio.handle_action(Action::LetGo);
         }
         if self.has_open_dialog() {
             return;
@@ -261,13 +261,13 @@ impl Window {
         for command in commands::shortcut_commands(theme, &self.studio, &self.views) {
             let keys = command.shortcut.filter(|_| !typing || !command.yields_to_typing);
             if keys.is_some_and(|keys| pressed(keys.modifiers, keys.logical_key)) {
-                self.carry_out(command.effect, actions);
+                self.execute_effect(command.effect, actions);
             }
         }
     }
 
     /// Carries out a command chosen by its shortcut or in the command palette.
-    fn carry_out(&mut self, effect: CommandEffect, actions: &mut Vec<Action>) {
+    fn execute_effect(&mut self, effect: CommandEffect, actions: &mut Vec<Action>) {
         let Window { studio, views, docks, .. } = self;
         match effect {
             CommandEffect::Act(action) => {
@@ -284,7 +284,7 @@ impl Window {
                 }
             }
             CommandEffect::ToolPage(tab, page) => {
-                if let Some(tool) = views.tool(tab) {
+                if let Some(tool) = views.tool_pages(tab) {
                     tool.open(page);
                     views.plot.restore_size();
                     actions.push(Action::ShowTab(tab));
@@ -350,13 +350,13 @@ impl Window {
         let size = ctx.content_rect().size();
         let size = (size.x.round() as u32, size.y.round() as u32);
         if self.studio.settings.size != Some(size) {
-            self.studio.act(Action::KeepSize(size.0, size.1));
+            self.studio.handle_action(Action::KeepSize(size.0, size.1));
         }
         if self.studio.can_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.views.remove_closed_sessions(&self.studio);
-        if self.studio.moves() {
+        if self.studio.is_moving() {
             // These frames refresh any motion. It stops after 250 ms without a frame.
             ctx.request_repaint_after(Duration::from_millis(30));
         } else if self.studio.is_live() {
@@ -369,7 +369,7 @@ impl Window {
 
 /// Draws a red edge on the header while a drive moves.
 fn motion_indicator_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
-    if studio.moves() {
+    if studio.is_moving() {
         let screen = ui.ctx().content_rect();
         let edge = egui::Rect::from_min_size(screen.min + egui::vec2(0.0, 45.0), egui::vec2(screen.width(), 3.0));
         ui.ctx().debug_painter().rect_filled(edge, 0.0, theme.palette.bad);

@@ -19,7 +19,7 @@ pub(crate) fn wires_ui(
             ui.spacing_mut().interact_size.y = 18.0;
             let name = ui.label(theme.monospace(*wire));
             ui.add_space((width - name.rect.width()).max(0.0));
-            paragraph(ui, theme.label(theme.words(&texts.text(words))));
+            paragraph(ui, theme.label(theme.format_text(&texts.text(words))));
         });
     }
 }
@@ -38,7 +38,7 @@ pub(crate) fn assert_wires(texts: &'static Catalogue, wires: &[(&str, &'static s
 #[cfg(test)]
 pub(crate) fn assert_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};
-    let said = |language| notes.iter().map(|id| texts.text(id).words(language)).collect::<Vec<_>>().join(" ");
+    let said = |language| notes.iter().map(|id| texts.text(id).to_string_in(language)).collect::<Vec<_>>().join(" ");
     let (english, german) = (said(English), said(German));
     for fact in facts {
         assert!(english.contains(fact), "{fact}: {english}");

@@ -2,17 +2,17 @@
 
 use egui::{Align, Layout, Ui, vec2};
 
-use super::controls::{button, primary_button};
+use super::controls::{labelled_button, primary_button};
 use super::device_view::DeviceView;
-use super::page::apart;
+use super::page::with_stable_ids;
 use super::panels::plot_ui;
 use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio, connect};
 
 /// Share of the height above the options of an empty tab, and their width.
-const ABOVE_NOTHING: f32 = 0.22;
-const OPTION: f32 = 240.0;
+const EMPTY_TAB_TOP_SHARE: f32 = 0.22;
+const OPTION_WIDTH: f32 = 240.0;
 
 pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     if views.plot.is_expanded()
@@ -23,7 +23,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
         return;
     }
     let tab = studio.settings.tab;
-    if let Some(tool) = views.tool(tab) {
+    if let Some(tool) = views.tool_pages(tab) {
         tool.page_ui(ui, theme, studio, actions);
         return;
     }
@@ -31,27 +31,27 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
         return empty_page_ui(ui, theme, views.tabs.device(tab), actions);
     };
     let Some(session) = views.session(device) else { return };
-    apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
+    with_stable_ids(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
 /// Draws the buttons for opening a device. They are shown while no device is open.
 fn empty_page_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
-    ui.add_space((ui.available_height() * ABOVE_NOTHING).round());
+    ui.add_space((ui.available_height() * EMPTY_TAB_TOP_SHARE).round());
     ui.vertical_centered(|ui| {
         if let Some(view) = view {
-            ui.label(theme.heading(view.kind().bus()));
+            ui.label(theme.heading(view.kind().bus_name()));
         }
-        ui.add(egui::Label::new(theme.label(theme.say("shell.empty"))).wrap());
-        theme.gap(ui);
-        let size = vec2(OPTION.min(ui.available_width()), 0.0);
+        ui.add(egui::Label::new(theme.label(theme.translate("shell.empty"))).wrap());
+        theme.add_gap(ui);
+        let size = vec2(OPTION_WIDTH.min(ui.available_width()), 0.0);
         ui.allocate_ui_with_layout(size, Layout::top_down_justified(Align::Center), |ui| {
-            if primary_button(ui, theme, true, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
+            if primary_button(ui, theme, true, icons::PLUGS_CONNECTED, &theme.translate("shell.connect")).clicked() {
                 actions.push(Action::Connect(connect::ConnectAction::Open));
             }
-            if button(ui, icons::PLAY, &theme.say("shell.virtual_device")).clicked() {
+            if labelled_button(ui, icons::PLAY, &theme.translate("shell.virtual_device")).clicked() {
                 actions.push(Action::OpenVirtual);
             }
-            if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
+            if labelled_button(ui, icons::FOLDER_OPEN, &theme.translate("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
             }
             if let Some(view) = view {

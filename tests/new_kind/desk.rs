@@ -30,7 +30,7 @@ impl Desk {
         let folder = tempfile::tempdir().unwrap();
         let world = StudioEnvironment {
             ports: Arc::new(|| Ok(vec![])),
-            ..StudioEnvironment::real(Store::at(folder.path()), program().studio)
+            ..StudioEnvironment::production(Store::at(folder.path()), program().studio)
         };
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }
@@ -44,8 +44,8 @@ impl Desk {
 
     pub(crate) fn open(&mut self, query: &str) {
         use encoder_studio::app::DeviceModel;
-        self.studio.act(StudioAction::ShowTab(Encoder::TAB));
-        self.studio.begin(Some(format!("sim:{query}").parse().unwrap()), None);
+        self.studio.handle_action(StudioAction::ShowTab(Encoder::TAB));
+        self.studio.start_with(Some(format!("sim:{query}").parse().unwrap()), None);
         self.until_ready();
     }
 
@@ -86,22 +86,22 @@ impl Desk {
 
     pub(crate) fn command(&mut self, command: DeviceCommand) {
         let action = self.shown().command(command);
-        self.studio.act(action);
+        self.studio.handle_action(action);
     }
 
     pub(crate) fn set(&mut self, item: usize, value: u16) {
         let id = self.shown().id();
-        self.studio.act(StudioAction::device(id, Action::Set(item, value)));
+        self.studio.handle_action(StudioAction::device(id, Action::Set(item, value)));
     }
 
     pub(crate) fn review(&mut self, action: ReviewAction) {
         let id = self.shown().id();
-        self.studio.act(StudioAction::Review(id, action));
+        self.studio.handle_action(StudioAction::Review(id, action));
     }
 
     #[track_caller]
     pub(crate) fn until_stage(&mut self, wanted: impl Fn(&Stage) -> bool) -> Stage {
-        let found = |desk: &Desk| desk.shown().sheet().map(|sheet| sheet.stage).filter(&wanted);
+        let found = |desk: &Desk| desk.shown().review_sheet().map(|sheet| sheet.stage).filter(&wanted);
         self.until("the review is there", |desk| found(desk).is_some() && desk.shown().is_ready());
         found(self).unwrap()
     }

@@ -35,10 +35,10 @@ fn the_kind_is_offered_and_connects_from_the_dialog() {
         Connect::Use("sim:?serial=77&rpm=fast".to_owned()),
         Connect::Connect,
     ];
-    actions.into_iter().for_each(|action| desk.studio.act(StudioAction::Connect(action)));
+    actions.into_iter().for_each(|action| desk.studio.handle_action(StudioAction::Connect(action)));
     assert!(desk.studio.devices().is_empty(), "that is no speed");
     for action in [Connect::Use("sim:?serial=77".to_owned()), Connect::Connect] {
-        desk.studio.act(StudioAction::Connect(action));
+        desk.studio.handle_action(StudioAction::Connect(action));
     }
     desk.until_ready();
     let read = desk.encoder().read().cloned();
@@ -50,8 +50,8 @@ fn the_kind_is_offered_and_connects_from_the_dialog() {
 #[test]
 fn a_secret_parameter_is_neither_shown_nor_kept() {
     let mut desk = Desk::connected("?serial=77&pin=4711");
-    assert_eq!(desk.shown().place(), "sim:?serial=77");
-    assert_eq!(desk.studio.settings.links(Encoder::TAB), ["sim:?serial=77"]);
+    assert_eq!(desk.shown().data_source(), "sim:?serial=77");
+    assert_eq!(desk.studio.settings.links_of(Encoder::TAB), ["sim:?serial=77"]);
     desk.set(1, 9);
     desk.command(DeviceCommand::Review);
     let Stage::Ready(plan) = desk.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };
@@ -59,7 +59,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
     desk.until_stage(|stage| matches!(stage, Stage::Failed { .. }));
     // A value that is refused, in the dialog; and one in a link that no kind takes.
     for action in [Connect::Open, Connect::Device(Encoder::TAB), Connect::Use("sim:?pin=47110".to_owned())] {
-        desk.studio.act(StudioAction::Connect(action));
+        desk.studio.handle_action(StudioAction::Connect(action));
     }
     let refused = desk.studio.connect.as_ref().unwrap().url().unwrap_err();
     assert!(
@@ -67,9 +67,9 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
         "{}",
         refused.terminal_text()
     );
-    desk.studio.begin(Some("sim:?pin=4711&colour=green".parse().unwrap()), None);
+    desk.studio.start_with(Some("sim:?pin=4711&colour=green".parse().unwrap()), None);
     desk.until("it is refused", |desk| matches!(desk.shown().phase(), Phase::Lost(_)));
-    assert_eq!(desk.shown().place(), "sim:?colour=green");
+    assert_eq!(desk.shown().data_source(), "sim:?colour=green");
     let names: Vec<String> = desk.studio.devices().iter().map(|device| device.name()).collect();
     let told = |text: &Text| text.terminal_text();
     let log: Vec<String> = (desk.studio.services.log.notices())
@@ -104,7 +104,7 @@ fn positions_are_polled_and_recorded() {
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     let positions = |desk: &Desk| {
         let recorder = desk.shown().recorder();
-        let history = recorder.history(&recorder.lines()[0]).unwrap();
+        let history = recorder.history(&recorder.series()[0]).unwrap();
         let samples = history.indices().filter_map(|index| history.sample(0, index));
         samples.map(|sample| (sample.time.as_nanoseconds(), sample.value)).collect::<Vec<_>>()
     };
@@ -122,15 +122,15 @@ fn edits_are_undone_reviewed_written_and_restored() {
     let mut desk = Desk::connected("");
     desk.set(0, 100);
     desk.set(2, 9);
-    assert_eq!((desk.encoder().wanted(), desk.shown().edits()), (Some([100, 3, 9, 65535]), 2));
+    assert_eq!((desk.encoder().wanted(), desk.shown().edit_count()), (Some([100, 3, 9, 65535]), 2));
     desk.command(DeviceCommand::Undo);
-    assert_eq!((desk.encoder().wanted(), desk.shown().edits()), (Some([100, 3, 0, 65535]), 1));
+    assert_eq!((desk.encoder().wanted(), desk.shown().edit_count()), (Some([100, 3, 0, 65535]), 1));
     desk.command(DeviceCommand::Redo);
     desk.set(2, 0);
-    assert_eq!(desk.shown().edits(), 1, "what is wanted as it is, is no edit");
+    assert_eq!(desk.shown().edit_count(), 1, "what is wanted as it is, is no edit");
     desk.command(DeviceCommand::Review);
     desk.until_stage(|stage| matches!(stage, Stage::Ready(_)));
-    let lines = desk.shown().sheet().unwrap().lines;
+    let lines = desk.shown().review_sheet().unwrap().lines;
     let words: Vec<String> = lines.iter().flat_map(|line| line.texts().map(|text| text.terminal_text())).collect();
     assert_eq!(words, ["zero", "0", "100"]);
 
@@ -164,10 +164,10 @@ fn a_value_that_is_not_accepted_is_reported_and_stays_edited() {
     let Stage::Ready(plan) = desk.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };
     desk.review(ReviewAction::Write(plan));
     desk.until_stage(|stage| matches!(stage, Stage::Failed { begun: true, done: 1, .. }));
-    desk.until("it is read again", |desk| desk.shown().is_ready() && desk.shown().edits() == 1);
+    desk.until("it is read again", |desk| desk.shown().is_ready() && desk.shown().edit_count() == 1);
     assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535]);
-    desk.until("it is listed", |desk| matches!(desk.shown().writes(), Some(Ok(all)) if all.len() == 1));
-    let writes = desk.shown().writes().unwrap().as_ref().unwrap();
+    desk.until("it is listed", |desk| matches!(desk.shown().logged_writes(), Some(Ok(all)) if all.len() == 1));
+    let writes = desk.shown().logged_writes().unwrap().as_ref().unwrap();
     let spent = writes.iter().map(|write| write.conclusion.as_ref().unwrap().cycles_spent);
     assert_eq!(spent.collect::<Vec<_>>(), [2]);
 }
@@ -178,16 +178,16 @@ fn a_profile_is_saved_and_restored_to_another_encoder_only_on_request() {
     let (id, path) = (desk.shown().id(), desk.path("novo.ron"));
     desk.command(DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
-    desk.studio.act(StudioAction::Chosen(question, path.clone()));
+    desk.studio.handle_action(StudioAction::Chosen(question, path.clone()));
     desk.until("it is saved", |_| path.exists());
-    desk.studio.act(StudioAction::Open(path.clone()));
+    desk.studio.handle_action(StudioAction::Open(path.clone()));
     desk.until("it is open", |desk| desk.studio.devices().len() == 2);
     let profile = desk.shown().id();
     desk.set(1, 7);
-    desk.studio.act(StudioAction::Save(profile));
+    desk.studio.handle_action(StudioAction::Save(profile));
     desk.until("it is saved again", |_| std::fs::read_to_string(&path).unwrap().contains("filter: 7"));
     // Into the encoder from which it was read: one difference.
-    desk.studio.act(StudioAction::Command(profile, DeviceCommand::WriteInto(id)));
+    desk.studio.handle_action(StudioAction::Command(profile, DeviceCommand::WriteInto(id)));
     desk.until("the device is shown", |desk| desk.shown().id() == id);
     desk.write();
     assert_eq!(desk.encoder().read().unwrap().serial, 1001);
@@ -195,24 +195,24 @@ fn a_profile_is_saved_and_restored_to_another_encoder_only_on_request() {
     desk.until_ready();
     desk.review(ReviewAction::Close);
     // Another one needs a permission.
-    desk.studio.act(StudioAction::CloseSession(id));
+    desk.studio.handle_action(StudioAction::CloseSession(id));
     desk.open("?serial=5");
     let other = desk.shown().id();
-    desk.studio.act(StudioAction::Command(profile, DeviceCommand::WriteInto(other)));
+    desk.studio.handle_action(StudioAction::Command(profile, DeviceCommand::WriteInto(other)));
     desk.until_stage(|stage| matches!(stage, Stage::Failed { begun: false, .. }));
-    assert_eq!(desk.shown().sheet().unwrap().toggles.len(), 1);
+    assert_eq!(desk.shown().review_sheet().unwrap().toggles.len(), 1);
 }
 
 #[test]
 fn a_payload_of_another_kind_is_refused_and_reported() {
     let mut desk = Desk::connected("");
     let id = desk.shown().id();
-    desk.studio.act(StudioAction::device(id, Interbus::Check));
+    desk.studio.handle_action(StudioAction::device(id, Interbus::Check));
     assert_eq!(desk.notice_ids(Severity::Error), ["session.wrong_kind"]);
-    desk.studio.act(StudioAction::OpenVirtual);
+    desk.studio.handle_action(StudioAction::OpenVirtual);
     desk.until_ready();
     desk.set(0, 1);
-    assert_eq!(desk.shown().edits(), 1);
+    assert_eq!(desk.shown().edit_count(), 1);
 }
 
 /// The window as the program shows it.
@@ -229,7 +229,7 @@ fn the_window_shows_its_tab_and_its_values() {
     let mut desk = Desk::connected("?rpm=60");
     desk.set(0, 4321);
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
-    desk.until("something is recorded", |desk| desk.shown().recorder().recorded().is_some());
+    desk.until("something is recorded", |desk| desk.shown().recorder().recorded_span().is_some());
     desk.command(DeviceCommand::Poll(None));
     let Desk { studio, folder: _folder } = desk;
     let mut harness = Harness::builder().with_size([1200.0, 800.0]).build_eframe(|cc| {
@@ -238,7 +238,7 @@ fn the_window_shows_its_tab_and_its_values() {
     });
     (0..4).for_each(|_| harness.step());
     assert!(harness.query_all_by_label("NOVO").next().is_some(), "the navigation has its tab");
-    let chart = Text::new("recorder.chart").words(Language::English);
+    let chart = Text::new("recorder.chart").to_string_in(Language::English);
     assert!(harness.query_by_role_and_label(Role::Image, &chart).is_some(), "the plot has its positions");
     let position = harness.state().0.studio().selected_model::<Encoder>().unwrap().last.unwrap().1.to_string();
     assert!(harness.query_all_by_label(&position).next().is_some(), "the newest stands large");

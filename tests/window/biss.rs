@@ -29,8 +29,8 @@ fn the_virtual_encoder_is_read_over_either_interface() {
         assert_eq!((reading.turns, reading.steps, reading.error.is_some()), (0x1234, 0x18000, has_bits), "{link}");
         assert_eq!(encoder.status.as_ref().unwrap().celsius, Some(30.0));
         assert!(desk.notice_ids(Severity::Warning).is_empty(), "{link}");
-        assert_eq!(desk.studio.settings.links(crate::tabs::BISS), [link]);
-        assert!(desk.studio.settings.links(crate::tabs::HIPERFACE).is_empty());
+        assert_eq!(desk.studio.settings.links_of(crate::tabs::BISS), [link]);
+        assert!(desk.studio.settings.links_of(crate::tabs::HIPERFACE).is_empty());
     }
 }
 
@@ -47,7 +47,7 @@ fn a_link_of_only_one_kind_opens_in_its_tab() {
     for (shown, link, expected) in cases {
         let mut desk = Desk::fresh("");
         desk.act(Action::ShowTab(shown));
-        desk.studio.begin(Some(link.parse().unwrap()), None);
+        desk.studio.start_with(Some(link.parse().unwrap()), None);
         assert_eq!(desk.studio.settings.tab, expected, "{link}");
     }
 }
@@ -71,7 +71,7 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
         let mut desk = Desk::fresh("");
         desk.act(Action::ShowTab(shown));
         used.iter().for_each(|tab| desk.studio.settings.use_link(*tab, link));
-        desk.studio.begin(Some(link.parse().unwrap()), None);
+        desk.studio.start_with(Some(link.parse().unwrap()), None);
         assert_eq!(desk.studio.settings.tab, expected, "{link} in {shown:?}, used in {used:?}");
         assert_eq!(
             asks_for_drive(&desk.studio),
@@ -141,12 +141,12 @@ fn a_register_is_watched_with_the_position() {
     command(&mut desk, DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     desk.until("samples come", |studio| {
         let record = &studio.biss().unwrap().record;
-        let watched = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
+        let watched = record.recorder().series().iter().find(|line| line.heading.contains("temperature"));
         let history = watched.and_then(|line| record.recorder().history(line));
         record.positions() > 50 && history.is_some_and(|history| !history.indices().is_empty())
     });
     let recorder = encoder(&desk).record.recorder();
-    let line = recorder.lines().iter().find(|line| line.heading.contains("temperature")).unwrap();
+    let line = recorder.series().iter().find(|line| line.heading.contains("temperature")).unwrap();
     let history = recorder.history(line).unwrap();
     assert_eq!(history.sample(line.column(), history.indices().start).unwrap().value.to_f64(), 30.0);
     command(&mut desk, DeviceCommand::Poll(None));
@@ -159,7 +159,7 @@ fn a_link_opens_in_the_requesting_tab() {
     desk.connect(Connect::Open);
     assert_eq!(desk.studio.connect.as_ref().unwrap().device, crate::tabs::BISS);
     let form = BissForm { kind: BissLinkKind::Pin, port: "/dev/nowhere".to_owned(), ..BissForm::default() };
-    desk.connect(Connect::edit(form));
+    desk.connect(Connect::edit_form(form));
     desk.connect(Connect::Connect);
     desk.until("it cannot be opened", |studio| {
         studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_)))

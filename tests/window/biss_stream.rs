@@ -23,7 +23,7 @@ fn poll(studio: &Studio, interval: Option<Duration>) -> Action {
 /// Returns positions with their times, and the number of gaps between them.
 fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     let recorder = encoder.record.recorder();
-    let line = &recorder.lines()[0];
+    let line = &recorder.series()[0];
     let history = recorder.history(line).unwrap();
     let samples: Vec<_> = history.indices().filter_map(|at| history.sample(line.column(), at)).collect();
     let breaks = samples.iter().filter(|own| own.flags != Flags::NONE).count();
@@ -49,7 +49,7 @@ fn check(encoder: &Encoder, seconds: f64) {
 fn a_stream_is_recorded_without_loss_and_ends_on_request() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::BISS));
-    desk.studio.begin(Some(LINK.parse().unwrap()), None);
+    desk.studio.start_with(Some(LINK.parse().unwrap()), None);
     desk.until("the encoder is read", is_read);
     desk.act(poll(&desk.studio, Some(FAST)));
     desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
@@ -79,8 +79,8 @@ fn a_stream_is_recorded_without_loss_and_ends_on_request() {
 fn the_window_shows_a_stream_without_loss() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
-    studio.act(Action::ShowTab(crate::tabs::BISS));
-    studio.begin(Some(LINK.parse().unwrap()), None);
+    studio.handle_action(Action::ShowTab(crate::tabs::BISS));
+    studio.start_with(Some(LINK.parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
     screen.until("the encoder is read", is_read);
     let action = poll(screen.studio(), Some(FAST));

@@ -27,7 +27,7 @@ pub(crate) fn open(link: &str) -> Desk {
 /// Opens a link in the BiSS tab and waits until the encoder is read.
 pub(crate) fn connect(desk: &mut Desk, link: &str) {
     desk.act(Action::ShowTab(crate::tabs::BISS));
-    desk.studio.begin(Some(link.parse().unwrap()), None);
+    desk.studio.start_with(Some(link.parse().unwrap()), None);
     desk.until("the encoder is read", is_read);
     desk.settle();
 }

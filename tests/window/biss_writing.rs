@@ -27,7 +27,8 @@ fn until_planned(desk: &mut Desk) {
 /// Consents to the plan that is shown.
 fn write(desk: &mut Desk) {
     let own = encoder(desk);
-    let plan = own.session.review.as_ref().and_then(|review| review.prepared()).expect("a plan is shown").plan.id();
+    let plan =
+        own.session.review.as_ref().and_then(|review| review.prepared_plan()).expect("a plan is shown").plan.id();
     let id = own.session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
@@ -60,7 +61,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
         }
         command(&mut desk, DeviceCommand::Review);
         until_planned(&mut desk);
-        let prepared = encoder(&desk).session.review.as_ref().unwrap().prepared().unwrap();
+        let prepared = encoder(&desk).session.review.as_ref().unwrap().prepared_plan().unwrap();
         let [Op::StoreData { registers, .. }] = prepared.plan.ops.as_slice() else { panic!("{:?}", prepared.plan.ops) };
         assert_eq!((registers.len(), prepared.plan.write_cycles()), (3, 1), "{link}");
         write(&mut desk);
@@ -174,14 +175,14 @@ fn stopping_a_procedure_leads_the_encoder_back() {
 fn the_live_panel_shows_that_it_waits_for_a_job() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
-    studio.act(Action::ShowTab(crate::tabs::BISS));
-    studio.begin(Some("sim:?bridge=on".parse().unwrap()), None);
+    studio.handle_action(Action::ShowTab(crate::tabs::BISS));
+    studio.start_with(Some("sim:?bridge=on".parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
     screen.until("the encoder is read", is_read);
     let id = screen.studio().biss().unwrap().session.id;
     screen.act(Action::Command(id, DeviceCommand::Poll(Some(Duration::from_millis(50)))));
     screen.act(Action::device(id, Biss::Plan(Box::new(calibration()))));
-    let plan = |studio: &Studio| Some(studio.biss()?.session.review.as_ref()?.prepared()?.plan.id());
+    let plan = |studio: &Studio| Some(studio.biss()?.session.review.as_ref()?.prepared_plan()?.plan.id());
     screen.until("the plan is there", |studio| is_read(studio) && plan(studio).is_some());
     let own = plan(screen.studio()).unwrap();
     let words = "Paused while a job is running: ";

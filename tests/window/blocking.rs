@@ -39,7 +39,7 @@ fn a_hanging_link_blocks_nothing() {
     desk.act(Action::CloseSession(hanging));
     assert!(desk.studio.question.is_none(), "nothing would be lost");
     assert_eq!(desk.studio.devices().len(), 1);
-    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), [format!("serial:{PORT}")]);
+    assert_eq!(desk.studio.settings.links_of(crate::tabs::HIPERFACE), [format!("serial:{PORT}")]);
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.can_close());
 }
@@ -68,7 +68,7 @@ fn a_search_on_a_hanging_link_can_be_cancelled() {
     let mut desk = Desk::fresh("");
     let hanging = LinkForm::from_url(&HANGING.parse().unwrap());
     desk.connect(Connect::Open);
-    desk.connect(Connect::edit(hanging));
+    desk.connect(Connect::edit_form(hanging));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.settle();
     assert!(desk.studio.can_stop());
@@ -128,7 +128,7 @@ fn a_hanging_disk_does_not_keep_the_window_open() {
 fn a_hanging_draft_does_not_keep_the_window_open() {
     let mut desk = Desk::fresh("");
     pipe(&desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron"));
-    desk.studio.begin(None, None);
+    desk.studio.start_with(None, None);
     desk.until_read();
     desk.put(0, 0, b"X");
     desk.write();
@@ -144,7 +144,7 @@ fn hanging_settings_do_not_delay_the_start() {
     pipe(&desk.outside.store().settings_path());
     let mut desk = desk.crash();
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_slow"]);
-    desk.studio.begin(None, None);
+    desk.studio.start_with(None, None);
     desk.until_read();
 }
 
@@ -188,7 +188,7 @@ fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     assert_eq!((refused(&mut desk), desk.wire().wear()), ("write.uncounted", 0));
     desk.command(DeviceCommand::Review);
     desk.until_planned();
-    let sheet = desk.review().sheet(0);
+    let sheet = desk.review().to_sheet(0);
     assert_eq!((sheet.force_wear, sheet.is_uncounted), (Some(false), true));
     desk.ask(Hiperface::ForceWear(true));
     desk.write_as_shown();
@@ -214,7 +214,7 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
     without_polling(|| wire.count(0x42) > 10_500);
     desk.studio.poll();
-    let (dropped, positions) = (desk.encoder().record().dropped_count(), desk.encoder().record.positions());
+    let (dropped, positions) = (desk.encoder().recording().dropped_count(), desk.encoder().record.positions());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
     assert!(desk.encoder().session.trace.dropped_count() > 0);
     // In between, a job is accepted at once.

@@ -59,7 +59,7 @@ fn escape_stops_first_then_closes_the_dialog_then_the_review() {
     desk.wire().wait_until_held();
 
     desk.act(Action::Escape);
-    assert!(desk.encoder().session.line().unwrap().running().unwrap().stopping);
+    assert!(desk.encoder().session.live_session().unwrap().running_job().unwrap().stopping);
     assert!(desk.studio.connect.is_some() && desk.encoder().session.review.is_some());
     desk.wire().release();
     desk.until_ready();

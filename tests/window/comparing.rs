@@ -25,7 +25,10 @@ fn with_changed_profile() -> (Desk, std::path::PathBuf) {
 }
 
 fn is_planned(studio: &Studio) -> bool {
-    studio.selected_device().and_then(|own| own.sheet()).is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+    studio
+        .selected_device()
+        .and_then(|own| own.review_sheet())
+        .is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
 }
 
 fn compared(studio: &Studio) -> bool {
@@ -83,9 +86,9 @@ fn what_cannot_be_compared_names_the_reason() {
     ] {
         desk.command(DeviceCommand::Compare(path));
         desk.until("it is told", |studio| {
-            studio.services.log.standing().is_some_and(|own| own.severity == Severity::Error)
+            studio.services.log.current().is_some_and(|own| own.severity == Severity::Error)
         });
-        let told = desk.studio.services.log.standing().unwrap();
+        let told = desk.studio.services.log.current().unwrap();
         assert_eq!(told.texts[0].id(), id);
         assert!(!compared(&desk.studio));
         desk.act(Action::Dismiss);

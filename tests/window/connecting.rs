@@ -27,7 +27,7 @@ fn search(desk: &Desk) -> &Search {
 fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     let mut form = LinkForm::default();
     change(&mut form);
-    desk.connect(Connect::edit(form));
+    desk.connect(Connect::edit_form(form));
 }
 
 /// Issue 22.30: before the first byte on a serial line the program asks whether a drive is on it, which may be silent
@@ -37,12 +37,12 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
     for link in links {
         let mut desk = Desk::fresh("");
-        desk.studio.begin(Some(link.parse().unwrap()), None);
+        desk.studio.start_with(Some(link.parse().unwrap()), None);
         assert!(asks_for_drive(&desk.studio), "{link}");
         texts::check_all(&desk.studio);
         desk.settle();
         assert_eq!(desk.wire().sent(), 0, "nothing is sent while it is asked");
-        desk.studio.act(Action::Escape);
+        desk.studio.handle_action(Action::Escape);
         desk.settle();
         let Phase::Lost(why) = desk.phase() else { panic!("{:?}", desk.phase()) };
         assert_eq!(why.id(), "session.maybe_drive");
@@ -52,15 +52,15 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
         assert_eq!(desk.wire().sent(), 0, "{link}");
         // Another connection needs another answer.
         let id = desk.encoder().session.id;
-        desk.studio.act(Action::Command(id, DeviceCommand::Reconnect));
+        desk.studio.handle_action(Action::Command(id, DeviceCommand::Reconnect));
         assert!(asks_for_drive(&desk.studio));
-        desk.studio.act(Action::Confirm);
+        desk.studio.handle_action(Action::Confirm);
         desk.until_read();
         assert!(desk.wire().sent() > 0 && desk.studio.question.is_none());
     }
     // A virtual encoder has no drive on its line.
     let mut desk = Desk::fresh("");
-    desk.studio.begin(None, None);
+    desk.studio.start_with(None, None);
     assert!(desk.studio.question.is_none());
     desk.until_read();
 }
@@ -72,18 +72,18 @@ fn a_search_asks_about_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
-    desk.studio.act(Action::Connect(crate::tabs::search_for(FindOptions::default())));
+    desk.studio.handle_action(Action::Connect(crate::tabs::search_for(FindOptions::default())));
     assert!(asks_for_drive(&desk.studio) && crate::tabs::search(dialog(&desk)).is_none());
-    desk.studio.act(Action::Escape);
+    desk.studio.handle_action(Action::Escape);
     desk.settle();
     assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("session.maybe_drive"));
     assert_eq!((desk.wire().sent(), crate::tabs::search(dialog(&desk)).is_none()), (0, true));
-    desk.studio.act(Action::Connect(crate::tabs::search_for(FindOptions::default())));
-    desk.studio.act(Action::Confirm);
+    desk.studio.handle_action(Action::Connect(crate::tabs::search_for(FindOptions::default())));
+    desk.studio.handle_action(Action::Confirm);
     desk.until("it has found one", |studio| {
         studio.connect.as_ref().and_then(|own| crate::tabs::search(own)).is_some_and(|own| !own.found.is_empty())
     });
-    desk.studio.act(Action::Connect(crate::tabs::choose(0)));
+    desk.studio.handle_action(Action::Connect(crate::tabs::choose(0)));
     assert!(desk.studio.question.is_none());
     desk.until_read();
 }
@@ -135,14 +135,14 @@ fn each_kind_shows_a_valid_example_link() {
         (crate::tabs::HIPERDRIVE, "enip:"),
     ] {
         desk.connect(Connect::Device(device));
-        let example = dialog(&desk).example();
+        let example = dialog(&desk).example_link();
         assert!(example.starts_with(scheme), "{device:?}: {example}");
         desk.connect(Connect::Use(example.to_owned()));
         assert!(dialog(&desk).url().is_ok(), "{example}");
     }
     desk.connect(Connect::Device(crate::tabs::BISS));
     desk.connect(Connect::Use("serial:COM3".to_owned()));
-    assert!(dialog(&desk).example().starts_with("serial:"), "a pin is reached otherwise than a bus");
+    assert!(dialog(&desk).example_link().starts_with("serial:"), "a pin is reached otherwise than a bus");
 }
 
 /// The form follows a typed link, and the link follows the form; an invalid link for this device is named.
@@ -165,28 +165,28 @@ fn a_link_can_be_typed_or_pasted() {
     ];
     for (device, link, id, words) in wrong {
         desk.connect(Connect::Device(device));
-        let before = dialog(&desk).link();
+        let before = dialog(&desk).typed_link();
         desk.connect(Connect::Use(link.to_owned()));
-        assert_eq!(dialog(&desk).link(), link, "what is typed stays as it is typed");
+        assert_eq!(dialog(&desk).typed_link(), link, "what is typed stays as it is typed");
         let why = dialog(&desk).url().unwrap_err();
         assert_eq!(why.id(), id, "{link}");
-        assert!(why.words(Language::English).contains(words), "{link}: {}", why.words(Language::English));
+        assert!(why.to_string_in(Language::English).contains(words), "{link}: {}", why.to_string_in(Language::English));
         desk.connect(Connect::Connect);
         assert!(desk.studio.devices().is_empty());
         desk.connect(Connect::Device(device));
-        assert_eq!(dialog(&desk).link(), before, "the form is as it was");
+        assert_eq!(dialog(&desk).typed_link(), before, "the form is as it was");
     }
     desk.connect(Connect::Device(crate::tabs::BISS));
     desk.connect(Connect::Use("bridge:tcp:adapter:5000?clock=2000000".to_owned()));
-    let mut form = dialog(&desk).form::<encoder_studio::devices::biss::state::BissForm>().unwrap().clone();
+    let mut form = dialog(&desk).form_as::<encoder_studio::devices::biss::state::BissForm>().unwrap().clone();
     assert_eq!((form.kind, form.host.as_str(), form.typed.get("clock")), (BissLinkKind::Bus, "adapter", "2000000"));
     form.typed.set("clock", "");
-    desk.connect(Connect::edit(form));
-    assert_eq!(dialog(&desk).link(), "bridge:tcp:adapter:5000");
+    desk.connect(Connect::edit_form(form));
+    assert_eq!(dialog(&desk).typed_link(), "bridge:tcp:adapter:5000");
 
     desk.connect(Connect::Device(crate::tabs::HIPERFACE));
     desk.connect(Connect::Use(format!(" serial:{PORT}?baud=9600 ")));
-    assert_eq!(dialog(&desk).form::<encoder_studio::devices::hiperface::state::LinkForm>().unwrap().port, PORT);
+    assert_eq!(dialog(&desk).form_as::<encoder_studio::devices::hiperface::state::LinkForm>().unwrap().port, PORT);
     desk.connect(Connect::Connect);
     desk.until_read();
     assert_eq!(desk.encoder().session.source, Source::Link(format!("serial:{PORT}?baud=9600").parse().unwrap()));
@@ -203,7 +203,7 @@ fn a_recording_is_chosen_from_a_list_of_files() {
     desk.act(Action::Chosen(FileQuestion::Recording, "monday.trace".into()));
     // Issue 22.24: from any folder in which the program is started the next time.
     let path = desk.outside.path("work/monday.trace");
-    assert_eq!(dialog(&desk).link(), format!("replay:{}", path.display()));
+    assert_eq!(dialog(&desk).typed_link(), format!("replay:{}", path.display()));
 }
 
 #[test]
@@ -214,7 +214,12 @@ fn the_dialog_starts_with_the_last_used_link() {
     desk.until_read();
     desk.connect(Connect::Open);
     assert_eq!(
-        dialog(&desk).form::<encoder_studio::devices::hiperface::state::LinkForm>().unwrap().url().unwrap().to_string(),
+        dialog(&desk)
+            .form_as::<encoder_studio::devices::hiperface::state::LinkForm>()
+            .unwrap()
+            .url()
+            .unwrap()
+            .to_string(),
         link
     );
     desk.until("the ports are listed", |studio| matches!(studio.connect.as_ref().unwrap().ports, Some(Ok(_))));
@@ -255,7 +260,7 @@ fn all_answering_encoders_are_found_and_one_is_chosen() {
     assert_ne!((format.baud, format.parity), (Baud::new(9600).unwrap(), Parity::Even));
     let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.word());
     assert_eq!(desk.encoder().session.source, Source::Link(link.parse().unwrap()));
-    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), [link]);
+    assert_eq!(desk.studio.settings.links_of(crate::tabs::HIPERFACE), [link]);
 }
 
 #[test]
@@ -315,7 +320,7 @@ fn a_search_on_an_open_wire_closes_it_first() {
     desk.connect(Connect::Use(link.clone()));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.let_go_for_search"));
-    assert!(desk.encoder().session.line().is_none());
+    assert!(desk.encoder().session.live_session().is_none());
     assert_eq!(desk.notice_count("session.let_go_for_search"), 1);
     desk.until("the search is over", |studio| !studio.can_stop());
     assert_eq!(search(&desk).found.len(), 1);
@@ -348,7 +353,7 @@ fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     ] {
         let mut desk = Desk::fresh("");
         desk.act(Action::ShowTab(crate::tabs::HIPERFACE));
-        desk.studio.begin(Some(link.parse().unwrap()), None);
+        desk.studio.start_with(Some(link.parse().unwrap()), None);
         assert_eq!(desk.studio.settings.tab, tab, "{link}");
     }
 }
@@ -359,10 +364,10 @@ fn a_late_answer_about_another_master_starts_no_search() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     desk.connect(Connect::Use("serial:/dev/nothing".to_owned()));
-    desk.studio.act(Action::Connect(crate::tabs::search_for(FindOptions::default())));
+    desk.studio.handle_action(Action::Connect(crate::tabs::search_for(FindOptions::default())));
     assert!(asks_for_drive(&desk.studio));
-    desk.studio.act(Action::Connect(Connect::Close));
-    desk.studio.act(Action::Connect(Connect::Open));
-    desk.studio.act(Action::Confirm);
+    desk.studio.handle_action(Action::Connect(Connect::Close));
+    desk.studio.handle_action(Action::Connect(Connect::Open));
+    desk.studio.handle_action(Action::Confirm);
     assert!(crate::tabs::search(dialog(&desk)).is_none());
 }

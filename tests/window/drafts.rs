@@ -34,7 +34,7 @@ fn connect(desk: &mut Desk) {
 }
 
 fn edits(desk: &Desk) -> usize {
-    shown(&desk.studio).unwrap().edits()
+    shown(&desk.studio).unwrap().edit_count()
 }
 
 /// Returns the value that [`NOVO`] edits first.
@@ -77,7 +77,7 @@ fn an_unwritable_draft_is_reported_once() {
     fs::write(desk.outside.path("data/drafts"), "a file in the way").unwrap();
     for byte in [1, 2, 4] {
         NOVO.edit(&mut desk, &[byte]);
-        desk.until("it is told", |studio| studio.services.log.standing().is_some());
+        desk.until("it is told", |studio| studio.services.log.current().is_some());
         desk.settle();
     }
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_not_kept"]);
@@ -92,10 +92,10 @@ fn a_write_ends_the_notice_of_restored_edits() {
     NOVO.edit(&mut desk, &[7]);
     until_kept(&mut desk);
     let mut desk = crash(desk);
-    desk.until("it is told", |studio| studio.services.log.standing().is_some());
+    desk.until("it is told", |studio| studio.services.log.current().is_some());
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_back"]);
     write(&mut desk);
-    assert!(desk.studio.services.log.standing().is_none());
+    assert!(desk.studio.services.log.current().is_none());
     assert_eq!(desk.notice_count("novo.written"), 1);
 }
 
@@ -117,15 +117,15 @@ fn saving_a_profile_removes_its_draft() {
     desk.until("the edit is kept", |_| kept(&drafts) == 1);
 
     let mut desk = desk.crash();
-    desk.studio.begin(None, Some(path.clone()));
-    desk.until("the edit is back", |studio| shown(studio).is_some_and(|own| own.edits() == 1));
+    desk.studio.start_with(None, Some(path.clone()));
+    desk.until("the edit is back", |studio| shown(studio).is_some_and(|own| own.edit_count() == 1));
     let other = desk.outside.path("other.ron");
     NOVO.save(&mut desk, &other);
-    desk.until("it is saved", |studio| shown(studio).unwrap().edits() == 0);
+    desk.until("it is saved", |studio| shown(studio).unwrap().edit_count() == 0);
     desk.until("there is no draft", |_| fs::read_dir(&drafts).unwrap().count() == 0);
     for (path, expected) in [(path, 3), (other, 7)] {
         desk = desk.crash();
-        desk.studio.begin(None, Some(path));
+        desk.studio.start_with(None, Some(path));
         desk.until("it is open", |studio| shown(studio).is_some());
         desk.settle();
         assert_eq!((value(&desk), edits(&desk)), (expected, 0));
@@ -179,7 +179,7 @@ fn another_type_with_the_same_serial_number_has_a_separate_draft() {
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().unplug();
-    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
+    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.live_session().is_none());
     desk.wire().exchange("model=sks36&serial=GB0450179");
     desk.wire().plug();
     desk.command(DeviceCommand::Reconnect);
@@ -205,7 +205,7 @@ fn a_missing_serial_number_prevents_drafts_with_one_notice() {
     desk.act(Action::Escape);
     let replug = |desk: &mut Desk, query: Option<&str>| {
         desk.wire().unplug();
-        desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
+        desk.until("it is lost", |studio| studio.hiperface().unwrap().session.live_session().is_none());
         if let Some(query) = query {
             desk.wire().exchange(query);
         }

@@ -145,7 +145,7 @@ impl Case {
             }
             _ => desk.act(Action::device(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
         }
-        assert_eq!(shown(&desk.studio).unwrap().edits(), bytes.len());
+        assert_eq!(shown(&desk.studio).unwrap().edit_count(), bytes.len());
     }
 }
 
@@ -238,7 +238,7 @@ fn until_lost(desk: &mut Desk) {
 fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
     desk.until("the review is there", |studio| {
         let device = shown(studio).unwrap();
-        device.sheet().is_some_and(|sheet| wanted(&sheet.stage)) && !device.is_writing()
+        device.review_sheet().is_some_and(|sheet| wanted(&sheet.stage)) && !device.is_writing()
     });
 }
 
@@ -248,7 +248,7 @@ fn planned(desk: &mut Desk) -> PlanId {
     command(desk, DeviceCommand::Review);
     until_stage(desk, |stage| matches!(stage, Stage::Ready(_)));
     until_ready(desk);
-    let Stage::Ready(plan) = shown(&desk.studio).unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    let Stage::Ready(plan) = shown(&desk.studio).unwrap().review_sheet().unwrap().stage else { panic!("no plan") };
     plan
 }
 
@@ -282,7 +282,7 @@ fn edits_survive_a_crash_until_they_are_written() {
         case.edit(&mut desk, &[0x5A, 0x5B]);
         until_kept(&mut desk);
         let mut desk = case.crash(desk);
-        desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
+        desk.until("the edits are back", |studio| shown(studio).unwrap().edit_count() == 2);
         assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_back"]);
         write(&mut desk);
         desk.settle();
@@ -309,7 +309,7 @@ fn edits_survive_a_pulled_cable_and_are_not_written_to_another_encoder() {
         until_lost(&mut desk);
         wire.plug();
         case.reconnect(&mut desk);
-        assert_eq!(shown(&desk.studio).unwrap().edits(), 2);
+        assert_eq!(shown(&desk.studio).unwrap().edit_count(), 2);
         // Another device is now on the same adapter, and the program has not been told.
         wire.exchange(case.other);
         command(&mut desk, DeviceCommand::Review);
@@ -319,7 +319,7 @@ fn edits_survive_a_pulled_cable_and_are_not_written_to_another_encoder() {
         assert!(!shown(&desk.studio).unwrap().is_reviewing());
         wire.exchange("");
         command(&mut desk, DeviceCommand::Read);
-        desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
+        desk.until("the edits are back", |studio| shown(studio).unwrap().edit_count() == 2);
         until_ready(&mut desk);
         write(&mut desk);
     }
@@ -336,11 +336,11 @@ fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
         wire.release();
         until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { begun: true, .. }));
         until_lost(&mut desk);
-        assert_eq!(shown(&desk.studio).unwrap().edits(), 1);
+        assert_eq!(shown(&desk.studio).unwrap().edit_count(), 1);
         review(&mut desk, ReviewAction::Close);
         wire.plug();
         case.reconnect(&mut desk);
-        assert_eq!(shown(&desk.studio).unwrap().edits(), 1);
+        assert_eq!(shown(&desk.studio).unwrap().edit_count(), 1);
         write(&mut desk);
     }
 }
@@ -362,7 +362,7 @@ fn closing_with_edits_asks_first() {
         desk.act(Action::Confirm);
         assert!(desk.studio.devices().is_empty());
         case.connect(&mut desk);
-        desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 1);
+        desk.until("the edits are back", |studio| shown(studio).unwrap().edit_count() == 1);
         desk.act(Action::Close);
         desk.act(Action::Confirm);
         desk.until("it may close", |studio| studio.can_close());
@@ -409,7 +409,7 @@ fn escape_stops_a_running_job_before_closing_anything() {
 
 /// Returns the action that accepts the form as it is.
 fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
-    Connect::edit(dialog.form::<F>().unwrap().clone())
+    Connect::edit_form(dialog.form_as::<F>().unwrap().clone())
 }
 
 #[test]
@@ -450,7 +450,7 @@ fn every_kind_of_link_opens_its_device_typed_or_from_the_form() {
                     _ => edited::<hiperface::state::LinkForm>(dialog),
                 };
                 desk.connect(form);
-                assert_eq!(desk.studio.connect.as_ref().unwrap().link(), link);
+                assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), link);
             }
             desk.connect(Connect::Connect);
             assert!(desk.studio.connect.is_none(), "{link}");
@@ -480,13 +480,13 @@ fn another_type_of_device_needs_a_separate_permission() {
         command(&mut desk, DeviceCommand::Restore(path));
         until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { .. }));
         until_ready(&mut desk);
-        let sheet = shown(&desk.studio).unwrap().sheet().unwrap();
+        let sheet = shown(&desk.studio).unwrap().review_sheet().unwrap();
         let Stage::Failed { texts, .. } = &sheet.stage else { panic!() };
-        assert!(texts[0].words(Language::English).contains("another type of device"), "{texts:?}");
+        assert!(texts[0].to_string_in(Language::English).contains("another type of device"), "{texts:?}");
         assert!(sheet.toggles.iter().any(|own| own.permit == Permit::TypeMismatch && !own.is_on));
         review(&mut desk, ReviewAction::Toggle(Permit::TypeMismatch));
         until_stage(&mut desk, |stage| matches!(stage, Stage::Ready(_) | Stage::Nothing));
-        let warnings = shown(&desk.studio).unwrap().sheet().unwrap().warnings;
+        let warnings = shown(&desk.studio).unwrap().review_sheet().unwrap().warnings;
         let named = ["review.other_type", "biss_review.other_kind", "ib_review.other_type", "hd_review.other_kind"];
         let text = warnings.iter().find(|own| named.contains(&own.id())).unwrap();
         crate::texts::check(text);
@@ -528,7 +528,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
                 Some(missing) => {
                     desk.until("it is refused", |studio| told(studio, "session.not_all_read").is_some());
                     let texts = told(&desk.studio, "session.not_all_read").unwrap();
-                    assert!(texts[0].words(Language::English).contains(missing), "{texts:?}");
+                    assert!(texts[0].to_string_in(Language::English).contains(missing), "{texts:?}");
                     crate::texts::check(&texts[0]);
                     desk.settle();
                     assert!(!path.exists());

@@ -105,7 +105,7 @@ pub(crate) fn write(desk: &mut Desk) {
 
 #[track_caller]
 fn write_as_shown(desk: &mut Desk) {
-    let stage = |studio: &Studio| studio.selected_device().unwrap().sheet().map(|sheet| sheet.stage);
+    let stage = |studio: &Studio| studio.selected_device().unwrap().review_sheet().map(|sheet| sheet.stage);
     desk.until("there is a plan", |studio| {
         matches!(stage(studio), Some(Stage::Ready(_))) && studio.selected_device().unwrap().is_ready()
     });
@@ -126,7 +126,7 @@ fn connecting_reads_everything_and_writes_nothing() {
     assert_eq!(unit.drives().iter().map(|own| own.get()).collect::<Vec<_>>(), [1, 3]);
     assert!(!unit.session.trace.lines().is_empty());
     assert_eq!(sets(&desk), 0);
-    assert!(!unit.moves.is_open() && !desk.studio.moves() && desk.studio.has_drives());
+    assert!(!unit.moves.is_open() && !desk.studio.is_moving() && desk.studio.has_drives());
     // 16 numbers and texts of drive 1 at least, and none of the slot without a drive.
     assert!(unit.rows(Some(ONE)).len() > 40 && unit.rows(DriveNumber::new(2)).is_empty());
     let requested = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(152)).unwrap();
@@ -174,10 +174,11 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
     let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     desk.until("it is refused", |studio| {
-        let sheet = studio.selected_device().unwrap().sheet();
+        let sheet = studio.selected_device().unwrap().review_sheet();
         sheet.is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { begun: false, .. }))
     });
-    let Some(Stage::Failed { texts, .. }) = desk.studio.selected_device().unwrap().sheet().map(|sheet| sheet.stage)
+    let Some(Stage::Failed { texts, .. }) =
+        desk.studio.selected_device().unwrap().review_sheet().map(|sheet| sheet.stage)
     else {
         panic!()
     };
@@ -193,7 +194,7 @@ fn pitch_and_unit_are_remembered() {
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
     act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
     // 2.5 turns of 65536 steps on 4 mm.
-    let place = unit(&desk).place(ONE, 163_840).words(encoder_studio::app::Language::English);
+    let place = unit(&desk).place(ONE, 163_840).to_string_in(encoder_studio::app::Language::English);
     assert_eq!(place, "10.00000 mm");
     let path = desk.outside.store().settings_path();
     desk.until("it is kept", |_| {
@@ -260,11 +261,11 @@ fn a_discovered_device_fills_the_form() {
     let names: Vec<&str> = discovery.devices().iter().map(|own| own.name.as_str()).collect();
     assert_eq!(names, ["HIPERDRIVE HUB-4", "a switch"], "ours come first");
     desk.connect(crate::tabs::choose_answer(0));
-    assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.7:44818");
+    assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.7:44818");
     desk.connect(crate::tabs::choose_answer(1));
-    assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222");
+    assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.9:2222");
     desk.connect(crate::tabs::choose_answer(2));
-    assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222", "there is none");
+    assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.9:2222", "there is none");
 }
 
 /// Reference 5: an HDA30 has 512 turns either way, which are 33 554 432 steps, or 204 800 at 400 steps per turn.

@@ -72,7 +72,7 @@ pub(crate) fn act_until(
         if !has_lapsed(&desk.studio, shown, before) {
             return;
         }
-        desk.until("it stands", |studio| !studio.moves());
+        desk.until("it stands", |studio| !studio.is_moving());
     }
     panic!("never: {what}: it has lapsed {ATTEMPTS} times");
 }
@@ -105,7 +105,7 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
         if !has_lapsed(&desk.studio, shown, before) {
             return seen;
         }
-        desk.until("it stands", |studio| !studio.moves());
+        desk.until("it stands", |studio| !studio.is_moving());
     }
     panic!("it has lapsed {ATTEMPTS} times");
 }
@@ -147,7 +147,7 @@ pub(crate) fn hold_pad_until(
             return;
         }
         drive(desk, Motor::JogRelease);
-        desk.until("it stands", |studio| !studio.moves());
+        desk.until("it stands", |studio| !studio.is_moving());
         let end = last_end(&desk.studio, shown);
         assert!(end != before && matches!(end, Some((_, ActionEnd::Stale))), "never: {what}: {before:?}, then {end:?}");
     }

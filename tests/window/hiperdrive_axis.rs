@@ -115,7 +115,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     let turned = 33_488_896;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 256, 1, -turned, turned]);
     assert_eq!(unit(&desk).session.cycles, Some(0));
-    let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
+    let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(
         told.contains("have their previous value again: 5 of 5") && words::differences(&seen(&desk)).is_none(),
         "{told}"
@@ -132,7 +132,7 @@ fn a_recall_does_not_change_the_drive() {
     act(&mut desk, Hiperdrive::Plan(Box::new(Change::Do(Service::Recall))));
     write(&mut desk);
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
-    let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
+    let told = words::differences(&seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(told.contains("parameter 154 is 400 instead of 256") && !told.contains("152"), "{told}");
     // The request is lost: the shown step remains, and names the one that has to be repeated.
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
@@ -187,7 +187,7 @@ fn a_pitch_applies_only_after_confirmation() {
 #[test]
 fn a_new_run_lists_changes_left_by_an_aborted_one() {
     let mut desk = at_jog_step();
-    let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.words(Language::English));
+    let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.to_string_in(Language::English));
     let told = differences(&desk).unwrap();
     assert!(
         told.contains("parameter 154 is 400 instead of 256") && told.contains("parameter 152 is 1 instead of 0"),
@@ -257,7 +257,8 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
     unit(&desk).target.clone().unwrap().with(|own| own.drive(drive).unwrap().fail(clock, ErrorCode::BLOCK_FORWARD));
     desk.until("its code is there", |studio| {
         let own = studio.hiperdrive().unwrap();
-        words::fault(&own.seen(own.drive())).is_some_and(|text| text.words(Language::English).starts_with("Fault 8301"))
+        words::fault(&own.seen(own.drive()))
+            .is_some_and(|text| text.to_string_in(Language::English).starts_with("Fault 8301"))
     });
     assert_eq!(axis(&desk).ask(AxisButton::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
     assert!(axis(&desk).outcome(TestTarget::Lower).is_some_and(|own| !own.is_good()));
@@ -357,7 +358,7 @@ fn a_write_without_consent_leaves_the_step_unchanged() {
     let mut desk = new_form(FRESH);
     run(&mut desk, Run::Press(AxisButton::Do));
     desk.until("the plan is there", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(axis(&desk).is_writing());
     until_ready(&mut desk);

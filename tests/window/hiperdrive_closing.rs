@@ -104,7 +104,7 @@ fn a_signal_closes_without_asking() {
 #[test]
 fn drives_are_released_without_the_window() {
     let desk = moving();
-    let brakes = desk.studio.brakes();
+    let brakes = desk.studio.drive_stop_handles();
     assert!(!brakes.is_done() && !brakes.has_begun());
     brakes.begin_stop();
     assert!(brakes.wait_for_disconnect(LONG) && brakes.has_begun());
@@ -149,6 +149,6 @@ fn a_window_without_control_closes_immediately() {
         !own.moves.is_open() && own.session.is_ready()
     });
     desk.act(Action::Close);
-    assert!(desk.studio.brakes().is_done());
+    assert!(desk.studio.drive_stop_handles().is_done());
     desk.until("it may close", |studio| studio.can_close());
 }

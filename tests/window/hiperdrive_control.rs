@@ -162,7 +162,7 @@ fn the_table_shows_live_values_of_the_drive() {
     let to_4096 = |own: &Unit| Motor::Step { by: 4096 - own.actual(ONE).unwrap().position };
     drive_until(&mut desk, to_4096, "it arrives", |studio| {
         let own = studio.hiperdrive().unwrap();
-        !studio.moves() && own.actual(ONE).is_some_and(|own| own.position == 4096)
+        !studio.is_moving() && own.actual(ONE).is_some_and(|own| own.position == 4096)
     });
     assert_eq!((shown(&desk, 107), shown(&desk, 104)), (Value::Number(4096), Value::Number(4096)));
     assert_eq!(unit(&desk).value(number(107)), Some(&Value::Number(0)), "as it was read");
@@ -182,15 +182,15 @@ fn reports_from_before_a_loss_are_discarded() {
     set_off(&mut desk);
     fall_silent(&desk);
     desk.until("the loss is known", |studio| !is_open(studio));
-    desk.until("nothing moves as far as is known", |studio| !studio.moves());
+    desk.until("nothing moves as far as is known", |studio| !studio.is_moving());
     desk.until("it is read anew", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
     assert_ne!(unit(&desk).state(ONE), Some(State::Moving));
     desk.until("why it was lost is told", |studio| {
-        studio.hiperdrive().unwrap().session.is_ready() && studio.services.log.standing().is_some()
+        studio.hiperdrive().unwrap().session.is_ready() && studio.services.log.current().is_some()
     });
     act(&mut desk, Hiperdrive::Take);
     desk.until("it is taken again", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
-    let standing = desk.studio.services.log.standing().map(|own| own.texts.clone()).unwrap_or_default();
+    let standing = desk.studio.services.log.current().map(|own| own.texts.clone()).unwrap_or_default();
     assert!(standing.iter().all(|text| text.id() != "hd_lost.silent"), "{standing:?}");
 }
 
@@ -271,7 +271,7 @@ fn values_unread_under_control_are_read_after_giving_it_up() {
 fn positions_read_before_a_reconnect_are_discarded() {
     let mut desk = in_control("sim:");
     command(&mut desk, DeviceCommand::Reconnect);
-    desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.line().is_some());
+    desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.live_session().is_some());
     assert!(unit(&desk).survey.is_some() && unit(&desk).session.is_busy());
     assert_eq!(unit(&desk).actual(ONE), None);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());

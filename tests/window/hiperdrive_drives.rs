@@ -68,7 +68,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     drive(&mut desk, Motor::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.still_moves"]);
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     let told = while_it_moves(&mut desk, |desk| {
         let before = warned(desk).len();
         drive(desk, Motor::Step { by: 64 });
@@ -78,7 +78,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     });
     assert_eq!(told, ["hd_refused.still_moves"; 3]);
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     let seen = while_it_moves(&mut desk, |desk| {
         act(desk, Hiperdrive::SelectDrive(two()));
         desk.until("the other one is read", |studio| {
@@ -100,7 +100,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     assert_eq!(seen, (vec!["hd_refused.other_moves"; 4], true, vec![ONE]), "it goes on");
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     until_free(&mut desk, two());
     let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(two()).unwrap().position };
     drive_until(&mut desk, to_64, "now it may", |studio| {
@@ -133,7 +133,7 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
     });
     assert_eq!(seen, (vec!["hd_refused.other_moves"], true));
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
 }
 
 /// Issue 21.7: messages name the drive of a hub; an adapter has one.
@@ -150,9 +150,9 @@ fn messages_name_the_drive() {
             studio.services.log.notices().any(|one| one.texts[0].id() == "hd_end.fault")
         });
         let notice = desk.studio.services.log.notices().rev().find(|one| one.texts[0].id() == "hd_end.fault").unwrap();
-        let whose = notice.prefix(|text| text.words(Language::English));
+        let whose = notice.device_prefix(|text| text.to_string_in(Language::English));
         assert_eq!(whose.strip_suffix(": ").unwrap().contains("drive 2"), named.is_some(), "{whose}");
-        assert_eq!(notice.part.as_ref().map(|part| part.words(Language::English)).as_deref(), named);
+        assert_eq!(notice.part.as_ref().map(|part| part.to_string_in(Language::English)).as_deref(), named);
     }
 }
 
@@ -180,11 +180,11 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     assert_eq!(seen, (after, Some(before), None), "and that is no jog");
     drive(&mut desk, Motor::MoveEffort(after));
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     drive_until(&mut desk, |_| Motor::Step { by: 1_000_000 }, "it moves", |studio| moves(studio, ONE));
     assert_eq!(unit(&desk).moves.running_move_speed_torque(ONE), Some(after));
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
 }
 
 /// Returns a hub on the screen, with its drives under control.
@@ -225,10 +225,10 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     let own = |action| Action::device(id, action);
     for _ in 0..20 {
         screen.act(own(Hiperdrive::SelectDrive(ONE)));
-        screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.moves());
+        screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.is_moving());
         screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(SpeedTorque::DEFAULT_MOVE))));
         screen.act(own(Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
-        screen.until("it moves or stands again", |studio| moves(studio, ONE) || !studio.moves());
+        screen.until("it moves or stands again", |studio| moves(studio, ONE) || !studio.is_moving());
         screen.act(own(then()));
         screen.steps();
         let seen = look(screen);
@@ -271,7 +271,7 @@ fn drive_buttons_show_the_drive_states() {
     );
     assert!(shown, "while another one is shown, at the buttons and in the header");
     screen.act(Action::StopMotion);
-    screen.until("it stands", |studio| !studio.moves());
+    screen.until("it stands", |studio| !studio.is_moving());
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
     target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
     screen.until("it has failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
@@ -288,7 +288,7 @@ fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     assert!(!screen.shows(waits));
     assert!(while_it_moves_on(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));
     screen.act(Action::StopMotion);
-    screen.until("it stands", |studio| !studio.moves());
+    screen.until("it stands", |studio| !studio.is_moving());
     screen.steps();
     assert!(!screen.shows(waits));
 }

@@ -85,7 +85,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
         screen.steps();
         assert_eq!(speed(&screen).to_string(), percent);
         assert_eq!(typed_speed(&screen).accesskit_node().value().unwrap_or_default(), percent);
-        assert!(!screen.studio().is_motion_active() && !screen.studio().moves(), "{percent}");
+        assert!(!screen.studio().is_motion_active() && !screen.studio().is_moving(), "{percent}");
     }
     let torque = screen.studio().hiperdrive().unwrap().moves.jog_speed_torque(ONE).torque.get();
     assert_eq!(torque, 25);

@@ -68,16 +68,16 @@ fn until_standstill(desk: &Desk) {
 #[test]
 fn a_jog_turns_the_drive_while_it_is_held() {
     let mut desk = in_control("sim:");
-    assert!(!desk.studio.moves() && unit(&desk).may_move(ONE).is_ok());
+    assert!(!desk.studio.is_moving() && unit(&desk).may_move(ONE).is_ok());
     assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
     jog(&mut desk);
-    assert!(desk.studio.moves() && !is_at_standstill(&desk));
+    assert!(desk.studio.is_moving() && !is_at_standstill(&desk));
     let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
     assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
     drive(&mut desk, Motor::JogRelease);
     assert!(!unit(&desk).moves.is_held(), "at once");
     until_standstill(&desk);
-    desk.until("the window knows it", |studio| !studio.moves());
+    desk.until("the window knows it", |studio| !studio.is_moving());
     let where_it_stands = unit(&desk).actual(ONE).unwrap().position;
     assert!(where_it_stands != 0);
     // A late hold, and a repeated key, begin nothing.
@@ -94,7 +94,7 @@ fn a_jog_that_is_not_refreshed_ends_by_itself() {
     jog(&mut desk);
     let before = desk.notice_count("hd_end.stale");
     // Frames are drawn without the button.
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held());
     assert_eq!(desk.notice_count("hd_end.stale"), before + 1);
     drive(&mut desk, Motor::JogHold);
@@ -171,12 +171,12 @@ fn a_move_continues_in_another_tab_and_ends_with_stop() {
             desk.studio.poll();
             std::thread::sleep(Duration::from_millis(1));
         }
-        desk.studio.moves() && desk.studio.has_drives()
+        desk.studio.is_moving() && desk.studio.has_drives()
     });
     assert!(goes_on, "{}", crate::support::log(&desk.studio));
     desk.act(Action::Escape);
     until_standstill(&desk);
-    desk.until("the window knows it", |studio| !studio.moves());
+    desk.until("the window knows it", |studio| !studio.is_moving());
     assert!(desk.studio.selected_device().is_none() || desk.studio.settings.tab == crate::tabs::BISS);
 }
 
@@ -198,7 +198,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     let back = |own: &Unit| Motor::Step { by: -own.actual(ONE).unwrap().position };
     let is_back = |studio: &Studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position == 0;
     drive_until(&mut desk, back, "it is back", is_back);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     // 511 turns are 33 488 896 steps.
     drive(&mut desk, Motor::Move { target: 33_488_897 });
     assert_eq!(warned(&desk), ["hd_refused.outside"]);
@@ -214,7 +214,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     drive_until(&mut desk, run, "it runs", |studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position > 0);
     assert!(unit(&desk).moves.allows_endless_run(ONE), "while it runs");
     drive(&mut desk, Motor::Stop);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     assert!(!unit(&desk).moves.allows_endless_run(ONE), "the run has ended");
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
@@ -226,9 +226,9 @@ fn distance_and_duration_of_a_move_are_estimated() {
     let desk = in_control("sim:");
     assert_eq!(unit(&desk).actual(ONE).unwrap().position, 0);
     let estimate = unit(&desk).move_estimate(35 * 65_536).unwrap();
-    assert!(estimate.words(Language::English).ends_with(", about 4 min 0 s"), "{estimate:?}");
+    assert!(estimate.to_string_in(Language::English).ends_with(", about 4 min 0 s"), "{estimate:?}");
     assert_eq!(
-        unit(&desk).move_estimate(-35 * 65_536).unwrap().words(Language::German).split_once(", ").unwrap().1,
+        unit(&desk).move_estimate(-35 * 65_536).unwrap().to_string_in(Language::German).split_once(", ").unwrap().1,
         "etwa 4 min 0 s"
     );
 }
@@ -284,7 +284,7 @@ fn a_run_ends_immediately_when_its_panel_is_hidden() {
     drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
     desk.act(Action::ShowTab(crate::tabs::BISS));
     until_standstill(&desk);
-    desk.until("the window knows it", |studio| !studio.moves());
+    desk.until("the window knows it", |studio| !studio.is_moving());
 }
 
 #[test]

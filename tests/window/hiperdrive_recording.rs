@@ -15,12 +15,12 @@ use crate::hiperdrive::{ONE, act, number, read, unit};
 use crate::support::Desk;
 
 fn recorder(desk: &Desk) -> &Recorder {
-    unit(desk).record().recorder()
+    unit(desk).recording().recorder()
 }
 
 /// Returns the number of positions in a line, by its heading; none if there is no such line.
 fn samples(recorder: &Recorder, is_it: impl Fn(&str) -> bool) -> u64 {
-    let line = recorder.lines().iter().find(|line| is_it(&line.heading));
+    let line = recorder.series().iter().find(|line| is_it(&line.heading));
     let all = line.and_then(|line| recorder.history(line)).map(|history| history.indices());
     all.map_or(0, |all| all.end - all.start)
 }
@@ -34,7 +34,7 @@ fn until_recorded(desk: &mut Desk, more: u64) {
     let before = positions(desk);
     desk.until("some is recorded", |studio| {
         let own = studio.hiperdrive().unwrap();
-        samples(own.record().recorder(), |heading| heading == "position") >= before + more
+        samples(own.recording().recorder(), |heading| heading == "position") >= before + more
     });
 }
 
@@ -69,7 +69,7 @@ fn a_recording_survives_unit_and_scale_changes() {
     act(&mut desk, Hiperdrive::SetPitch(ONE, None));
     until_recorded(&mut desk, 1);
     assert!(positions(&desk) >= before + 2);
-    assert!(recorder(&desk).lines().iter().all(|line| !line.ended));
+    assert!(recorder(&desk).series().iter().all(|line| !line.ended));
     let before = positions(&desk);
     let target = unit(&desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), number(154), &Value::Number(400)).unwrap());
@@ -79,7 +79,7 @@ fn a_recording_survives_unit_and_scale_changes() {
         own.session.is_ready() && own.number(ONE, 154) == Some(400)
     });
     desk.until("the new scale is recorded", |studio| {
-        studio.hiperdrive().unwrap().record().recorder().lines().iter().any(|line| line.ended)
+        studio.hiperdrive().unwrap().recording().recorder().series().iter().any(|line| line.ended)
     });
     assert!(samples(recorder(&desk), |heading| heading.starts_with("position until ")) >= before);
 }

@@ -38,7 +38,7 @@ fn a_jog_ends_when_the_session_becomes_remote() {
     desk.studio.poll();
     assert!(!unit(&desk).moves.is_held(), "at once");
     drive(&mut desk, Motor::JogHold);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
 
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     for motor in [PRESS, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd }] {

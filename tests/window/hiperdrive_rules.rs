@@ -50,7 +50,7 @@ fn limits_under_control_are_read_at_any_polling_rate() {
             own.limits(ONE) == Some((-33_488_896, 65_536)) && own.may_move(ONE).is_ok()
         });
         assert!(began.elapsed() < Duration::from_secs(6), "{pace:?}: {:?}", began.elapsed());
-        assert_eq!(unit(&desk).session.line().unwrap().polling(), pace);
+        assert_eq!(unit(&desk).session.live_session().unwrap().polling_interval(), pace);
         // No rule is missing later either.
         let began = Instant::now();
         desk.until("some time passes", |studio| {
@@ -110,7 +110,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
     let outside = Outside::new("");
     let is_bad = bad.clone();
     let world = StudioEnvironment {
-        given: outside.world().given.with(LinkOpener::new(move |url, store| {
+        given: outside.world().given.with_value(LinkOpener::new(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
             let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
@@ -137,9 +137,9 @@ fn unreadable_limits_stop_motion_until_readable() {
     let (mut desk, bad) = over_a_bad_stream();
     set_off(&mut desk);
     bad.store(true, Ordering::SeqCst);
-    desk.until("it stands", |studio| !studio.moves());
+    desk.until("it stands", |studio| !studio.is_moving());
     desk.until("that is told", |studio| {
-        studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
+        studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
     });
     assert!(unit(&desk).moves.is_open() && unit(&desk).session.is_polling(), "it is seen all the same");
     drive(&mut desk, Motor::Step { by: 64 });
@@ -153,13 +153,13 @@ fn unreadable_limits_stop_motion_until_readable() {
     bad.store(false, Ordering::SeqCst);
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     desk.until("what was told is over", |studio| {
-        studio.services.log.standing().is_none_or(|own| own.texts.iter().all(|text| text.id() != "hd_end.rules"))
+        studio.services.log.current().is_none_or(|own| own.texts.iter().all(|text| text.id() != "hd_end.rules"))
     });
     assert!(unit(&desk).moves.is_open() && began.elapsed() < LONG);
 }
 
 fn has_rules_notice(studio: &Studio) -> bool {
-    studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
+    studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn fail(desk: &Desk, own: DriveNumber) {
 }
 
 fn has_fault_notice(studio: &Studio) -> bool {
-    studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
+    studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
 }
 
 /// Drive 2 has failed before; drive 1 fails while it moves, which is reported, and drive 2 recovers.

@@ -59,7 +59,7 @@ fn is_watched(screen: &Screen) -> bool {
 }
 
 fn moves(screen: &Screen) -> bool {
-    screen.studio().moves()
+    screen.studio().is_moving()
 }
 
 /// Returns the positions of buttons with that name, the uppermost first.
@@ -229,7 +229,7 @@ fn held_escape_stops_a_newly_started_motion() {
     screen.steps();
     begin(&mut screen);
     screen.harness.key_down(Key::Escape);
-    screen.until("it stands", |studio| !studio.moves());
+    screen.until("it stands", |studio| !studio.is_moving());
     let ended = screen.studio().hiperdrive().unwrap().moves.drive(ONE).unwrap().ended;
     assert!(matches!(ended, Some((_, ActionEnd::Stopped))) && is_watched(&screen), "{ended:?}");
 }
@@ -244,7 +244,7 @@ fn moved_by_another_master() -> Screen {
         let out = OutputData { control, speed: 1, torque: 100, target: 30_000_000 };
         target.with(|station| station.drive(ONE).unwrap().command(Moment::default(), out));
     }
-    screen.until("it is seen to move", Studio::moves);
+    screen.until("it is seen to move", Studio::is_moving);
     screen
 }
 
@@ -288,7 +288,7 @@ fn an_action_of_another_kind_is_reported_and_stops_motion() {
     let mut screen = moving();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, encoder_studio::devices::ssi::state::SsiAction::Check));
-    screen.until("it stands", |studio| !studio.moves());
+    screen.until("it stands", |studio| !studio.is_moving());
     let told = screen.studio().services.log.notices().any(|notice| notice.texts[0].id() == "session.wrong_kind");
     assert!(told);
 }

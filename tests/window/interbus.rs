@@ -80,19 +80,19 @@ fn cam(number: u8) -> CamNumber {
 fn write(desk: &mut Desk) -> String {
     wish(desk, DeviceCommand::Review);
     desk.until("the plan is there", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     until_ready(desk);
-    let sheet = desk.studio.selected_device().unwrap().sheet().unwrap();
+    let sheet = desk.studio.selected_device().unwrap().review_sheet().unwrap();
     let Stage::Ready(plan) = sheet.stage else { panic!("no plan") };
     let id = encoder(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
     desk.until("it is written", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
     });
     until_ready(desk);
     desk.settle();
-    sheet.cost.unwrap().words(encoder_studio::app::Language::English)
+    sheet.cost.unwrap().to_string_in(encoder_studio::app::Language::English)
 }
 
 #[test]

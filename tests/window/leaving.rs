@@ -100,7 +100,7 @@ fn a_session_with_a_dead_thread_is_lost_with_its_job() {
     desk.wire().kill();
     let wakes = desk.outside.wakes.load(Ordering::SeqCst);
     desk.ask(Hiperface::ReadCounter);
-    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
+    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.live_session().is_none());
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.ended"));
     assert!(desk.outside.wakes.load(Ordering::SeqCst) > wakes, "the window is told to look");
     assert!(matches!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Failed(_)));

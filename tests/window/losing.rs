@@ -54,7 +54,7 @@ fn a_stopped_restore_reports_progress_and_can_be_completed() {
     desk.until("it is writing", |studio| studio.hiperface().unwrap().session.is_writing());
     assert!(desk.studio.can_stop());
     desk.act(Action::Stop);
-    assert!(desk.encoder().session.line().unwrap().running().unwrap().stopping);
+    assert!(desk.encoder().session.live_session().unwrap().running_job().unwrap().stopping);
     desk.wire().release();
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
@@ -62,12 +62,12 @@ fn a_stopped_restore_reports_progress_and_can_be_completed() {
     assert_eq!(texts[0], crate::texts::text("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
     // Issue 22.14: the list of operations remains, with the completed ones.
-    let sheet = desk.studio.selected_device().unwrap().sheet().unwrap();
+    let sheet = desk.studio.selected_device().unwrap().review_sheet().unwrap();
     assert!(matches!(sheet.stage, Stage::Failed { begun: true, done: 2, .. }), "{:?}", sheet.stage);
     assert_eq!(sheet.lines.len(), 4);
     let backups = fs::read_dir(desk.outside.path("data/backups/hiperface/GB0450179")).unwrap();
     let backup = backups.map(|entry| entry.unwrap().path()).next().unwrap();
-    assert!(texts[1].words(Language::German).contains(&backup.display().to_string()));
+    assert!(texts[1].to_string_in(Language::German).contains(&backup.display().to_string()));
     desk.until_ready();
     assert_eq!(desk.wire().field(0)[..16], *b"eMd71K-4 3000rpm");
     assert_eq!(desk.encoder().staged.device_byte(0, 2), Some(b'd'), "it is read again");
@@ -103,7 +103,7 @@ fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
     desk.wire().release();
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
-    let words = texts[0].words(Language::English);
+    let words = texts[0].to_string_in(Language::English);
     assert!(texts[0].id() == "write.interrupted" && words.contains('1') && words.contains('3'), "{words}");
     assert!(lost(&desk.studio));
     desk.ask(Hiperface::CloseReview);
@@ -321,7 +321,7 @@ fn a_silent_encoder_is_not_shown_as_connected() {
         !encoder.session.is_ready()
             && !encoder.session.is_savable()
             && encoder.session.is_readable()
-            && encoder.session.line().is_some()
+            && encoder.session.live_session().is_some()
     );
     desk.command(DeviceCommand::Read);
     desk.until("it was read in vain", |studio| studio.hiperface().unwrap().session.is_readable());
@@ -424,7 +424,7 @@ fn a_late_failure_does_not_affect_newer_live_values() {
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     let began = std::time::Instant::now();
-    while desk.encoder().session.line().unwrap().polling().is_some() {
+    while desk.encoder().session.live_session().unwrap().polling_interval().is_some() {
         assert!(began.elapsed() < crate::support::LONG, "what is shown is what the worker does");
         std::thread::sleep(Duration::from_millis(2));
     }

@@ -81,7 +81,7 @@ fn notices_and_progress_do_not_move_buttons() {
             screen.act(read);
             wire.wait_until_held();
             screen.steps();
-            assert!(screen.studio().selected_device().unwrap().running().is_some(), "{tab:?}");
+            assert!(screen.studio().selected_device().unwrap().running_job().is_some(), "{tab:?}");
             check(&screen, &before, &format!("{tab:?}, {page}, while it is read"));
             wire.release();
             ready(&mut screen);

@@ -50,10 +50,10 @@ fn a_profile_of_a_locked_encoder_lists_missing_values() {
     let mut desk = Desk::at_port("codes=0:9D");
     let path = desk.outside.path("locked.ron");
     desk.ask(Hiperface::Save(path.clone()));
-    let saved = |studio: &encoder_studio::app::Studio| studio.services.log.standing().is_some();
+    let saved = |studio: &encoder_studio::app::Studio| studio.services.log.current().is_some();
     desk.until("it is saved", saved);
     let ids = |desk: &Desk| {
-        let standing = desk.studio.services.log.standing().unwrap();
+        let standing = desk.studio.services.log.current().unwrap();
         (standing.severity, standing.texts.iter().map(encoder_studio::app::Text::id).collect::<Vec<_>>())
     };
     assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_locked"]));
@@ -70,7 +70,8 @@ fn a_profile_of_a_locked_encoder_lists_missing_values() {
         .into_profile::<HiperfaceProfile>()
         .unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..2], *b"EM");
-    let words = desk.studio.services.log.standing().unwrap().texts[1].words(encoder_studio::app::Language::English);
+    let words =
+        desk.studio.services.log.current().unwrap().texts[1].to_string_in(encoder_studio::app::Language::English);
     assert!(words.contains('2'), "{words}");
 }
 
@@ -182,7 +183,7 @@ fn an_open_profile_ignores_its_own_write_protection() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
     let path = desk.outside.path("ready-made.ron");
     fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
-    desk.studio.begin(None, Some(path.clone()));
+    desk.studio.start_with(None, Some(path.clone()));
     desk.until("it is open", |studio| studio.hiperface().is_some());
     assert_eq!(desk.encoder().mounting(1), [(0..16, "commutation offset".to_owned())]);
     desk.put(0, 0, b"X");
@@ -206,7 +207,7 @@ fn a_profile_is_restored_to_another_encoder_only_with_permission() {
 
 /// Returns the sheet of the review that is shown.
 fn sheet(desk: &Desk) -> ReviewSheet {
-    desk.studio.selected_device().unwrap().sheet().unwrap()
+    desk.studio.selected_device().unwrap().review_sheet().unwrap()
 }
 
 /// A profile with these edits, refused by another encoder because that is of another serial number.
@@ -253,7 +254,7 @@ fn values_of_another_mounting_are_named_until_the_end() {
     desk.toggle(Permit::Mounting);
     desk.until_planned();
     let with = sheet(&desk);
-    let words = with.redo.clone().unwrap().words(Language::English);
+    let words = with.redo.clone().unwrap().to_string_in(Language::English);
     assert!(words.contains("commutation") && words.contains("field:0@0+3"), "{words}");
     assert!(matches!(with.stage, Stage::Ready(_)));
     desk.outside.wire(OTHER_PORT).hold_at(0x4B, 1);
@@ -291,7 +292,7 @@ fn the_review_asks_about_bytes_of_unknown_meaning() {
     desk.until_planned();
     let copied = sheet(&desk);
     assert!(copied.questions[0].is_on && !copied.lines.is_empty());
-    let words = copied.redo.unwrap().words(Language::English);
+    let words = copied.redo.unwrap().to_string_in(Language::English);
     assert!(words.contains("commutation"), "{words}");
     desk.toggle(Permit::Copy(0));
     desk.until_planned();
@@ -377,11 +378,11 @@ fn a_relative_path_is_saved_to_the_same_file() {
         fs::copy(&path, folder.join("rel.ron")).unwrap();
     }
     desk = desk.crash();
-    desk.studio.begin(None, Some("rel.ron".into()));
+    desk.studio.start_with(None, Some("rel.ron".into()));
     desk.until("it is open", |studio| studio.hiperface().is_some());
     desk.settle();
     let rel = work.join("rel.ron");
-    assert_eq!(desk.encoder().session.place(), rel.display().to_string());
+    assert_eq!(desk.encoder().session.data_source(), rel.display().to_string());
     desk.command(DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
     assert_eq!(question.suggested_path(), Some(rel.as_path()));
@@ -398,7 +399,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_eq!(desk.studio.devices().len(), 1);
     desk.act(Action::Typed(FileQuestion::Open, "~/rel.ron".into()));
     desk.until("it is open", |studio| studio.devices().len() == 2);
-    assert_eq!(desk.encoder().session.place(), home.join("rel.ron").display().to_string());
+    assert_eq!(desk.encoder().session.data_source(), home.join("rel.ron").display().to_string());
 }
 
 /// Issue 22.24: a link to a recording leads to the same file at the next start, from any folder.
@@ -407,5 +408,5 @@ fn a_link_to_a_recording_is_remembered_with_its_full_path() {
     let mut desk = Desk::fresh("");
     desk.open("replay:monday.trace");
     let expected = format!("replay:{}", desk.outside.path("work").join("monday.trace").display());
-    assert_eq!(desk.encoder().session.place(), expected);
+    assert_eq!(desk.encoder().session.data_source(), expected);
 }

@@ -25,11 +25,11 @@ fn own(desk: &Desk) -> Of {
 }
 
 fn recorder(desk: &Desk) -> &Recorder {
-    desk.encoder().record().recorder()
+    desk.encoder().recording().recorder()
 }
 
 fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Series {
-    recorder.lines().iter().find(|line| line.heading == name).unwrap()
+    recorder.series().iter().find(|line| line.heading == name).unwrap()
 }
 
 /// Returns the least and the greatest value in the complete recording of a line, in its unit.
@@ -163,7 +163,7 @@ fn watched_values_are_recorded_with_the_position() {
     }
     desk.command(FAST);
     desk.until("the counter has come", |studio| {
-        let recorder = &studio.hiperface().unwrap().record().recorder();
+        let recorder = &studio.hiperface().unwrap().recording().recorder();
         recorder.history(line(recorder, "counter")).is_some_and(|history| history.indices().end > 0)
     });
     let recording = recorder(&desk);
@@ -172,7 +172,7 @@ fn watched_values_are_recorded_with_the_position() {
     assert_eq!(absent.remark.as_ref().unwrap().id(), "recorder.absent", "said where it would stand");
     assert!(line(recording, "temperature").remark.is_none());
     desk.ask(Hiperface::Watch(Watch::Counter, false));
-    assert!(recorder(&desk).lines().iter().all(|line| line.heading != "counter"));
+    assert!(recorder(&desk).series().iter().all(|line| line.heading != "counter"));
     // Watched values remain after the cable is pulled.
     assert_eq!(desk.encoder().record.watched(), [Watch::Analogue(0x48), Watch::Analogue(0x07)]);
 }

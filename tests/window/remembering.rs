@@ -40,7 +40,7 @@ fn theme_language_layout_and_links_are_remembered() {
     let desk = desk.crash();
     assert_eq!(desk.studio.settings, settings);
     assert_eq!(
-        settings.links(crate::tabs::HIPERFACE),
+        settings.links_of(crate::tabs::HIPERFACE),
         [format!("serial:{OTHER_PORT}"), format!("serial:{PORT}"), "sim:".to_owned()]
     );
     assert_eq!(
@@ -56,7 +56,7 @@ fn a_link_that_did_not_open_is_not_remembered() {
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
     assert_eq!(desk.notice_ids(Severity::Error), ["link.not_found"]);
-    assert!(desk.studio.settings.links(crate::tabs::HIPERFACE).is_empty());
+    assert!(desk.studio.settings.links_of(crate::tabs::HIPERFACE).is_empty());
 }
 
 #[test]
@@ -70,10 +70,10 @@ fn broken_settings_are_reported_and_kept_until_a_change() {
         desk.settle();
         assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_broken"]);
         let aside = desk.outside.path("config/settings.ron.broken");
-        let words = desk.studio.services.log.standing().unwrap().texts[0].words(Language::English);
+        let words = desk.studio.services.log.current().unwrap().texts[0].to_string_in(Language::English);
         assert!(words.contains(&path.display().to_string()) && words.contains(&aside.display().to_string()), "{words}");
         let language = if broken.starts_with(b"(") { Language::German } else { Language::English };
-        let mut expected = Settings::of(encoder_studio::kinds::program().studio);
+        let mut expected = Settings::initial(encoder_studio::kinds::program().studio);
         expected.language = language;
         assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
@@ -102,7 +102,7 @@ fn unreadable_settings_are_not_overwritten() {
 fn settings_that_load_late_apply_and_are_not_overwritten() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
-    let mut settings = Settings::of(encoder_studio::kinds::program().studio);
+    let mut settings = Settings::initial(encoder_studio::kinds::program().studio);
     (settings.theme, settings.size) = (ColorScheme::Light, Some((1500, 900)));
     settings.use_link(crate::tabs::HIPERFACE, "tcp:host:1");
     fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -115,7 +115,7 @@ fn settings_that_load_late_apply_and_are_not_overwritten() {
     fs::write(&path, settings.emit()).unwrap();
     fs::remove_file(&path).unwrap();
     desk.until("they are read", |studio| studio.settings.theme == ColorScheme::Light);
-    assert!(desk.studio.services.log.standing().is_none(), "they are here");
+    assert!(desk.studio.services.log.current().is_none(), "they are here");
     settings.language = Language::German;
     assert_eq!(desk.studio.settings, settings);
     kept(&mut desk);
@@ -126,7 +126,7 @@ fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
     let mut desk = Desk::fresh("codes=0:9D");
     desk.open("sim:?codes=0:9D&margin=21");
     desk.until_read();
-    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), ["sim:?margin=21"]);
+    assert_eq!(desk.studio.settings.links_of(crate::tabs::HIPERFACE), ["sim:?margin=21"]);
     kept(&mut desk);
     let log = crate::support::log(&desk.studio);
     assert!(!log.contains("9D"), "{log}");
@@ -138,7 +138,7 @@ fn unwritable_settings_are_reported_once() {
     fs::write(desk.outside.path("config"), "a file in the way").unwrap();
     for theme in [ColorScheme::Light, ColorScheme::Dark, ColorScheme::Light] {
         desk.act(Action::SetTheme(theme));
-        desk.until("it is told", |studio| studio.services.log.standing().is_some());
+        desk.until("it is told", |studio| studio.services.log.current().is_some());
         desk.settle();
     }
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_not_kept"]);

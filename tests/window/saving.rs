@@ -24,7 +24,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("own.ron");
     fs::write(&path, text).unwrap();
-    desk.studio.begin(None, Some(path.clone()));
+    desk.studio.start_with(None, Some(path.clone()));
     desk.until("it is open", is_open);
     desk.settle();
     (desk, path)
@@ -94,7 +94,7 @@ fn saving_over_a_changed_file_asks_first() {
     let (mut desk, path) = begun();
     let rows = desk.studio.diverged.as_ref().unwrap().rows().to_vec();
     let told: Vec<(String, ChangedSide, Option<Side>)> =
-        rows.iter().map(|row| (row.place(), row.changed, row.take)).collect();
+        rows.iter().map(|row| (row.location(), row.changed, row.take)).collect();
     let expected = [
         ("note".to_owned(), ChangedSide::There, Some(Side::Theirs)),
         ("fields[number: 0].bytes[0]".to_owned(), ChangedSide::Both, None),
@@ -161,7 +161,7 @@ fn only_changed_values_count_as_a_difference() {
     save(&mut desk);
     desk.until("it is asked", is_asked);
     let diverged = desk.studio.diverged.as_ref().unwrap();
-    assert_eq!(diverged.problem().unwrap().id(), "profile.invalid");
+    assert_eq!(diverged.problem_text().unwrap().id(), "profile.invalid");
     assert!(!diverged.can_reload() && !diverged.can_merge() && diverged.can_overwrite_file());
     desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.until("it is saved", is_saved);
@@ -190,7 +190,7 @@ fn saving_asks_before_losing_comments() {
     desk.until("it is asked", |studio| studio.question.is_some());
     let question = desk.studio.question.as_ref().unwrap();
     assert_eq!(question.text.id(), "question.comments");
-    let words = question.text.words(encoder_studio::app::Language::English);
+    let words = question.text.to_string_in(encoder_studio::app::Language::English);
     assert!(words.contains("name plate") && !words.contains("the motor"), "{words}");
     assert_eq!(file_text(&path), text);
     desk.act(Action::Escape);
@@ -219,9 +219,9 @@ fn a_save_settles_the_notices_of_its_own_document() {
     desk.put(0, 0, b"X");
     desk.until_kept();
     let mut desk = desk.crash();
-    desk.studio.begin(None, Some(path.clone()));
+    desk.studio.start_with(None, Some(path.clone()));
     let stands = |studio: &Studio, id: &str| {
-        studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == id))
+        studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == id))
     };
     desk.until("the edits are back", |studio| stands(studio, "session.draft_back"));
     save(&mut desk);
@@ -233,8 +233,8 @@ fn a_save_settles_the_notices_of_its_own_document() {
     let nowhere = desk.outside.path("no/where.ron");
     desk.act(Action::Chosen(FileQuestion::Save { session, suggested }, nowhere));
     desk.until("it is told", |studio| stands(studio, "session.not_saved"));
-    assert_eq!(desk.studio.services.log.standing().unwrap().severity, Severity::Error);
-    assert_eq!(desk.studio.services.log.standing().unwrap().texts[0].id(), "file.no_folder");
+    assert_eq!(desk.studio.services.log.current().unwrap().severity, Severity::Error);
+    assert_eq!(desk.studio.services.log.current().unwrap().texts[0].id(), "file.no_folder");
     save(&mut desk);
     desk.until("it is saved", |studio| stands(studio, "session.saved"));
 
@@ -257,7 +257,7 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
         parameters: (steps: 3600, revolutions: 1, direction: \"cw\", preset: 0, zero_shift: 0),\n\
         programs: [(program: 1, mask: 1, cams: [(cam: 0, start: 3000, stop: 3500)])],\n)\n";
     fs::write(&path, text).unwrap();
-    desk.studio.begin(None, Some(path.clone()));
+    desk.studio.start_with(None, Some(path.clone()));
     desk.until("it is open", |studio| studio.interbus().is_some());
     desk.settle();
     let own = |desk: &Desk| desk.studio.interbus().unwrap().session.id;
@@ -271,7 +271,7 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     assert_eq!(desk.studio.interbus().unwrap().visible_marks(Some(shown)).len(), 1, "once, wherever it is shown");
     save(&mut desk);
     desk.until("it is saved", |studio| !studio.selected_device().unwrap().is_dirty());
-    let standing = desk.studio.services.log.standing().unwrap();
+    let standing = desk.studio.services.log.current().unwrap();
     let ids: Vec<_> = standing.texts.iter().map(|text| text.id()).collect();
     assert_eq!((standing.severity, ids), (Severity::Warning, vec!["session.saved", "cams.mark_beyond"]));
     assert_eq!(file_text(&path), text.replace("steps: 3600", "steps: 1800"));
@@ -310,7 +310,7 @@ fn restored_edits_keep_changes_by_others() {
             if crashes {
                 desk = desk.crash();
                 fs::write(&path, &theirs).unwrap();
-                desk.studio.begin(None, Some(path.clone()));
+                desk.studio.start_with(None, Some(path.clone()));
             } else {
                 fs::write(&path, &theirs).unwrap();
                 desk.act(Action::Open(path.clone()));
@@ -339,7 +339,7 @@ fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     let path = desk.outside.path("own.ron");
     fs::write(&path, text).unwrap();
     let is_open = |studio: &Studio| studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline);
-    desk.studio.begin(None, Some(path.clone()));
+    desk.studio.start_with(None, Some(path.clone()));
     desk.until("it is open", is_open);
     desk.settle();
     let id = desk.studio.selected_device().unwrap().id();
@@ -349,7 +349,7 @@ fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     until_kept(&mut desk);
     let mut desk = desk.crash();
     fs::write(&path, &theirs).unwrap();
-    desk.studio.begin(None, Some(path.clone()));
+    desk.studio.start_with(None, Some(path.clone()));
     let problem = |studio: &Studio| studio.ssi().and_then(|own| own.designer.problem()).map(|own| own.id());
     desk.until("it is told", |studio| problem(studio) == Some("ssi.draft_unfit"));
     assert!(is_open(&desk.studio) && !desk.studio.selected_device().unwrap().is_dirty());
@@ -371,7 +371,7 @@ fn a_draft_of_a_complete_layout_still_opens() {
     let whole = text.replace("preset: 7", "preset: 11").replace('"', "\\\"").replace('\n', "");
     fs::write(draft, format!("[\"{whole}\"]")).unwrap();
     let mut desk = desk;
-    desk.studio.begin(None, Some(path));
+    desk.studio.start_with(None, Some(path));
     desk.until("the edit is back", |studio| studio.selected_device().is_some_and(AnyDevice::is_dirty));
     assert_eq!(desk.studio.ssi().unwrap().design().profile.preset, 11);
 }

@@ -35,7 +35,7 @@ impl Screen {
     /// Opens a window that begins with this link, or else with the virtual encoder.
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
-        studio.begin(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
+        studio.start_with(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
         only_master(&mut studio);
         Self::of(outside, studio, size)
     }
@@ -118,11 +118,11 @@ impl Screen {
     }
 
     pub(crate) fn say(&self, id: &'static str) -> String {
-        crate::texts::text(id).words(self.language())
+        crate::texts::text(id).to_string_in(self.language())
     }
 
     pub(crate) fn words(&self, text: &Text) -> String {
-        text.words(self.language())
+        text.to_string_in(self.language())
     }
 
     /// Returns the button of that name; if there are several, the last drawn one is on top.

@@ -19,7 +19,7 @@ const SMALL: [f32; 2] = [1024.0, 640.0];
 fn usual(query: &str, link: Option<&str>) -> Desk {
     let outside = Outside::new(query);
     let mut desk = Desk { studio: outside.usual_studio(), outside };
-    desk.studio.begin(link.map(|link| link.parse().unwrap()), None);
+    desk.studio.start_with(link.map(|link| link.parse().unwrap()), None);
     only_master(&mut desk.studio);
     desk
 }
@@ -70,7 +70,7 @@ fn nothing_that_can_be_clicked_moves_when_a_message_or_a_job_comes() {
         // A notice.
         screen.command(DeviceCommand::AskSave);
         screen.act(Action::Open("/no/such/profile.ron".into()));
-        screen.until("it is told", |studio| studio.services.log.standing().is_some());
+        screen.until("it is told", |studio| studio.services.log.current().is_some());
         assert!(screen.has_button("shell.dismiss"));
         assert_eq!(places(&screen, &ids), before, "a notice");
         // A job, beside the notice and without it.
@@ -144,7 +144,7 @@ fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     let Desk { studio, outside } = desk;
     drop(studio);
     let mut desk = Desk { studio: outside.usual_studio(), outside };
-    desk.studio.begin(None, None);
+    desk.studio.start_with(None, None);
     desk.until_read();
     assert!(!is_live(&desk.studio));
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(20))));
@@ -271,9 +271,9 @@ fn the_trace_is_searched_and_paused() {
     // Paused, the list stays as it is.
     let before = count(&screen, read_position);
     screen.click("trace.follow");
-    let frames = screen.encoder().session.trace.end();
+    let frames = screen.encoder().session.trace.next_number();
     screen.command(DeviceCommand::ReadPosition);
-    screen.until("another position", |studio| studio.hiperface().unwrap().session.trace.end() >= frames + 2);
+    screen.until("another position", |studio| studio.hiperface().unwrap().session.trace.next_number() >= frames + 2);
     screen.steps();
     assert_eq!(count(&screen, read_position), before);
     assert!(screen.shows("Newer frames") || screen.shows("Neuere"));

@@ -147,7 +147,7 @@ fn an_unreadable_table_names_the_row_and_keeps_the_view() {
     desk.open_capture(&PathBuf::from("/nowhere/at.all.csv"));
     assert_eq!(desk.problem(), "file.not_found");
     assert!(desk.notice_ids(Severity::Error).contains(&"signal.empty"), "the log keeps it");
-    assert!(desk.studio.services.log.standing().is_none(), "it stands beside its cause");
+    assert!(desk.studio.services.log.current().is_none(), "it stands beside its cause");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     assert!(desk.studio.signals().problem().is_none());
@@ -403,7 +403,7 @@ fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     let recorder = |studio: &Studio| {
-        studio.recorder(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded()
+        studio.recorder_of(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded_span()
     };
     let (from, to) = recorder(&desk.studio).unwrap();
     // 401 rows with a header: 400 samples 5 µs apart.

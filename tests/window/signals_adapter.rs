@@ -22,8 +22,8 @@ fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
 
 /// Returns the number of samples in the scope, and the number of gaps between them; the first of all counts as one.
 fn recorded(studio: &Studio) -> (u64, usize) {
-    let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
-    let history = recorder.history(&recorder.lines()[0]).unwrap();
+    let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
+    let history = recorder.history(&recorder.series()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
     (history.indices().end, history.indices().filter(is_break).count())
 }
@@ -45,7 +45,7 @@ fn the_virtual_adapter_is_measured_like_a_capture() {
         measurement.levels_v.is_none() && measurement.capture.wires.is_none(),
         "there are two signals, not four wires"
     );
-    assert_eq!(desk.studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap().lines().len(), 3);
+    assert_eq!(desk.studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap().series().len(), 3);
     let streaming = signals.source().streaming_adapter().unwrap();
     assert_eq!((streaming.period_ns, streaming.full_scale_microvolt), (20_000, 1_250_000));
     assert_eq!((signals.source().lost_samples(), signals.source().kind()), (0, SourceKind::Adapter));
@@ -139,8 +139,8 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
 fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");
     let amplitude = |studio: &Studio| {
-        let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
-        let vector = recorder.lines().iter().find(|line| line.name.id() == "scope.vector").unwrap();
+        let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
+        let vector = recorder.series().iter().find(|line| line.name.id() == "scope.vector").unwrap();
         let last = recorder.history(vector).unwrap().indices().end.checked_sub(1)?;
         Some(recorder.history(vector).unwrap().sample(vector.column(), last)?.value.to_f64())
     };
@@ -170,7 +170,11 @@ fn a_source_keeps_running_until_a_valid_one_replaces_it() {
     desk.until("it is measured", |studio| {
         studio.signals().measurement().is_some_and(|own| own.origin == Origin::Virtual)
     });
-    assert_eq!(desk.studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap().lines().len(), 7, "the wires are back");
+    assert_eq!(
+        desk.studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap().series().len(),
+        7,
+        "the wires are back"
+    );
 }
 
 #[test]

@@ -12,8 +12,8 @@ use crate::support::Desk;
 
 /// Returns the number of samples in the scope, and the positions of the gaps.
 fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
-    let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
-    let history = recorder.history(&recorder.lines()[0]).unwrap();
+    let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
+    let history = recorder.history(&recorder.series()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
     (history.indices().end, history.indices().filter(is_break).collect())
 }

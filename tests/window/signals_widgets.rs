@@ -188,7 +188,7 @@ fn the_virtual_encoder_is_started_set_held_and_stopped() {
         assert!(screen.shows(&screen.say("shell.virtual")) && screen.shows(&screen.say("virtual.running")));
         screen.click("virtual.settings");
         screen.check_signals_pages();
-        let slider = screen.words(&encoder_studio::app::explain::signal::quantity(Quantity::Noise));
+        let slider = screen.words(&encoder_studio::app::explain::signal::setting_name(Quantity::Noise));
         assert!(screen.harness.query_all_by_role_and_label(egui::Role::Slider, &slider).next().is_some());
         screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));
         assert!(screen.shows("Amplitude: 7 is outside the range from 0 to 2 V."));

@@ -25,10 +25,10 @@ fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
     assert_eq!(identity.memory, Some(FreeMemory { blocks: 110, fields: 1 }));
     assert_eq!(encoder.field(0).unwrap().bytes.as_ref().unwrap()[..6], *b"EMD71K");
     assert_eq!(encoder.counter, Some(0));
-    assert_eq!(encoder.session.line().unwrap().polling(), None);
+    assert_eq!(encoder.session.live_session().unwrap().polling_interval(), None);
     assert!(!desk.studio.can_stop() && !desk.studio.is_live());
     assert!(desk.notice_ids(Severity::Warning).is_empty());
-    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), ["sim:"]);
+    assert_eq!(desk.studio.settings.links_of(crate::tabs::HIPERFACE), ["sim:"]);
 }
 
 #[test]

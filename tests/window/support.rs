@@ -3,7 +3,7 @@
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
-use encoder_studio::app::{Given, LinkOpener};
+use encoder_studio::app::{LinkOpener, TypeMap};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -120,8 +120,8 @@ impl Outside {
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         let novos = self.wires.clone();
         StudioEnvironment {
-            given: Given::default()
-                .with(LinkOpener::new(move |url, store| {
+            given: TypeMap::default()
+                .with_value(LinkOpener::new(move |url, store| {
                     let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
                     let way = if url.scheme == LinkScheme::Bridge { Transport::Adapter } else { Transport::ConfigPin };
                     let station =
@@ -129,13 +129,13 @@ impl Outside {
                     let link = Box::new(TestLink::plug_into(wire)?);
                     Ok(Session::over(link, wire.clock(), station, store, None))
                 }))
-                .with(LinkOpener::new(move |url, store| {
+                .with_value(LinkOpener::new(move |url, store| {
                     let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
                     let station =
                         encoder_studio::devices::interbus::procedures::Station::from_query(&url.query, MARGIN)?;
                     Ok(Session::for_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
                 }))
-                .with(LinkOpener::new(move |url, store| {
+                .with_value(LinkOpener::new(move |url, store| {
                     if url.scheme == LinkScheme::Sim {
                         return crate::unhurried::open(url, store);
                     }
@@ -146,11 +146,11 @@ impl Outside {
                     let way = hiperdrive::DeviceConnection { wire: link, port: None, station, target: None };
                     Ok(Session::for_target(way, wire.clock(), store))
                 }))
-                .with(LinkOpener::new(move |url, store| {
+                .with_value(LinkOpener::new(move |url, store| {
                     let Some(wire) = novos.get(&url.target) else { return crate::novo::jobs::open(url, store) };
                     Ok(Session::with(Novo(Box::new(TestLink::plug_into(wire)?)), wire.clock(), store, false))
                 }))
-                .with(LinkOpener::new(move |url, store| {
+                .with_value(LinkOpener::new(move |url, store| {
                     if url.to_string() == HANGING {
                         loop {
                             std::thread::park();
@@ -168,11 +168,11 @@ impl Outside {
                     let is_virtual = url.scheme == LinkScheme::Sim;
                     Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
                 }))
-                .with(DiscoveryStub::new(move || Ok(found.clone()))),
+                .with_value(DiscoveryStub::new(move || Ok(found.clone()))),
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
             folders: BaseFolders::at(&self.path("work"), &self.path("home")),
-            ..StudioEnvironment::real(self.store(), self.program.studio)
+            ..StudioEnvironment::production(self.store(), self.program.studio)
         }
     }
 
@@ -202,8 +202,8 @@ pub(crate) struct Desk {
 impl Desk {
     /// Returns the samples of the position that are recorded without a value to believe.
     pub(crate) fn bad_positions(&self) -> u64 {
-        let recorder = &self.encoder().record().recorder();
-        let history = recorder.history(&recorder.lines()[0]).unwrap();
+        let recorder = &self.encoder().recording().recorder();
+        let history = recorder.history(&recorder.series()[0]).unwrap();
         history.statistics(0, history.indices()).map_or(0, |statistics| statistics.bad)
     }
 
@@ -238,7 +238,7 @@ impl Desk {
     /// Creates one that is connected to the virtual encoder, which is read.
     pub(crate) fn new_form(query: &str) -> Self {
         let mut desk = Self::fresh(query);
-        desk.studio.begin(None, None);
+        desk.studio.start_with(None, None);
         desk.until_read();
         desk
     }
@@ -263,13 +263,13 @@ impl Desk {
     }
 
     pub(crate) fn open(&mut self, link: &str) {
-        self.studio.begin(Some(link.parse::<LinkUrl>().unwrap()), None);
+        self.studio.start_with(Some(link.parse::<LinkUrl>().unwrap()), None);
         only_master(&mut self.studio);
     }
 
     pub(crate) fn act(&mut self, action: Action) {
         let began = Instant::now();
-        self.studio.act(action);
+        self.studio.handle_action(action);
         only_master(&mut self.studio);
         assert!(began.elapsed() < LONG, "an action made the window wait");
     }
@@ -388,7 +388,7 @@ impl Desk {
     /// Consents to the plan that is shown.
     pub(crate) fn write_as_shown(&mut self) {
         let nothing = HiperfacePlan { base: Base::default(), ops: Vec::new() };
-        let shown = self.encoder().session.review.as_ref().and_then(Review::prepared);
+        let shown = self.encoder().session.review.as_ref().and_then(Review::prepared_plan);
         let id = shown.map_or(nothing.id(), |prepared| prepared.plan.id());
         self.ask(Hiperface::Write(id));
     }
@@ -424,7 +424,7 @@ impl Desk {
 /// question is tested in `connecting`.
 pub(crate) fn only_master(studio: &mut Studio) {
     if asks_for_drive(studio) {
-        studio.act(Action::Confirm);
+        studio.handle_action(Action::Confirm);
     }
 }
 

@@ -61,7 +61,7 @@ impl Tabs for Studio {
     }
 
     fn signals(&self) -> &Signals {
-        self.tool().expect("there is a Signals tab")
+        self.tool_as().expect("there is a Signals tab")
     }
 }
 
@@ -87,10 +87,10 @@ pub(crate) fn choose_answer(at: usize) -> ConnectAction {
 
 /// Returns the search of a dialog.
 pub(crate) fn search(dialog: &ConnectDialog) -> Option<&Search> {
-    dialog.finder::<EncoderSearchForm>()?.search.as_ref()
+    dialog.finder_as::<EncoderSearchForm>()?.search.as_ref()
 }
 
 /// Returns the question to the network of a dialog.
 pub(crate) fn discovery(dialog: &ConnectDialog) -> Option<&Discovery> {
-    dialog.finder::<DiscoveryFinder>()?.discovery.as_ref()
+    dialog.finder_as::<DiscoveryFinder>()?.discovery.as_ref()
 }

@@ -63,7 +63,7 @@ pub(crate) fn check(text: &Text) {
             assert!(arguments.contains(&format!("(\"{place}\", ")), "{} has nothing for {place}", text.id());
         }
     }
-    for words in [text.words(Language::English), text.words(Language::German), text.terminal_text()] {
+    for words in [text.to_string_in(Language::English), text.to_string_in(Language::German), text.terminal_text()] {
         assert!(!words.is_empty() && !words.contains('{'), "{}: {words}", text.id());
     }
 }
@@ -77,7 +77,7 @@ fn check_notice(notice: &Notice) {
 #[track_caller]
 pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.notices().for_each(check_notice);
-    studio.services.log.standing().iter().for_each(|notice| check_notice(notice));
+    studio.services.log.current().iter().for_each(|notice| check_notice(notice));
     for job in studio.services.jobs() {
         check(&job.title);
         if let JobState::Failed(why) = &job.end {
@@ -122,7 +122,7 @@ fn check_encoder(encoder: &Encoder) {
     if let ReviewState::Failed { texts, .. } = &review.state {
         texts.iter().for_each(check);
     }
-    let sheet = review.sheet(0);
+    let sheet = review.to_sheet(0);
     sheet.lines.iter().flat_map(OperationTexts::texts).for_each(check);
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }

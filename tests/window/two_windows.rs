@@ -98,7 +98,7 @@ fn changes_of_each_window_survive_the_others_write() {
     let kept = found(&first);
     assert_eq!((kept.theme, kept.language, kept.size), (ColorScheme::Light, Language::German, Some((1500, 900))));
     assert_eq!(kept.layout.as_deref(), Some("(a layout)"));
-    let mut links = kept.links(crate::tabs::HIPERFACE).to_vec();
+    let mut links = kept.links_of(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     assert_eq!(links, ["tcp:first:1", "tcp:second:1"]);
     // Nothing changes while the user works.
@@ -123,7 +123,7 @@ fn limits_marked_by_another_window_are_locked() {
     assert_eq!(unit(&second).may_move(ONE).unwrap_err().id(), "hd_lock.limits");
     second.act(Action::SetTheme(ColorScheme::Light));
     poll_both_until([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["Light"]));
-    bystander.act(Action::SetLanguage(Language::German));
+    bystander.handle_action(Action::SetLanguage(Language::German));
     first.until("that is kept", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains("German")));
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
     with_drives(&mut later);
@@ -193,7 +193,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
 
 fn studio_of_process() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
-    let world = StudioEnvironment::real(Store::at(folder.as_ref()), program().studio);
+    let world = StudioEnvironment::production(Store::at(folder.as_ref()), program().studio);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
 }
 
@@ -221,7 +221,7 @@ fn concurrent_processes_lose_no_settings() {
     for mut window in windows {
         assert!(window.wait().unwrap().success());
     }
-    let mut links = found(&desk).links(crate::tabs::HIPERFACE).to_vec();
+    let mut links = found(&desk).links_of(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     let expected = ["one", "two"].iter().flat_map(|name| (0..6).map(move |number| format!("tcp:{name}:{number}")));
     assert_eq!(links, expected.collect::<Vec<_>>());
@@ -232,7 +232,7 @@ fn concurrent_processes_lose_no_settings() {
 fn process_writing_forever() {
     let (mut studio, name) = studio_of_process();
     for number in 0_u32.. {
-        studio.act(Action::KeepSize(number, 900));
+        studio.handle_action(Action::KeepSize(number, 900));
         studio.settings.use_link(crate::tabs::BISS, &format!("tcp:{name}:{}", number % 7));
         studio.poll();
     }
@@ -257,7 +257,7 @@ fn a_killed_process_leaves_a_complete_file_and_no_lock() {
         let text = fs::read_to_string(&path).unwrap();
         let kept = Settings::parse(&text).expect("a whole file");
         assert!(
-            kept.size.is_some() && kept.links(crate::tabs::BISS).iter().all(|link| link.starts_with("tcp:killed:"))
+            kept.size.is_some() && kept.links_of(crate::tabs::BISS).iter().all(|link| link.starts_with("tcp:killed:"))
         );
         let layout = format!("(layout {round})");
         desk.act(Action::KeepLayout(layout.clone()));

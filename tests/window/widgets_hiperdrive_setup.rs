@@ -85,11 +85,11 @@ fn an_address_is_typed_checked_and_written() {
     assert!(screen.shows("The device uses the stored address 192.168.5.20."));
     screen.click("hd_net.write");
     screen.until("the plan is there", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
             && studio.hiperdrive().unwrap().session.is_ready()
     });
     // The dialog shows it too, above the form.
-    let sheet = screen.studio().selected_device().unwrap().sheet().unwrap();
+    let sheet = screen.studio().selected_device().unwrap().review_sheet().unwrap();
     let warned = |text: &Text| {
         text.terminal_text().contains("At the next power-up") && text.terminal_text().contains("192.168.5.20")
     };
@@ -153,7 +153,7 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     // The review shows it in millimetres, each with its own scale, old and new on one line.
     screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("there is a plan", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));
@@ -252,11 +252,11 @@ fn stop_is_reachable_over_a_dialog() {
         studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
     });
     act(&mut screen, Hiperdrive::Drive(Motor::Move { target: 30_000_000 }));
-    screen.until("it moves", Studio::moves);
+    screen.until("it moves", Studio::is_moving);
     screen.act(Action::Connect(connect::ConnectAction::Open));
-    assert!(screen.studio().connect.is_some() && screen.studio().moves(), "a move goes on under a dialog");
+    assert!(screen.studio().connect.is_some() && screen.studio().is_moving(), "a move goes on under a dialog");
     screen.click("hd_bar.stop");
-    screen.until("it stands", |studio| !studio.moves());
+    screen.until("it stands", |studio| !studio.is_moving());
     let own = screen.studio().hiperdrive().unwrap();
     assert!(own.actual(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }

@@ -74,7 +74,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     outside.wire(KIT).enter(&[("0x6B", 0x2A), ("0x6A", 0x04), ("0x00:0x1A", 0x02), ("0x24:0x10", 0x5A)]);
     let mut studio = outside.studio();
     studio.settings.tab = crate::tabs::BISS;
-    studio.begin(Some(format!("serial:{KIT}").parse().unwrap()), None);
+    studio.start_with(Some(format!("serial:{KIT}").parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, SMALL);
     let is_read = |studio: &Studio| studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some());
     screen.until("the encoder is read", is_read);
@@ -255,7 +255,7 @@ fn the_connect_dialog_opens_by_click_and_closes_with_escape() {
             .type_text("serial:/dev/enc7");
         screen.steps();
         assert!(screen.is_enabled("connect.connect"));
-        assert_eq!(screen.studio().connect.as_ref().unwrap().form::<LinkForm>().unwrap().port, "/dev/enc7");
+        assert_eq!(screen.studio().connect.as_ref().unwrap().form_as::<LinkForm>().unwrap().port, "/dev/enc7");
         screen.key(Key::Escape);
         assert!(screen.studio().connect.is_none());
         assert!(!screen.shows(&screen.say("connect.title")));

@@ -27,7 +27,7 @@ fn recorded() -> Screen {
 }
 
 fn recorder(screen: &Screen) -> &Recorder {
-    screen.encoder().record().recorder()
+    screen.encoder().recording().recorder()
 }
 
 fn chart(screen: &Screen) -> Rect {
@@ -60,15 +60,15 @@ fn drag(screen: &mut Screen, button: PointerButton, from: Pos2, to: Pos2) {
 #[test]
 fn the_plot_pauses_and_continues() {
     let mut screen = recorded();
-    assert!(recorder(&screen).follows());
+    assert!(recorder(&screen).follows_newest());
     screen.click("recorder.pause");
-    assert!(!recorder(&screen).follows());
+    assert!(!recorder(&screen).follows_newest());
     screen.click("recorder.follow");
-    assert!(recorder(&screen).follows());
+    assert!(recorder(&screen).follows_newest());
     screen.click("recorder.fit");
-    let (first, last) = recorder(&screen).recorded().unwrap();
-    let (from, to) = recorder(&screen).window();
-    assert!(from <= first && to >= last && !recorder(&screen).follows());
+    let (first, last) = recorder(&screen).recorded_span().unwrap();
+    let (from, to) = recorder(&screen).window_bounds();
+    assert!(from <= first && to >= last && !recorder(&screen).follows_newest());
     screen.click("recorder.export");
     screen.click("live.clear");
     assert!(recorder(&screen).is_empty());
@@ -78,24 +78,24 @@ fn the_plot_pauses_and_continues() {
 fn dragging_zooms_into_a_box_and_a_double_click_shows_all() {
     let mut screen = recorded();
     screen.click("recorder.fit");
-    let (whole_from, whole_to) = recorder(&screen).window();
+    let (whole_from, whole_to) = recorder(&screen).window_bounds();
     let (from, to) = (inside(&screen, 0.25, 0.05), inside(&screen, 0.5, 0.06));
     drag(&mut screen, PointerButton::Primary, from, to);
-    let (from, to) = recorder(&screen).window();
+    let (from, to) = recorder(&screen).window_bounds();
     let share = to.seconds_since(from) / whole_to.seconds_since(whole_from);
     assert!(from > whole_from && to < whole_to && (0.15..0.35).contains(&share), "{share}");
-    let first = recorder(&screen).lines().first().unwrap();
+    let first = recorder(&screen).series().first().unwrap();
     assert_eq!(first.range, None, "a flat box is about time alone");
     let (a, b) = (inside(&screen, 0.2, 0.1), inside(&screen, 0.6, 0.35));
     drag(&mut screen, PointerButton::Primary, a, b);
-    assert!(recorder(&screen).lines().first().unwrap().range.is_some());
+    assert!(recorder(&screen).series().first().unwrap().range.is_some());
     // Moved by the right button: the span is unchanged.
-    let span = recorder(&screen).span();
-    let before = recorder(&screen).window().0;
+    let span = recorder(&screen).window_length();
+    let before = recorder(&screen).window_bounds().0;
     let (a, b) = (inside(&screen, 0.2, 0.5), inside(&screen, 0.5, 0.5));
     drag(&mut screen, PointerButton::Secondary, a, b);
-    assert_eq!(recorder(&screen).span(), span);
-    assert!(recorder(&screen).window().0 < before, "what lay at the left came into sight");
+    assert_eq!(recorder(&screen).window_length(), span);
+    assert!(recorder(&screen).window_bounds().0 < before, "what lay at the left came into sight");
     let pos = inside(&screen, 0.5, 0.5);
     // Each event is a separate frame here, a quarter of a second after the one before.
     screen.harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 2.0);
@@ -106,8 +106,8 @@ fn dragging_zooms_into_a_box_and_a_double_click_shows_all() {
         screen.harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
     }
     screen.steps();
-    assert_eq!(recorder(&screen).window(), (whole_from, whole_to));
-    assert_eq!(recorder(&screen).lines().first().unwrap().range, None);
+    assert_eq!(recorder(&screen).window_bounds(), (whole_from, whole_to));
+    assert_eq!(recorder(&screen).series().first().unwrap().range, None);
 }
 
 fn switch_cursors(screen: &mut Screen) {
@@ -153,7 +153,7 @@ fn lines_can_be_hidden_and_shown_in_other_units() {
     let degrees = format!("{}: °", screen.say("recorder.position"));
     screen.harness.get_by_role_and_label(Role::RadioButton, &degrees).click();
     screen.steps();
-    assert_eq!(recorder(&screen).lines().first().unwrap().scale().unwrap().unit.id(), "unit.degrees");
+    assert_eq!(recorder(&screen).series().first().unwrap().scale().unwrap().unit.id(), "unit.degrees");
     let one_axis = screen.say("recorder.one_axis");
     screen.harness.get_by_role_and_label(Role::CheckBox, &one_axis).click();
     screen.steps();
@@ -178,7 +178,7 @@ fn a_trigger_can_be_set_armed_and_switched_off() {
         screen.click("trigger.arm");
         assert_eq!(recorder(&screen).trigger().is_some(), works, "{level:?}");
         if !works {
-            assert!(screen.shows(&crate::texts::text("trigger.no_level").words(Language::English)), "{level:?}");
+            assert!(screen.shows(&crate::texts::text("trigger.no_level").to_string_in(Language::English)), "{level:?}");
             screen.key(Key::Escape);
         }
     }
@@ -212,21 +212,21 @@ fn the_plot_can_be_enlarged_and_restored() {
 fn the_keyboard_moves_and_zooms() {
     let mut screen = recorded();
     screen.click("recorder.fit");
-    let whole = recorder(&screen).span();
+    let whole = recorder(&screen).window_length();
     let label = screen.say("recorder.chart");
     screen.harness.get_by_role_and_label(Role::Image, &label).focus();
     screen.steps();
     screen.key(Key::Plus);
-    assert!((recorder(&screen).span() - whole / 2).abs() <= 1);
-    let before = recorder(&screen).window().0;
+    assert!((recorder(&screen).window_length() - whole / 2).abs() <= 1);
+    let before = recorder(&screen).window_bounds().0;
     screen.key(Key::ArrowRight);
-    assert!(recorder(&screen).window().0 > before);
+    assert!(recorder(&screen).window_bounds().0 > before);
     screen.key(Key::A);
     assert!(recorder(&screen).cursor(Cursor::A).is_some());
     screen.key(Key::Home);
-    assert_eq!(recorder(&screen).span(), whole);
+    assert_eq!(recorder(&screen).window_length(), whole);
     screen.key(Key::End);
-    assert!(recorder(&screen).follows());
+    assert!(recorder(&screen).follows_newest());
 }
 
 #[test]

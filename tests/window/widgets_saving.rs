@@ -25,7 +25,7 @@ fn both_versions_are_shown_side_by_side() {
     let path = outside.path("own.ron");
     fs::write(&path, OWN).unwrap();
     let mut studio = outside.studio();
-    studio.begin(None, Some(path.clone()));
+    studio.start_with(None, Some(path.clone()));
     let mut screen = Screen::of(outside, studio, SIZE);
     screen.until("it is open", |studio| studio.hiperface().is_some());
     let put = |screen: &mut Screen, address, byte| {

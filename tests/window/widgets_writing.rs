@@ -134,7 +134,7 @@ fn stop_is_enabled_only_while_a_job_runs() {
     screen.steps();
     assert!(screen.is_enabled("shell.stop"));
     screen.click("shell.stop");
-    assert!(screen.encoder().session.line().unwrap().running().unwrap().stopping);
+    assert!(screen.encoder().session.live_session().unwrap().running_job().unwrap().stopping);
     screen.outside.wire(PORT).release();
     screen.until("it has ended", |studio| studio.hiperface().unwrap().session.is_ready());
     assert!(!screen.is_enabled("shell.stop"));
@@ -208,7 +208,7 @@ fn closing_with_edits_asks_and_can_be_declined() {
 fn a_notice_stays_until_dismissed() {
     let mut screen = Screen::new_form(SIZE);
     screen.act(Action::Open(screen.outside.path("none.ron")));
-    screen.until("it is told", |studio| studio.services.log.standing().is_some());
+    screen.until("it is told", |studio| studio.services.log.current().is_some());
     screen.click("shell.dismiss");
-    assert!(screen.studio().services.log.standing().is_none() && !screen.has_button("shell.dismiss"));
+    assert!(screen.studio().services.log.current().is_none() && !screen.has_button("shell.dismiss"));
 }

@@ -3,7 +3,7 @@
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::DeviceHistory;
-use encoder_studio::app::{Action, Done, Language, PendingEdits, Severity, Text};
+use encoder_studio::app::{Action, Language, PendingEdits, Severity, TaskResult, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
@@ -33,8 +33,8 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     let status = DataFieldStatus::from_byte(0xC9);
     let store = Op::Store { field: 0, address: 19, status, old: Some(vec![0x22]), new: vec![0x23] };
     assert_eq!(prepared.plan.ops, [store]);
-    let line = &desk.review().sheet(0).lines[0];
-    let words: Vec<String> = line.texts().map(|text| text.words(Language::German)).collect();
+    let line = &desk.review().to_sheet(0).lines[0];
+    let words: Vec<String> = line.texts().map(|text| text.to_string_in(Language::German)).collect();
     assert_eq!(words, ["Datenfeld 0, Byte 19", "22", "23"]);
     assert_eq!(desk.wire().wear(), 0, "looking is no writing");
 
@@ -170,7 +170,7 @@ fn consent_covers_only_the_plan_that_was_shown() {
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
-    let drawn = desk.review().prepared().unwrap().plan.id();
+    let drawn = desk.review().prepared_plan().unwrap().plan.id();
     desk.ask(Hiperface::CloseReview);
     desk.put(0, 1, b"Y");
     desk.command(DeviceCommand::Review);
@@ -278,11 +278,11 @@ fn late_results_for_another_encoder_are_dropped() {
         cycles: Some(0),
         statuses: Vec::new(),
     });
-    desk.act(Action::Done(Done::Listed(id, other.clone(), listed)));
+    desk.act(Action::Done(TaskResult::Listed(id, other.clone(), listed)));
     assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
     let document = Box::new(ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
-    desk.act(Action::Done(Done::Backup { session: id, of: other, path, result: Ok(document) }));
+    desk.act(Action::Done(TaskResult::Backup { session: id, of: other, path, result: Ok(document) }));
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
@@ -333,7 +333,7 @@ fn changes_against_the_field_rules_are_refused_with_a_reason() {
         "the button says the same"
     );
     assert_eq!(not_last, crate::texts::text("plan.not_last").with("field", 0).with("last", 1));
-    assert_ne!(not_last.words(Language::English), not_last.words(Language::German));
+    assert_ne!(not_last.to_string_in(Language::English), not_last.to_string_in(Language::German));
     assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: larger }), not_last);
     assert_eq!(rules::resize(memory, &first, larger, &desk.encoder().staged), Err(not_last));
 
@@ -394,7 +394,7 @@ fn a_protected_field_opens_with_its_code_and_keeps_edits_after_losing_it() {
     desk.put(0, 0, b"X");
 
     desk.wire().unplug();
-    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
+    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.live_session().is_none());
     desk.wire().plug();
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();
@@ -408,7 +408,7 @@ fn a_protected_field_opens_with_its_code_and_keeps_edits_after_losing_it() {
             .trace
             .lines()
             .iter()
-            .any(|line| line.bytes.contains("9D") || line.words(Language::English).contains("9D"))
+            .any(|line| line.bytes.contains("9D") || line.to_string_in(Language::English).contains("9D"))
     );
 
     // After a restart the code is not known: the draft waits for it.

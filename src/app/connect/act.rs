@@ -17,7 +17,7 @@ impl Studio {
                 let shown = || self.selected_device().map(|device| device.tab());
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
                 // The dialog begins with the link that was used last.
-                let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());
+                let last = |tab| self.settings.links_of(tab).first().and_then(|link| link.parse().ok());
                 self.connect = Some(ConnectDialog::new(kinds, device, last));
                 self.list_ports();
             }
@@ -30,14 +30,14 @@ impl Studio {
             }
             ConnectAction::Device(device) => {
                 self.end_finder();
-                self.edit(|connect| (connect.device, connect.typed) = (device, None));
+                self.edit_dialog(|connect| (connect.device, connect.typed) = (device, None));
                 self.list_ports();
             }
             ConnectAction::Edit(entries) => self.apply_entries(entries),
             ConnectAction::Find(action) => self.find(action),
-            ConnectAction::Use(link) => self.edit(|connect| connect.take(link)),
+            ConnectAction::Use(link) => self.edit_dialog(|connect| connect.set_typed_link(link)),
             ConnectAction::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
-            ConnectAction::Recording(path) => self.edit(|connect| {
+            ConnectAction::Recording(path) => self.edit_dialog(|connect| {
                 connect.forms_mut().for_each(|form| form.set_file(path.display().to_string()));
                 connect.typed = None;
             }),
@@ -50,7 +50,7 @@ impl Studio {
                         self.close_dialog();
                         self.open_link(device, url);
                     }
-                    Err(problem) => self.refuse(problem),
+                    Err(problem) => self.show_problem(problem),
                 }
             }
             ConnectAction::StopSearch => {
@@ -61,7 +61,7 @@ impl Studio {
         }
     }
 
-    fn edit(&mut self, edit: impl FnOnce(&mut ConnectDialog)) {
+    fn edit_dialog(&mut self, edit: impl FnOnce(&mut ConnectDialog)) {
         if let Some(connect) = &mut self.connect {
             edit(connect);
             connect.problem = None;
@@ -71,10 +71,10 @@ impl Studio {
     fn apply_entries(&mut self, entries: Payload) {
         let Some(connect) = &mut self.connect else { return };
         let form = connect.forms_mut().find(|form| form.accepts_entries(&entries));
-        if form.is_none_or(|form| form.edit(entries).is_err()) {
+        if form.is_none_or(|form| form.replace_entries(entries).is_err()) {
             return self.notify_wrong_kind(None);
         }
-        self.edit(|connect| connect.typed = None);
+        self.edit_dialog(|connect| connect.typed = None);
     }
 
     fn find(&mut self, action: Payload) {
@@ -89,7 +89,7 @@ impl Studio {
         let mut fills_in = Ok(false);
         self.with_form_context(tab, place, |form, context| fills_in = form.find(action, context));
         match fills_in {
-            Ok(true) => self.edit(|connect| connect.typed = None),
+            Ok(true) => self.edit_dialog(|connect| connect.typed = None),
             Ok(false) => {}
             Err(PayloadKindError) => self.notify_wrong_kind(None),
         }
@@ -99,7 +99,7 @@ impl Studio {
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &ConnectDialog| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
-            self.with_form_context(tab, place, |form, context| form.confirmed(context));
+            self.with_form_context(tab, place, |form, context| form.handle_confirmation(context));
         }
     }
 
@@ -143,11 +143,11 @@ impl Studio {
     /// Starts listing the serial ports. Ports previously used for the current kind of device come first.
     fn list_ports(&self) {
         if let Some(connect) = &self.connect {
-            list_ports(&self.services, self.settings.links(connect.device));
+            list_ports(&self.services, self.settings.links_of(connect.device));
         }
     }
 
-    fn refuse(&mut self, problem: Text) {
+    fn show_problem(&mut self, problem: Text) {
         if let Some(connect) = &mut self.connect {
             connect.problem = Some(problem);
         }
@@ -155,7 +155,7 @@ impl Studio {
 
     fn end_finder(&mut self) {
         if let Some(connect) = &mut self.connect {
-            connect.forms_mut().for_each(|form| drop(form.end(&mut self.services)));
+            connect.forms_mut().for_each(|form| drop(form.finish(&mut self.services)));
         }
     }
 

@@ -3,7 +3,7 @@
 use crossbeam_channel::Receiver;
 
 use crate::app::Text;
-use crate::app::question::{Question, Then};
+use crate::app::question::{FollowUpAction, Question};
 use crate::app::services::Services;
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
@@ -64,12 +64,14 @@ impl<'a> FinderContext<'a> {
     }
 
     /// Asks the user whether another master is on the line. The search continues if there is none.
-    pub fn ask_about_other_master_on_link(&mut self, url: &LinkUrl) {
-        self.studio.question =
-            Some(Question::other_master(self.studio.services.world.kinds.display_link(url), Then::Find(self.tab)));
+    pub fn ask_about_other_master(&mut self, url: &LinkUrl) {
+        self.studio.question = Some(Question::other_master(
+            self.studio.services.world.kinds.display_link(url),
+            FollowUpAction::Find(self.tab),
+        ));
     }
 
-    pub fn refuse(&mut self, problem: Text) {
+    pub fn show_problem(&mut self, problem: Text) {
         self.problem = Some(problem);
     }
 

@@ -20,7 +20,7 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
     type Finder: Finder<Form = Self>;
 
     /// Returns the link to the virtual device, with which the form begins.
-    fn usual() -> LinkUrl;
+    fn default_link() -> LinkUrl;
 
     /// Fills in a new form from a link.
     fn from_url(url: &LinkUrl) -> Self;
@@ -35,7 +35,7 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
     fn set_file(&mut self, _file: String) {}
 
     /// Returns an example link, shown as a hint.
-    fn example(&self) -> &'static str;
+    fn example_link(&self) -> &'static str;
 }
 
 /// A search for devices on a serial line or in the network, started from a connection form.
@@ -45,19 +45,19 @@ pub trait Finder: Default + 'static {
     /// The actions of the search.
     type Action: Any + Send;
     /// The results of the search tasks.
-    type Done: Any + Send;
+    type TaskResult: Any + Send;
 
     /// Executes an action of the search.
-    fn act(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
+    fn handle_action(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
     /// Handles the result of a task. `finder` is `None` if the dialog has been closed in the meantime.
-    fn done(finder: Option<&mut Self>, done: Self::Done, services: &mut Services);
+    fn handle_result(finder: Option<&mut Self>, done: Self::TaskResult, services: &mut Services);
 
     /// Continues the search after the user has confirmed that no other master is on the line.
-    fn confirmed(&mut self, _context: &mut FinderContext<'_>) {}
+    fn handle_confirmation(&mut self, _context: &mut FinderContext<'_>) {}
 
     /// Processes all events received since the last call.
-    fn pump(&mut self) {}
+    fn process_events(&mut self) {}
 
     /// Returns whether the search occupies the connection of the form.
     fn is_running(&self) -> bool {
@@ -68,7 +68,7 @@ pub trait Finder: Default + 'static {
     fn stop(&mut self) {}
 
     /// Ends the search and discards its results. If a channel is returned, the connection is free when it closes.
-    fn end(&mut self, _services: &mut Services) -> Option<Receiver<()>> {
+    fn finish(&mut self, _services: &mut Services) -> Option<Receiver<()>> {
         None
     }
 }
@@ -85,13 +85,13 @@ impl<F> Default for NoFinder<F> {
 impl<F: 'static> Finder for NoFinder<F> {
     type Form = F;
     type Action = std::convert::Infallible;
-    type Done = std::convert::Infallible;
+    type TaskResult = std::convert::Infallible;
 
-    fn act(&mut self, action: Self::Action, _form: &mut F, _context: &mut FinderContext<'_>) {
+    fn handle_action(&mut self, action: Self::Action, _form: &mut F, _context: &mut FinderContext<'_>) {
         match action {}
     }
 
-    fn done(_finder: Option<&mut Self>, done: Self::Done, _services: &mut Services) {
+    fn handle_result(_finder: Option<&mut Self>, done: Self::TaskResult, _services: &mut Services) {
         match done {}
     }
 }
@@ -99,9 +99,9 @@ impl<F: 'static> Finder for NoFinder<F> {
 /// The interface of a connection form for the dialog. It is implemented for every [`FormModel`].
 pub trait AnyForm {
     /// Returns the form for downcasting.
-    fn form(&self) -> &dyn Any;
+    fn as_any_form(&self) -> &dyn Any;
     /// Returns the finder for downcasting.
-    fn finder(&self) -> &dyn Any;
+    fn as_any_finder(&self) -> &dyn Any;
     /// Returns the finder for downcasting, mutably.
     fn finder_mut(&mut self) -> &mut dyn Any;
     /// Builds the link from the entries. Default values are omitted.
@@ -110,11 +110,11 @@ pub trait AnyForm {
     /// Returns a message that names the invalid entry and the allowed values.
     fn url(&self) -> Result<LinkUrl, Text>;
     /// Fills in the entries from a link.
-    fn take(&mut self, url: &LinkUrl);
+    fn fill_from_link(&mut self, url: &LinkUrl);
     /// Sets the path of a recording.
     fn set_file(&mut self, file: String);
     /// Returns an example link, shown as a hint.
-    fn example(&self) -> &'static str;
+    fn example_link(&self) -> &'static str;
     /// Returns whether the payload contains entries of this form.
     fn accepts_entries(&self, entries: &Payload) -> bool;
     /// Returns whether the payload contains an action of this form's finder.
@@ -123,42 +123,42 @@ pub trait AnyForm {
     ///
     /// # Errors
     /// Returns an error if the entries belong to a different kind of device.
-    fn edit(&mut self, entries: Payload) -> Result<(), PayloadKindError>;
+    fn replace_entries(&mut self, entries: Payload) -> Result<(), PayloadKindError>;
     /// Passes an action to the finder. Returns whether the finder has changed the form.
     ///
     /// # Errors
     /// Returns an error if the action belongs to a different kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError>;
     /// Continues the search after the user has confirmed that no other master is on the line.
-    fn confirmed(&mut self, context: &mut FinderContext<'_>);
+    fn handle_confirmation(&mut self, context: &mut FinderContext<'_>);
     /// Processes pending events of the finder.
-    fn pump(&mut self);
+    fn process_events(&mut self);
     /// Returns whether the finder occupies the connection.
     fn is_running(&self) -> bool;
     /// Stops the finder.
     fn stop(&mut self);
     /// Ends the search. If a channel is returned, the connection is free when it closes.
-    fn end(&mut self, services: &mut Services) -> Option<Receiver<()>>;
+    fn finish(&mut self, services: &mut Services) -> Option<Receiver<()>>;
 }
 
 /// Adapter from [`FormModel`] to [`AnyForm`].
-pub(in crate::app) struct Filled<F: FormModel> {
+pub(in crate::app) struct FormModelAdapter<F: FormModel> {
     form: F,
     finder: F::Finder,
 }
 
-impl<F: FormModel> Filled<F> {
+impl<F: FormModel> FormModelAdapter<F> {
     pub(in crate::app) fn new(link: &LinkUrl) -> Self {
-        Filled { form: F::from_url(link), finder: F::Finder::default() }
+        FormModelAdapter { form: F::from_url(link), finder: F::Finder::default() }
     }
 }
 
-impl<F: FormModel> AnyForm for Filled<F> {
-    fn form(&self) -> &dyn Any {
+impl<F: FormModel> AnyForm for FormModelAdapter<F> {
+    fn as_any_form(&self) -> &dyn Any {
         &self.form
     }
 
-    fn finder(&self) -> &dyn Any {
+    fn as_any_finder(&self) -> &dyn Any {
         &self.finder
     }
 
@@ -170,7 +170,7 @@ impl<F: FormModel> AnyForm for Filled<F> {
         self.form.url()
     }
 
-    fn take(&mut self, url: &LinkUrl) {
+    fn fill_from_link(&mut self, url: &LinkUrl) {
         self.form = F::from_url(url);
     }
 
@@ -178,35 +178,35 @@ impl<F: FormModel> AnyForm for Filled<F> {
         self.form.set_file(file);
     }
 
-    fn example(&self) -> &'static str {
-        self.form.example()
+    fn example_link(&self) -> &'static str {
+        self.form.example_link()
     }
 
     fn accepts_entries(&self, entries: &Payload) -> bool {
-        entries.is::<F>()
+        entries.contains::<F>()
     }
 
     fn is_finder_action(&self, action: &Payload) -> bool {
-        action.is::<<F::Finder as Finder>::Action>()
+        action.contains::<<F::Finder as Finder>::Action>()
     }
 
-    fn edit(&mut self, entries: Payload) -> Result<(), PayloadKindError> {
+    fn replace_entries(&mut self, entries: Payload) -> Result<(), PayloadKindError> {
         self.form = entries.open()?;
         Ok(())
     }
 
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError> {
         let before = self.form.clone();
-        self.finder.act(action.open()?, &mut self.form, context);
+        self.finder.handle_action(action.open()?, &mut self.form, context);
         Ok(self.form != before)
     }
 
-    fn confirmed(&mut self, context: &mut FinderContext<'_>) {
-        self.finder.confirmed(context);
+    fn handle_confirmation(&mut self, context: &mut FinderContext<'_>) {
+        self.finder.handle_confirmation(context);
     }
 
-    fn pump(&mut self) {
-        self.finder.pump();
+    fn process_events(&mut self) {
+        self.finder.process_events();
     }
 
     fn is_running(&self) -> bool {
@@ -217,7 +217,7 @@ impl<F: FormModel> AnyForm for Filled<F> {
         self.finder.stop();
     }
 
-    fn end(&mut self, services: &mut Services) -> Option<Receiver<()>> {
-        self.finder.end(services)
+    fn finish(&mut self, services: &mut Services) -> Option<Receiver<()>> {
+        self.finder.finish(services)
     }
 }

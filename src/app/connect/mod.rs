@@ -8,7 +8,7 @@ pub(crate) mod parameters;
 mod ports;
 pub(crate) mod target;
 
-pub use parameters::Typed;
+pub use parameters::EnteredValues;
 pub use ports::{PortEntry, offered_ports};
 pub use target::is_missing;
 
@@ -22,7 +22,7 @@ use super::payload::Payload;
 use super::services::Services;
 use super::tab::Tab;
 use super::{Text, explain};
-use crate::app::action::Done;
+use crate::app::action::TaskResult;
 use crate::link::LinkUrl;
 
 pub enum ConnectAction {
@@ -30,7 +30,7 @@ pub enum ConnectAction {
     Close,
     ListPorts,
     Device(Tab),
-    /// The form for a kind of device was edited. See [`ConnectAction::edit`].
+    /// The form for a kind of device was edited. See [`ConnectAction::edit_form`].
     Edit(Payload),
     /// A request to the search for devices. See [`ConnectAction::find`].
     Find(Payload),
@@ -43,12 +43,12 @@ pub enum ConnectAction {
 }
 
 impl ConnectAction {
-    pub fn edit<F: FormModel>(form: F) -> Self {
-        ConnectAction::Edit(Payload::of(form))
+    pub fn edit_form<F: FormModel>(form: F) -> Self {
+        ConnectAction::Edit(Payload::new(form))
     }
 
     pub fn find<S: Finder>(action: S::Action) -> Self {
-        ConnectAction::Find(Payload::of(action))
+        ConnectAction::Find(Payload::new(action))
     }
 }
 
@@ -66,19 +66,19 @@ pub struct ConnectDialog {
 impl ConnectDialog {
     /// Creates the dialog for a kind of device. `last` returns the last link used in a tab.
     pub(super) fn new(kinds: KindRegistry, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
-        let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
+        let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.create_form(last(kind.tab())))).collect();
         ConnectDialog { device, kinds, forms, typed: None, ports: None, problem: None }
     }
 
-    pub fn form<F: Any>(&self) -> Option<&F> {
-        self.forms.iter().find_map(|(_, form)| form.form().downcast_ref())
+    pub fn form_as<F: Any>(&self) -> Option<&F> {
+        self.forms.iter().find_map(|(_, form)| form.as_any_form().downcast_ref())
     }
 
-    pub fn finder<S: Any>(&self) -> Option<&S> {
-        self.forms.iter().find_map(|(_, form)| form.finder().downcast_ref())
+    pub fn finder_as<S: Any>(&self) -> Option<&S> {
+        self.forms.iter().find_map(|(_, form)| form.as_any_finder().downcast_ref())
     }
 
-    fn own(&self) -> Option<&dyn AnyForm> {
+    fn current_form(&self) -> Option<&dyn AnyForm> {
         self.forms.iter().find(|(tab, _)| *tab == self.device).map(|(_, form)| form.as_ref())
     }
 
@@ -93,21 +93,23 @@ impl ConnectDialog {
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
-            None => self.own().map_or_else(|| Err(Text::new("session.wrong_kind")), AnyForm::url),
+            None => self.current_form().map_or_else(|| Err(Text::new("session.wrong_kind")), AnyForm::url),
         }
     }
 
     /// Parses a link as a link to the chosen kind of device.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
-        let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
-        target::checked(url, |url| self.kinds.kind_for_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
+        let url: LinkUrl = link.parse().map_err(|error| target::unusable_link_text(explain::url(&error)))?;
+        target::validated_link(url, |url| {
+            self.kinds.kind_for_tab(self.device).map_or(Ok(()), |kind| kind.check_link(url))
+        })
     }
 
     /// Adopts a typed link. A valid link fills in the form.
-    pub(super) fn take(&mut self, link: String) {
+    pub(super) fn set_typed_link(&mut self, link: String) {
         let (device, url) = (self.device, self.read(&link));
         if let (Ok(url), Some((_, form))) = (url, self.forms.iter_mut().find(|(tab, _)| *tab == device)) {
-            form.take(&url);
+            form.fill_from_link(&url);
         }
         self.typed = Some(link);
     }
@@ -119,19 +121,19 @@ impl ConnectDialog {
 
     /// Returns the link as typed, or else the link of the form. The string is empty if the form does not have a valid
     /// link.
-    pub fn link(&self) -> String {
+    pub fn typed_link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),
             None => self.url().map(|url| url.to_string()).unwrap_or_default(),
         }
     }
 
-    pub fn example(&self) -> &'static str {
-        self.own().map(AnyForm::example).unwrap_or_default()
+    pub fn example_link(&self) -> &'static str {
+        self.current_form().map(AnyForm::example_link).unwrap_or_default()
     }
 
-    pub(super) fn pump(&mut self) {
-        self.forms_mut().for_each(|form| form.pump());
+    pub(super) fn process_events(&mut self) {
+        self.forms_mut().for_each(|form| form.process_events());
     }
 
     pub(super) fn stop(&mut self) {
@@ -144,6 +146,6 @@ pub(super) fn list_ports(services: &Services, links: &[String]) {
     let (ports, links) = (services.world.ports.clone(), links.to_vec());
     services.tasks.run("ports", move || {
         let exists = |path: &str| std::path::Path::new(path).exists();
-        super::Action::Done(Done::Ports(ports().map(|ports| offered_ports(&ports, &links, exists))))
+        super::Action::Done(TaskResult::Ports(ports().map(|ports| offered_ports(&ports, &links, exists))))
     });
 }

@@ -2,25 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use super::target::{filled, other};
+use super::target::{non_empty, unusable_link_text};
 use crate::app::{Text, explain};
 use crate::link::{LinkScheme, LinkUrl, UrlQuery};
 use crate::parameter::Entry;
 
 /// Name and value of a link parameter.
-pub(crate) type Pair = (String, String);
+pub(crate) type NameAndValue = (String, String);
 
 /// Returns the parameters of a link that have no entry in the form. `take` fills in an entry, and returns whether the
 /// entry exists.
-pub(crate) fn parameters_without_entry(query: &UrlQuery, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
+pub(crate) fn parameters_without_entry(
+    query: &UrlQuery,
+    mut take: impl FnMut(&str, &str) -> bool,
+) -> Vec<NameAndValue> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
 /// Values typed into the entries of a form, by the name of the parameter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Typed(BTreeMap<&'static str, String>);
+pub struct EnteredValues(BTreeMap<&'static str, String>);
 
-impl Typed {
+impl EnteredValues {
     /// Returns the typed value of a parameter, or an empty string for the default.
     pub fn get(&self, key: &str) -> &str {
         self.0.get(key).map_or("", String::as_str)
@@ -36,7 +39,7 @@ impl Typed {
     }
 
     /// Fills in an entry. Returns `false` if the entry does not exist.
-    pub(crate) fn take(&mut self, entries: &[Entry], name: &str, value: &str) -> bool {
+    pub(crate) fn fill_entry(&mut self, entries: &[Entry], name: &str, value: &str) -> bool {
         let entry = entries.iter().find(|entry| entry.key == name);
         entry.inspect(|entry| self.set(entry.key, value)).is_some()
     }
@@ -44,7 +47,7 @@ impl Typed {
 
 /// Link parameters from the entries of a form, in order. Default values are left out.
 #[derive(Default)]
-pub(crate) struct Parameters(Vec<Pair>);
+pub(crate) struct Parameters(Vec<NameAndValue>);
 
 impl Parameters {
     pub(crate) fn set(&mut self, name: &str, value: &str) {
@@ -53,21 +56,21 @@ impl Parameters {
 
     /// Adds an entry unless it is empty.
     pub(crate) fn entry(&mut self, name: &str, entry: &str) {
-        self.0.extend(filled(entry).map(|value| (name.to_owned(), value)));
+        self.0.extend(non_empty(entry).map(|value| (name.to_owned(), value)));
     }
 
     /// Adds typed entries, converting a decimal comma to a point.
-    pub(crate) fn typed(&mut self, entries: &[Entry], typed: &Typed) {
+    pub(crate) fn add_entered(&mut self, entries: &[Entry], typed: &EnteredValues) {
         for entry in entries {
             match entry.is_decimal {
-                true => self.decimal(entry.key, typed.get(entry.key)),
+                true => self.add_decimal(entry.key, typed.get(entry.key)),
                 false => self.entry(entry.key, typed.get(entry.key)),
             }
         }
     }
 
     /// Adds a number, converting a decimal comma to a point.
-    pub(crate) fn decimal(&mut self, name: &str, entry: &str) {
+    pub(crate) fn add_decimal(&mut self, name: &str, entry: &str) {
         self.entry(name, &entry.replace(',', "."));
     }
 
@@ -75,16 +78,16 @@ impl Parameters {
     /// to one.
     pub(crate) fn add_remaining(
         &mut self,
-        rest: &[Pair],
+        rest: &[NameAndValue],
         is_virtual: bool,
         (link, of_the_virtual): (&[&str], &[&str]),
     ) {
-        self.rest(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
+        self.add_others(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
     /// Adds the parameters without an entry that belong to the link. An entry takes precedence over an older parameter
     /// of the same name.
-    pub(crate) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
+    pub(crate) fn add_others(&mut self, rest: &[NameAndValue], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
                 self.set(name, value);
@@ -96,7 +99,7 @@ impl Parameters {
     ///
     /// # Errors
     /// Returns a message if a character would end a part of the link, or if the parts do not make up a link.
-    pub(crate) fn link(&self, (scheme, target): (LinkScheme, String)) -> Result<LinkUrl, Text> {
+    pub(crate) fn build_link(&self, (scheme, target): (LinkScheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
             .or_else(|| self.0.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&']))));
@@ -106,7 +109,7 @@ impl Parameters {
         let words: Vec<String> = self.0.iter().map(|(name, value)| format!("{name}={value}")).collect();
         let question = if words.is_empty() { "" } else { "?" };
         let link = format!("{}:{target}{question}{}", scheme.word(), words.join("&"));
-        link.parse().map_err(|error| other(explain::url(&error)))
+        link.parse().map_err(|error| unusable_link_text(explain::url(&error)))
     }
 }
 

@@ -12,16 +12,16 @@ use crate::worker::OpenError;
 ///
 /// # Errors
 /// Returns the message `missing` if the entry is empty.
-pub(crate) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
+pub(crate) fn required_entry(entry: &str, missing: &'static str) -> Result<String, Text> {
     let entry = entry.trim();
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
 }
 
-pub(crate) fn filled(entry: &str) -> Option<String> {
+pub(crate) fn non_empty(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
 }
 
-const MISSING: [&str; 6] = [
+const MISSING_ENTRY_IDS: [&str; 6] = [
     "form.port_missing",
     "form.host_missing",
     "form.gateway_missing",
@@ -31,28 +31,31 @@ const MISSING: [&str; 6] = [
 ];
 
 pub fn is_missing(problem: &Text) -> bool {
-    MISSING.contains(&problem.id())
+    MISSING_ENTRY_IDS.contains(&problem.id())
 }
 
 /// Returns the link if its kind of device accepts it.
 ///
 /// # Errors
-/// Returns the same texts as [`refused`].
-pub(crate) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>) -> Result<LinkUrl, Text> {
-    check(&url).map_err(|error| refused(&url, &error))?;
+/// Returns the same texts as [`rejection_text`].
+pub(crate) fn validated_link(
+    url: LinkUrl,
+    check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>,
+) -> Result<LinkUrl, Text> {
+    check(&url).map_err(|error| rejection_text(&url, &error))?;
     Ok(url)
 }
 
 /// Returns the reason why a link cannot be used. The message names the invalid entry, if any.
-pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
+pub(crate) fn rejection_text(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
         | OpenError::Sim(ConfigError::Value { key: name, value, allowed }) => (name, value, allowed),
         OpenError::Sim(ConfigError::Fault(_)) => {
             return Text::new("form.fault").with("value", url.query.get("fault").unwrap_or_default());
         }
-        OpenError::Url(error) => return other(explain::url(error)),
-        OpenError::Sim(error) => return other(explain::setting(error)),
+        OpenError::Url(error) => return unusable_link_text(explain::url(error)),
+        OpenError::Sim(error) => return unusable_link_text(explain::setting(error)),
         error => return explain::open(error),
     };
     let own = [("margin", "form.margin"), ("rpm", "form.rpm"), ("clock", "form.clock")];
@@ -66,7 +69,7 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
 }
 
 /// Returns the message for a link that cannot be used although each of its entries is valid.
-pub(crate) fn other(why: Text) -> Text {
+pub(crate) fn unusable_link_text(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
 
@@ -75,7 +78,7 @@ pub(crate) fn other(why: Text) -> Text {
 /// # Errors
 /// Returns a text that names the invalid part.
 pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
-    let host = entered(host, "form.host_missing")?;
+    let host = required_entry(host, "form.host_missing")?;
     let host = match host.parse::<Ipv6Addr>() {
         Ok(_) => format!("[{host}]"),
         Err(_) if host.contains(':') && !host.starts_with('[') => {
@@ -83,7 +86,7 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
         }
         Err(_) => host,
     };
-    let port = entered(port, "form.tcp_port_missing")?;
+    let port = required_entry(port, "form.tcp_port_missing")?;
     match port.parse::<NonZeroU16>() {
         Ok(port) => Ok(format!("{host}:{port}")),
         Err(_) => Err(Text::new("form.tcp_port").with("value", port)),
@@ -100,7 +103,7 @@ pub(crate) fn host_and_default_port(
     port: &str,
     usual: &str,
 ) -> Result<String, Text> {
-    host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
+    host_and_port(&required_entry(host, missing)?, non_empty(port).as_deref().unwrap_or(usual))
 }
 
 /// Splits a network address into host and port. The port is empty if the address has none.

@@ -7,7 +7,7 @@ use super::AnyDevice;
 use super::model::DeviceMemory;
 use crate::app::Text;
 use crate::app::action::{ReadError, ReviewAction};
-use crate::app::closing::MUCH;
+use crate::app::closing::LONG_RECORDING_NS;
 use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
 use crate::app::session::{DeviceHistory, PendingOpen, Phase, Source};
@@ -36,8 +36,8 @@ impl AnyDevice {
     }
 
     /// Returns the source of the data without secrets.
-    pub fn place(&self) -> String {
-        self.state().place()
+    pub fn data_source(&self) -> String {
+        self.state().data_source()
     }
 
     pub fn source(&self) -> &Source {
@@ -76,12 +76,12 @@ impl AnyDevice {
 
     /// Returns the writes in the logbook or the reason why there are none, or `None` if they have not been requested
     /// yet.
-    pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
+    pub fn logged_writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
 
     /// Returns the status codes of this device in the logbook, newest first.
-    pub fn statuses(&self) -> &[Entry] {
+    pub fn logged_status_codes(&self) -> &[Entry] {
         &self.state().statuses
     }
 
@@ -98,8 +98,8 @@ impl AnyDevice {
         self.memory().is_some_and(DeviceMemory::is_reviewing)
     }
 
-    pub fn sheet(&self) -> Option<ReviewSheet> {
-        self.memory()?.sheet()
+    pub fn review_sheet(&self) -> Option<ReviewSheet> {
+        self.memory()?.review_sheet()
     }
 
     pub(in crate::app) fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services) {
@@ -114,9 +114,9 @@ impl AnyDevice {
         }
     }
 
-    pub(in crate::app) fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory) {
+    pub(in crate::app) fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory) {
         if let Some(memory) = self.memory_mut() {
-            memory.listed(of, listed);
+            memory.set_history(of, listed);
         }
     }
 
@@ -134,7 +134,7 @@ impl AnyDevice {
 
     /// Returns whether the recording contains minutes of data that have not been exported.
     pub(in crate::app) fn has_long_unsaved_recording(&self) -> bool {
-        self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
+        self.recorders().into_iter().any(|recorder| recorder.unexported_duration() >= LONG_RECORDING_NS)
     }
 
     pub(in crate::app) fn suggested_file(&self) -> PathBuf {

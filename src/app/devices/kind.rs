@@ -9,7 +9,7 @@ use std::path::Path;
 use super::AnyDevice;
 use super::model::DeviceModel;
 use crate::app::Text;
-use crate::app::connect::form::{AnyForm, Filled, Finder, FormModel};
+use crate::app::connect::form::{AnyForm, Finder, FormModel, FormModelAdapter};
 use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::app::session::{Kind, ProfileFile, Session};
@@ -41,7 +41,7 @@ pub trait DeviceType: DeviceModel + Sized {
     ///
     /// # Errors
     /// Returns the reason why it cannot.
-    fn check(url: &LinkUrl) -> Result<(), OpenError>;
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError>;
 
     /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
     fn secret_parameters() -> Vec<&'static str>;
@@ -53,7 +53,7 @@ pub trait DeviceType: DeviceModel + Sized {
     }
 
     /// Creates a device. Nothing is known about it except the opened profile, if any, with the tables for reading it.
-    fn begin(
+    fn create(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,
         services: &mut Services,
@@ -61,11 +61,11 @@ pub trait DeviceType: DeviceModel + Sized {
 
     /// Creates a device for a link that is being opened.
     fn for_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
-        Self::begin(Session::for_link(id, url, services.world.kinds), None, services)
+        Self::create(Session::for_link(id, url, services.world.kinds), None, services)
     }
 
     /// Reads the tables that profiles of this kind require. Runs on a task thread.
-    fn tables(store: &Store) -> Self::Tables;
+    fn load_tables(store: &Store) -> Self::Tables;
 
     /// Creates an offline device from a profile.
     fn from_file(
@@ -76,13 +76,13 @@ pub trait DeviceType: DeviceModel + Sized {
         services: &mut Services,
     ) -> Self {
         let session = Session::from_file(id, file, document.clone());
-        let mut own = Self::begin(session, document.body.get().map(|profile| (profile, tables)), services);
+        let mut own = Self::create(session, document.body.get().map(|profile| (profile, tables)), services);
         own.load_draft(services);
         own
     }
 
     /// Returns the reason why a profile was refused, or `None` if the cause belongs to another kind of device.
-    fn explain(_cause: &Cause) -> Option<Text> {
+    fn explain_rejection(_cause: &Cause) -> Option<Text> {
         None
     }
 
@@ -103,16 +103,16 @@ pub trait DeviceKind: Sync {
     /// Returns the tab in which devices of this kind are shown.
     fn tab(&self) -> Tab;
     /// Returns the name of the bus, which is the same in every language.
-    fn bus(&self) -> &'static str;
+    fn bus_name(&self) -> &'static str;
     /// Returns the keyword for this kind in profiles and on the command line.
-    fn word(&self) -> &'static str;
+    fn keyword(&self) -> &'static str;
     /// Returns the format of profiles of this kind.
-    fn format(&self) -> &'static dyn ProfileFormat;
+    fn profile_format(&self) -> &'static dyn ProfileFormat;
     /// Checks whether a link can lead to a device of this kind.
     ///
     /// # Errors
     /// Returns the reason why it cannot.
-    fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
+    fn check_link(&self, url: &LinkUrl) -> Result<(), OpenError>;
     /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
     fn secret_parameters(&self) -> Vec<&'static str>;
     /// Returns the link to the virtual device of this kind.
@@ -120,9 +120,9 @@ pub trait DeviceKind: Sync {
     /// Returns whether another master may be connected to the line of a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
     /// Returns the reason why a profile was refused, or `None` if the cause belongs to another kind of device.
-    fn explain(&self, cause: &Cause) -> Option<Text>;
+    fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
     /// Returns the form for the connection dialog, filled in from a link.
-    fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
+    fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
     #[doc(hidden)]
     fn handle_finder_result(
         &self,
@@ -151,24 +151,24 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
         M::TAB
     }
 
-    fn bus(&self) -> &'static str {
+    fn bus_name(&self) -> &'static str {
         M::BUS
     }
 
-    fn word(&self) -> &'static str {
+    fn keyword(&self) -> &'static str {
         <M::Device as Kind>::KIND
     }
 
-    fn format(&self) -> &'static dyn ProfileFormat {
+    fn profile_format(&self) -> &'static dyn ProfileFormat {
         M::Profile::FORMAT
     }
 
-    fn check(&self, url: &LinkUrl) -> Result<(), OpenError> {
-        M::check(url)
+    fn check_link(&self, url: &LinkUrl) -> Result<(), OpenError> {
+        M::check_link(url)
     }
 
-    fn explain(&self, cause: &Cause) -> Option<Text> {
-        M::explain(cause)
+    fn explain_rejection(&self, cause: &Cause) -> Option<Text> {
+        M::explain_rejection(cause)
     }
 
     fn secret_parameters(&self) -> Vec<&'static str> {
@@ -176,15 +176,15 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
     }
 
     fn virtual_link(&self) -> LinkUrl {
-        M::Form::usual()
+        M::Form::default_link()
     }
 
     fn may_have_other_master(&self, url: &LinkUrl) -> bool {
         M::may_have_other_master(url)
     }
 
-    fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm> {
-        Box::new(Filled::<M::Form>::new(&link.unwrap_or_else(M::Form::usual)))
+    fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm> {
+        Box::new(FormModelAdapter::<M::Form>::new(&link.unwrap_or_else(M::Form::default_link)))
     }
 
     fn handle_finder_result(
@@ -194,7 +194,7 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
         services: &mut Services,
     ) -> Result<(), PayloadKindError> {
         let finder = form.and_then(|form| form.finder_mut().downcast_mut());
-        <M::Form as FormModel>::Finder::done(finder, done.open()?, services);
+        <M::Form as FormModel>::Finder::handle_result(finder, done.open()?, services);
         Ok(())
     }
 
@@ -203,7 +203,7 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
     }
 
     fn read_tables(&self, store: &Store) -> OpenProfile {
-        let tables = M::tables(store);
+        let tables = M::load_tables(store);
         Box::new(|id, file, document, services| Box::new(M::from_file(id, file, document, tables, services)))
     }
 

@@ -31,10 +31,10 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     type Action: DeviceAction;
 
     /// Results of the tasks that a device starts.
-    type Done: Any + Send;
+    type TaskResult: Any + Send;
 
     /// Returns a function that prepares the session before it moves to its thread.
-    fn prepare(&self, _world: &StudioEnvironment) -> Prepare<Self::Device> {
+    fn prepare_session(&self, _world: &StudioEnvironment) -> PrepareFn<Self::Device> {
         Box::new(|_| ())
     }
 
@@ -42,23 +42,23 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     fn connect(&mut self, opened: OpenedConnection<Self::Device>, services: &mut Services);
 
     /// Executes an action specific to this kind of device.
-    fn act(&mut self, action: Self::Action, context: &mut ActionContext<'_>);
+    fn handle_action(&mut self, action: Self::Action, context: &mut ActionContext<'_>);
 
     /// Handles the result of a task that this device has started.
-    fn done(&mut self, done: Self::Done, services: &mut Services);
+    fn handle_result(&mut self, done: Self::TaskResult, services: &mut Services);
 
     /// Returns the job that reads the position once.
     fn position_job(&self) -> Job<Self>;
 
     /// Returns the recording of the device.
-    fn record(&self) -> &dyn Recording;
+    fn recording(&self) -> &dyn Recording;
 
     /// Returns the recording of the device, mutably.
     fn record_mut(&mut self) -> &mut dyn Recording;
 
     /// Returns all recorders of the device, starting with the displayed one.
     fn recorders(&self) -> Vec<&Recorder> {
-        vec![self.record().recorder()]
+        vec![self.recording().recorder()]
     }
 
     /// Returns all recorders of the device, mutably.
@@ -86,9 +86,9 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
                     self.record_mut().poll(interval, begins);
                 }
             }
-            DeviceCommand::Undo => self.step(|edits| edits.undo()),
-            DeviceCommand::Redo => self.step(|edits| edits.redo()),
-            DeviceCommand::RevertAll => self.step(|edits| edits.revert()),
+            DeviceCommand::Undo => self.apply_edit_step(|edits| edits.undo()),
+            DeviceCommand::Redo => self.apply_edit_step(|edits| edits.redo()),
+            DeviceCommand::RevertAll => self.apply_edit_step(|edits| edits.discard_all()),
             DeviceCommand::Review => {
                 self.with_memory(services, |memory, services| memory.review_edits(services));
             }
@@ -101,11 +101,11 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
 
     /// Reads everything that the pages of the device display.
     fn read_device(&mut self, services: &mut Services) {
-        self.submit(Self::Device::survey(), services);
+        self.submit(Self::Device::survey_job(), services);
     }
 
     /// Undoes or redoes an edit.
-    fn step(&mut self, step: EditStep) {
+    fn apply_edit_step(&mut self, step: EditStep) {
         step(self.pending_mut());
     }
 
@@ -215,7 +215,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
 }
 
 /// A function that prepares a session before it moves to its thread.
-pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
+pub(crate) type PrepareFn<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// Resources that an action may use in addition to the device.
 pub struct ActionContext<'a> {
@@ -242,7 +242,7 @@ impl<'a> ActionContext<'a> {
     ///
     /// # Errors
     /// The profile is read-only.
-    pub(crate) fn profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
+    pub(crate) fn edited_profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
         read_only_reason(other.source()).map_or_else(|| Ok(other.edited_body()), Err)
     }
@@ -255,7 +255,7 @@ pub trait MotionControl {
     fn stop(&mut self);
 
     /// Ends every motion that would otherwise continue until a button is released or without an end.
-    fn let_go(&mut self);
+    fn release_motion(&mut self);
 
     /// Returns whether a drive is moving or about to move.
     fn is_moving(&self) -> bool;
@@ -279,7 +279,7 @@ pub trait DeviceMemory {
     fn is_reviewing(&self) -> bool;
 
     /// Returns the open review, if any.
-    fn sheet(&self) -> Option<ReviewSheet>;
+    fn review_sheet(&self) -> Option<ReviewSheet>;
 
     /// Executes an action of the review.
     fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services);
@@ -312,7 +312,7 @@ pub trait DeviceMemory {
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
     /// Stores the lists of backups and writes. Lists of another device are ignored.
-    fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory);
+    fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
     /// Handles a backup that was read, or the error. A backup of another device is ignored.
     fn apply_backup(
@@ -330,20 +330,20 @@ impl<T: HasProfile> DeviceMemory for T {
     }
 
     fn is_reviewing(&self) -> bool {
-        self.review().is_some()
+        self.open_review().is_some()
     }
 
-    fn sheet(&self) -> Option<ReviewSheet> {
-        let running = self.session().line().and_then(|line| line.running());
+    fn review_sheet(&self) -> Option<ReviewSheet> {
+        let running = self.session().live_session().and_then(|line| line.running_job());
         let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
-        HasMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
+        HasMemory::review_sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
     }
 
     fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services) {
         match action {
             ReviewAction::Write(plan) => self.write(plan, services),
             ReviewAction::Toggle(permit) => self.toggle_plan_permit(permit, services),
-            ReviewAction::ForceWear(force) => self.force_wear(force),
+            ReviewAction::ForceWear(force) => self.accept_wear(force),
             ReviewAction::Close => DeviceMemory::close_review(self),
         }
     }
@@ -376,8 +376,8 @@ impl<T: HasProfile> DeviceMemory for T {
         HasProfile::read_backup(self, path, services);
     }
 
-    fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory) {
-        if self.key().as_ref() == Some(of) {
+    fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory) {
+        if self.device_key().as_ref() == Some(of) {
             self.session_mut().set_backups(listed);
         }
     }
@@ -389,7 +389,7 @@ impl<T: HasProfile> DeviceMemory for T {
         result: Result<Box<ProfileDocument>, ReadError>,
         services: &mut Services,
     ) {
-        if self.key().as_ref() == Some(of) {
+        if self.device_key().as_ref() == Some(of) {
             HasProfile::apply_backup(self, path, result, services);
         }
     }

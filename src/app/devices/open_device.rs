@@ -10,7 +10,7 @@ use crossbeam_channel::Receiver;
 
 use super::command::DeviceCommand;
 use super::model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
-use crate::app::action::{Attempt, Done, OpenFailure, OpenedSession};
+use crate::app::action::{ConnectAttempt, OpenFailure, OpenedSession, TaskResult};
 use crate::app::live_session::JobProgress;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobState, Services};
@@ -55,11 +55,11 @@ pub trait OpenDevice: Any {
     /// Returns whether thousands of positions per second can be streamed.
     fn can_stream(&self) -> bool;
     /// Returns the running job, if any.
-    fn running(&self) -> Option<JobProgress>;
+    fn running_job(&self) -> Option<JobProgress>;
     /// Returns whether any edits have not been written.
     fn is_dirty(&self) -> bool;
     /// Returns the number of edits that have not been written.
-    fn edits(&self) -> usize;
+    fn edit_count(&self) -> usize;
     /// Returns whether there is an edit to undo.
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
@@ -99,11 +99,11 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn connect(&mut self, opened: Box<dyn OpenedSession>, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
-    fn act(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError>;
+    fn handle_action(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
     fn apply_command(&mut self, command: DeviceCommand, services: &mut Services);
     #[doc(hidden)]
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
+    fn handle_result(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
     fn edited_body(&self) -> Option<Body>;
     #[doc(hidden)]
@@ -115,13 +115,13 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn save(&mut self, path: PathBuf, services: &mut Services);
     #[doc(hidden)]
-    fn pump(&mut self, services: &mut Services);
+    fn process_events(&mut self, services: &mut Services);
     #[doc(hidden)]
     fn stop(&mut self, services: &mut Services);
     #[doc(hidden)]
     fn connection_lost(&mut self, why: Text, services: &mut Services);
     #[doc(hidden)]
-    fn let_go(&mut self, end: JobState, services: &mut Services);
+    fn release_thread(&mut self, end: JobState, services: &mut Services);
     #[doc(hidden)]
     fn mark_draft_due(&mut self);
     #[doc(hidden)]
@@ -135,7 +135,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn revert_edits(&mut self);
     #[doc(hidden)]
-    fn written(
+    fn handle_profile_written(
         &mut self,
         saving: SaveRequest,
         file: ProfileFile,
@@ -162,7 +162,7 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn is_connected(&self) -> bool {
-        self.session().line().is_some()
+        self.session().live_session().is_some()
     }
 
     fn is_busy(&self) -> bool {
@@ -197,24 +197,24 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::can_stream(self)
     }
 
-    fn running(&self) -> Option<JobProgress> {
-        self.session().line().and_then(|line| line.job_progress())
+    fn running_job(&self) -> Option<JobProgress> {
+        self.session().live_session().and_then(|line| line.job_progress())
     }
 
     fn is_dirty(&self) -> bool {
-        self.pending().is_dirty()
+        self.pending_edits().is_dirty()
     }
 
-    fn edits(&self) -> usize {
-        self.pending().count()
+    fn edit_count(&self) -> usize {
+        self.pending_edits().count()
     }
 
     fn can_undo(&self) -> bool {
-        self.pending().can_undo()
+        self.pending_edits().can_undo()
     }
 
     fn can_redo(&self) -> bool {
-        self.pending().can_redo()
+        self.pending_edits().can_redo()
     }
 
     fn preserves_edits(&self) -> bool {
@@ -226,11 +226,11 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn dropped_count(&self) -> u64 {
-        self.record().dropped_count()
+        self.recording().dropped_count()
     }
 
     fn recorder(&self) -> &Recorder {
-        self.record().recorder()
+        self.recording().recorder()
     }
 
     fn recorder_mut(&mut self) -> &mut Recorder {
@@ -279,10 +279,10 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()> {
         let session = self.session().id;
-        let prepare = DeviceModel::prepare(self, &services.world);
+        let prepare = DeviceModel::prepare_session(self, &services.world);
         services.open_task::<M::Device>(url, earlier, prepare, move |result| {
             let result = result.map(|opened| opened as Box<dyn OpenedSession>);
-            Done::OpenedConnection(Attempt { session, attempt, result })
+            TaskResult::OpenedConnection(ConnectAttempt { session, attempt, result })
         })
     }
 
@@ -292,8 +292,8 @@ impl<M: DeviceModel> OpenDevice for M {
         Ok(())
     }
 
-    fn act(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError> {
-        DeviceModel::act(self, action.open()?, context);
+    fn handle_action(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError> {
+        DeviceModel::handle_action(self, action.open()?, context);
         Ok(())
     }
 
@@ -301,8 +301,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::command(self, command, services);
     }
 
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
-        DeviceModel::done(self, done.open()?, services);
+    fn handle_result(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
+        DeviceModel::handle_result(self, done.open()?, services);
         Ok(())
     }
 
@@ -327,8 +327,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::save(self, path, services);
     }
 
-    fn pump(&mut self, services: &mut Services) {
-        SessionEvents::pump(self, services);
+    fn process_events(&mut self, services: &mut Services) {
+        SessionEvents::process_events(self, services);
     }
 
     fn stop(&mut self, services: &mut Services) {
@@ -339,8 +339,8 @@ impl<M: DeviceModel> OpenDevice for M {
         SessionEvents::connection_lost(self, why, services);
     }
 
-    fn let_go(&mut self, end: JobState, services: &mut Services) {
-        SessionEvents::let_go(self, end, services);
+    fn release_thread(&mut self, end: JobState, services: &mut Services) {
+        SessionEvents::release_thread(self, end, services);
     }
 
     fn mark_draft_due(&mut self) {
@@ -367,13 +367,13 @@ impl<M: DeviceModel> OpenDevice for M {
         HasDraft::revert_edits(self);
     }
 
-    fn written(
+    fn handle_profile_written(
         &mut self,
         saving: SaveRequest,
         file: ProfileFile,
         result: Result<(), FileError>,
         services: &mut Services,
     ) {
-        HasDraft::written(self, saving, file, result, services);
+        HasDraft::handle_profile_written(self, saving, file, result, services);
     }
 }

@@ -14,7 +14,7 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    pub(crate) fn of(&self, tab: Tab) -> Option<SessionId> {
+    pub(crate) fn session_of(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()
     }
 
@@ -23,7 +23,7 @@ impl Selection {
         self.last
     }
 
-    pub(in crate::app) fn set(&mut self, tab: Tab, id: SessionId) {
+    pub(in crate::app) fn select_session(&mut self, tab: Tab, id: SessionId) {
         self.by_tab.insert(tab, id);
         self.last = Some(id);
     }
@@ -43,7 +43,7 @@ impl Selection {
         self.by_tab.retain(|_, shown| *shown != id);
         if self.last == Some(id) {
             let tabs = kinds.devices().iter().rev().map(|kind| kind.tab());
-            self.last = tabs.filter_map(|tab| self.of(tab)).next();
+            self.last = tabs.filter_map(|tab| self.session_of(tab)).next();
         }
     }
 }

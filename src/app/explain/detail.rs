@@ -4,7 +4,7 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
-use super::{expected_text, file, plain};
+use super::{expected_text, file_error_text, literal_text};
 use crate::app::{KindRegistry, Text};
 use crate::bits::HexError;
 use crate::link::{LinkScheme, TRACE_HEADER, TraceFileError, UrlError};
@@ -62,9 +62,9 @@ pub fn setting(error: &ConfigError) -> Text {
 }
 
 /// Returns the reason why a file is not a valid profile. `kinds` explains values that a device refuses.
-pub fn document(error: &ProfileError, kinds: KindRegistry) -> Text {
+pub fn profile_error_text(error: &ProfileError, kinds: KindRegistry) -> Text {
     match error {
-        ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
+        ProfileError::Syntax { line, column, what } => syntax_error_text(*line, *column, syntax_problem(what)),
         ProfileError::Misspelt { line, column, path, intended } => Text::new("detail.misspelt")
             .with("line", line)
             .with("column", column)
@@ -78,10 +78,12 @@ pub fn document(error: &ProfileError, kinds: KindRegistry) -> Text {
             Text::new("detail.value").with("path", path).with_text("what", hex(problem))
         }
         ProfileError::Refused { path, cause } => {
-            Text::new("detail.value").with("path", path).with_text("what", kinds.explain(cause))
+            Text::new("detail.value").with("path", path).with_text("what", kinds.explain_rejection(cause))
         }
         // These errors have separate messages.
-        ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
+        ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => {
+            literal_text(error)
+        }
     }
 }
 
@@ -89,7 +91,7 @@ fn syntax_problem(problem: &SyntaxErrorKind) -> Text {
     match problem {
         SyntaxErrorKind::TooDeep => Text::new("detail.too_deep"),
         SyntaxErrorKind::Twice(name) => Text::new("detail.twice").with("name", name),
-        SyntaxErrorKind::Parser(words) => plain(words),
+        SyntaxErrorKind::Parser(words) => literal_text(words),
     }
 }
 
@@ -100,7 +102,7 @@ fn hex(error: &HexError) -> Text {
     }
 }
 
-pub fn recording(error: &TraceFileError) -> Text {
+pub fn trace_error_text(error: &TraceFileError) -> Text {
     match error {
         TraceFileError::Header => Text::new("detail.no_trace").with("header", TRACE_HEADER),
         TraceFileError::Line { line } => Text::new("detail.trace_line").with("line", line),
@@ -112,7 +114,7 @@ pub fn recording(error: &TraceFileError) -> Text {
 
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
-        LogbookErrorKind::Folder(error) => file(error),
+        LogbookErrorKind::Folder(error) => file_error_text(error),
         LogbookErrorKind::NoAccess => Text::new("logbook.access"),
         LogbookErrorKind::WriteProtected => Text::new("logbook.protected"),
         LogbookErrorKind::Locked => Text::new("logbook.locked"),
@@ -122,12 +124,12 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
             Text::new("logbook.newer").with("found", found).with("known", known)
         }
         LogbookErrorKind::NotOpen { entry } => Text::new("logbook.not_open").with("entry", entry),
-        LogbookErrorKind::Database { what, .. } => plain(what),
+        LogbookErrorKind::Database { what, .. } => literal_text(what),
     };
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }
 
 /// Describes a syntax error and its location in a file.
-pub(crate) fn syntax(line: usize, column: usize, what: Text) -> Text {
+pub(crate) fn syntax_error_text(line: usize, column: usize, what: Text) -> Text {
     Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", what)
 }

@@ -9,11 +9,11 @@ pub fn expected_text(expected: &AllowedValues) -> Text {
             [before @ .., last] if !before.is_empty() => {
                 Text::new("expected.words").with("before", before.join(", ")).with("last", last)
             }
-            words => super::plain(words.concat()),
+            words => super::literal_text(words.concat()),
         },
         AllowedValues::OneOf(names) => Text::new("expected.one_of").with("list", names.join(", ")),
         AllowedValues::Range { quantity: own, low, high } => {
-            let range = Text::new("expected.range").with_text("quantity", quantity(*own));
+            let range = Text::new("expected.range").with_text("quantity", quantity_name(*own));
             range.with_formatted_number("low", low).with_formatted_number("high", high)
         }
         AllowedValues::Whole => Text::new("expected.whole"),
@@ -79,7 +79,7 @@ pub fn expected_text(expected: &AllowedValues) -> Text {
     }
 }
 
-fn quantity(quantity: Quantity) -> Text {
+fn quantity_name(quantity: Quantity) -> Text {
     Text::new(match quantity {
         Quantity::Number => "quantity.number",
         Quantity::Milliseconds => "quantity.milliseconds",
@@ -220,7 +220,7 @@ mod tests {
                 &expected_text(&AllowedValues::range(own, 1, 8)),
                 &AllowedValues::range(own, 1, 8),
             );
-            told.insert(quantity(own).id());
+            told.insert(quantity_name(own).id());
         }
         // A row that no sample reaches has a variant that is not above, or none.
         let rows = COMMON.ids().filter(|id| id.starts_with("expected.") || id.starts_with("quantity."));
@@ -232,7 +232,7 @@ mod tests {
     fn limits_have_the_decimal_sign_of_the_language() {
         let volts =
             AllowedValues::range(Quantity::Volts, Limit::from_thousandths(4750), Limit::from_thousandths(12_500));
-        assert_eq!(expected_text(&volts).words(English), "a voltage in volts from 4.75 to 12.5");
-        assert_eq!(expected_text(&volts).words(German), "eine Spannung in Volt von 4,75 bis 12,5");
+        assert_eq!(expected_text(&volts).to_string_in(English), "a voltage in volts from 4.75 to 12.5");
+        assert_eq!(expected_text(&volts).to_string_in(German), "eine Spannung in Volt von 4,75 bis 12,5");
     }
 }

@@ -7,10 +7,10 @@ pub mod signal;
 
 use std::path::Path;
 
-pub(crate) use detail::syntax;
+pub(crate) use detail::syntax_error_text;
 #[cfg(test)]
 pub(crate) use detail::tests::check as assert_in_both_languages;
-pub use detail::{document, logbook_problem, recording, setting, url};
+pub use detail::{logbook_problem, profile_error_text, setting, trace_error_text, url};
 pub use expected::expected_text;
 
 use super::action::OpenFailure;
@@ -21,7 +21,7 @@ use crate::store::{FileError, FileErrorKind, LogbookError, StoreError};
 use crate::units::Parity;
 use crate::worker::{NotStarted, OpenError};
 
-pub fn link(error: &LinkError) -> Text {
+pub fn link_error_text(error: &LinkError) -> Text {
     let target = &error.target;
     match &error.kind {
         LinkErrorKind::NotFound if target.contains(':') && !cfg!(windows) => {
@@ -48,12 +48,12 @@ pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),
         OpenError::Sim(why) => Text::new("link.url").with_text("why", setting(why)),
-        OpenError::Link(error) => link(error),
-        OpenError::File(error) => file(error),
+        OpenError::Link(error) => link_error_text(error),
+        OpenError::File(error) => file_error_text(error),
         OpenError::Recording { path, cause } => {
-            Text::new("link.recording").with("path", path).with_text("why", recording(cause))
+            Text::new("link.recording").with("path", path).with_text("why", trace_error_text(cause))
         }
-        OpenError::Store(error) => store(error),
+        OpenError::Store(error) => store_error_text(error),
     }
 }
 
@@ -67,7 +67,7 @@ pub fn open_failure_text(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text
     }
 }
 
-pub fn file(error: &FileError) -> Text {
+pub fn file_error_text(error: &FileError) -> Text {
     let path = error.path.display();
     match &error.problem {
         FileErrorKind::NotFound => Text::new("file.not_found").with("path", path),
@@ -88,12 +88,12 @@ pub fn file(error: &FileError) -> Text {
 
 /// Returns the message for an error in the folders of the program. Errors in files of a kind of device are explained by
 /// the code that reads them.
-pub fn store(error: &StoreError) -> Text {
+pub fn store_error_text(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
-        StoreError::File(error) => file(error),
+        StoreError::File(error) => file_error_text(error),
         // This is for a kind of device that does not have a more specific message.
-        StoreError::Refused(cause) => Text::new("store.refused").with_text("why", plain(cause)),
+        StoreError::Refused(cause) => Text::new("store.refused").with_text("why", literal_text(cause)),
     }
 }
 
@@ -110,7 +110,7 @@ pub fn profile(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
         ProfileError::OtherKind { found, wanted } => {
             Text::new("profile.other_kind").with("path", path).with("found", found).with("wanted", wanted)
         }
-        error => Text::new("profile.invalid").with("path", path).with_text("why", document(error, kinds)),
+        error => Text::new("profile.invalid").with("path", path).with_text("why", profile_error_text(error, kinds)),
     }
 }
 
@@ -137,7 +137,7 @@ pub fn newer_profile(path: &Path, document: &ProfileDocument) -> Text {
 pub fn not_started_text(why: &NotStarted) -> Text {
     match why {
         NotStarted::OtherPlan => Text::new("write.other_plan"),
-        NotStarted::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),
+        NotStarted::NotKept(error) => Text::new("write.not_kept").with_text("why", file_error_text(error)),
         NotStarted::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
         NotStarted::Worn { seen, cost, limit } => {
             Text::new("write.worn").with("used", seen).with("cost", cost).with("limit", limit)
@@ -163,6 +163,6 @@ pub fn parity(parity: Parity) -> Text {
 }
 
 /// Returns a text that is the same in every language, such as a name or a number.
-pub fn plain(words: impl ToString) -> Text {
+pub fn literal_text(words: impl ToString) -> Text {
     Text::new("plain.words").with("words", words)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::file;
+use super::file_error_text;
 use crate::analysis::capture::CaptureError;
 use crate::analysis::diagnosis::{ComparisonObstacle, DiagnosisFinding, FindingKind, StuckLevel};
 use crate::analysis::ellipse::{FitError, MIN_POINTS, SignalChannel};
@@ -12,19 +12,19 @@ use crate::analysis::revolution::RevolutionError;
 use crate::analysis::signal_analysis::{AnalysisError, MIN_OCTANTS};
 use crate::analysis::spectrum::SpectrumError;
 use crate::app::Text;
-use crate::app::number::decimals;
+use crate::app::number::decimal_places;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
 pub fn read(path: &Path, error: &ReadCaptureError) -> Text {
     match error {
-        ReadCaptureError::File(error) => file(error),
-        ReadCaptureError::Capture(error) => capture(path, error),
+        ReadCaptureError::File(error) => file_error_text(error),
+        ReadCaptureError::Capture(error) => capture_error_text(path, error),
         ReadCaptureError::Cancelled => Text::new("signal.cancelled").with("path", path.display()),
     }
 }
 
-fn capture(path: &Path, error: &CaptureError) -> Text {
+fn capture_error_text(path: &Path, error: &CaptureError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
         CaptureError::Empty => text("signal.empty"),
@@ -55,10 +55,10 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
 }
 
 /// Returns the reason why samples cannot be analysed. `path` is the file with the samples.
-pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
+pub fn analysis_error_text(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
-        AnalysisError::Fit(error) => fit(path, error),
+        AnalysisError::Fit(error) => fit_error_text(path, error),
         AnalysisError::Coverage { octants } => {
             text("signal.coverage").with("octants", octants).with("least", MIN_OCTANTS)
         }
@@ -67,7 +67,7 @@ pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
     }
 }
 
-fn fit(path: &Path, error: &FitError) -> Text {
+fn fit_error_text(path: &Path, error: &FitError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
         FitError::TooFew { points } => text("signal.few_points").with("points", points).with("least", MIN_POINTS),
@@ -91,7 +91,7 @@ pub fn spectrum(error: &SpectrumError) -> Text {
 }
 
 /// Returns the reason why the deviation over one revolution cannot be determined from a reference.
-pub fn revolution(error: &RevolutionError) -> Text {
+pub fn revolution_error_text(error: &RevolutionError) -> Text {
     match error {
         RevolutionError::Periods { found, given } => {
             Text::new("revolution.periods").with_number("found", *found, 1).with("given", given)
@@ -104,7 +104,7 @@ pub fn revolution(error: &RevolutionError) -> Text {
     }
 }
 
-pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
+pub fn diagnosis_text(finding: &DiagnosisFinding) -> Text {
     let of = |id, which: SignalChannel| {
         Text::new(id).with_text(
             "channel",
@@ -136,8 +136,8 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
         FindingKind::Level { wire, volts, ok_v: (least, most) } => Text::new("diagnosis.level")
             .with("wire", wire.name())
             .with_number("volts", volts, 2)
-            .with_number("least", least, decimals(least).max(1))
-            .with_number("most", most, decimals(most).max(1)),
+            .with_number("least", least, decimal_places(least).max(1))
+            .with_number("most", most, decimal_places(most).max(1)),
         FindingKind::Hum { mains_hz, volts, share, common } => {
             let id = if common { "diagnosis.hum_common" } else { "diagnosis.hum" };
             millivolts(id, volts, share).with_number("hertz", mains_hz, 0)
@@ -179,15 +179,15 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
         FindingKind::SingleEnded { sine_v, cosine_v } => {
             Text::new("diagnosis.single_ended").with_number("sine", sine_v, 2).with_number("cosine", cosine_v, 2)
         }
-        FindingKind::NoiseRose { from_v, to_v } => changed("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
+        FindingKind::NoiseRose { from_v, to_v } => change_text("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
         FindingKind::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
             with_frequency(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)
         }
         FindingKind::InterferenceRose { frequency_hz, from_v, to_v, .. } => {
-            with_frequency(changed("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
+            with_frequency(change_text("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
         }
         FindingKind::AmplitudeChanged { from_v, to_v } => {
-            changed("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3)
+            change_text("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3)
         }
     }
 }
@@ -205,7 +205,7 @@ fn with_frequency(text: Text, frequency_hz: f64) -> Text {
     text.with_number("hertz", frequency_hz, if frequency_hz < 1_000.0 { 1 } else { 0 })
 }
 
-fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
+fn change_text(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
     Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
 }
 
@@ -229,7 +229,7 @@ pub fn finding_text(finding: &Parameter) -> Text {
 }
 
 /// Returns the name of a setting of the virtual sine/cosine source, without its unit.
-pub fn quantity(quantity: Quantity) -> Text {
+pub fn setting_name(quantity: Quantity) -> Text {
     Text::new(match quantity {
         Quantity::Periods => "source.periods",
         Quantity::Speed => "source.speed",
@@ -255,11 +255,11 @@ pub fn setting(error: &SettingError) -> Text {
     let SettingError { quantity: of, value, least, most } = *error;
     let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };
     Text::new(id)
-        .with_text("quantity", quantity(of))
-        .with_number("least", least, decimals(least))
-        .with_number("most", most, decimals(most))
+        .with_text("quantity", setting_name(of))
+        .with_number("least", least, decimal_places(least))
+        .with_number("most", most, decimal_places(most))
         .with("unit", format_args!("{}{}", if of.unit().is_empty() { "" } else { " " }, of.unit()))
-        .with_number("value", value, decimals(value))
+        .with_number("value", value, decimal_places(value))
 }
 
 #[cfg(test)]
@@ -274,7 +274,7 @@ mod tests {
     fn findings_name_a_remedy_in_both_languages() {
         let said = |what| {
             let finding = DiagnosisFinding { severity: Severity::Warning, kind: what };
-            [Language::English, Language::German].map(|language| diagnosis(&finding).words(language))
+            [Language::English, Language::German].map(|language| diagnosis_text(&finding).to_string_in(language))
         };
         let drive = FindingKind::Interference { frequency_hz: 8_000.3, volts: 0.0123, share: 0.0246, common: true };
         assert_eq!(
@@ -301,7 +301,7 @@ mod tests {
     fn a_setting_out_of_range_is_reported_with_its_range() {
         let said = |quantity, value| {
             let error = Settings::default().with(quantity, value).checked().unwrap_err();
-            [Language::English, Language::German].map(|language| setting(&error).words(language))
+            [Language::English, Language::German].map(|language| setting(&error).to_string_in(language))
         };
         assert_eq!(
             said(Quantity::GainRatio, 0.1234),

@@ -14,7 +14,7 @@ pub enum Cursor {
 impl Cursor {
     pub const BOTH: [Cursor; 2] = [Cursor::A, Cursor::B];
 
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             Cursor::A => "A",
             Cursor::B => "B",
@@ -24,7 +24,7 @@ impl Cursor {
 
 /// Readings of both cursors on a line, in the unit of the line. A reading is `None` if there is no valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
+pub struct CursorReadings {
     pub a: Option<f64>,
     pub b: Option<f64>,
     pub difference: Option<f64>,
@@ -57,17 +57,17 @@ impl Recorder {
     }
 
     /// Returns the readings of the cursors on a line, or `None` if no cursor is set.
-    pub fn measure(&self, line: &Series) -> Option<Measured> {
+    pub fn readings_at_cursors(&self, line: &Series) -> Option<CursorReadings> {
         let [a, b] = self.cursors;
         if a.is_none() && b.is_none() {
             return None;
         }
-        let at = |time: Option<SampleTime>| self.at(line, time?).filter(|sample| line.value(sample).is_finite());
+        let at = |time: Option<SampleTime>| self.sample_at(line, time?).filter(|sample| line.value(sample).is_finite());
         let good = |time| at(time).filter(|sample| !sample.flags.contains(crate::analysis::history::Flags::BAD));
         let (at_a, at_b) = (good(a), good(b));
         let difference = at_a.zip(at_b).map(|(a, b)| line.difference(&a, &b));
-        let between = a.zip(b).and_then(|(a, b)| self.between(line, a.min(b), a.max(b)));
-        Some(Measured {
+        let between = a.zip(b).and_then(|(a, b)| self.statistics_between(line, a.min(b), a.max(b)));
+        Some(CursorReadings {
             a: at_a.map(|sample| line.value(&sample)),
             b: at_b.map(|sample| line.value(&sample)),
             difference,
@@ -75,7 +75,7 @@ impl Recorder {
         })
     }
 
-    fn between(&self, line: &Series, from: SampleTime, to: SampleTime) -> Option<CursorStatistics> {
+    fn statistics_between(&self, line: &Series, from: SampleTime, to: SampleTime) -> Option<CursorStatistics> {
         let history = self.history(line)?;
         let statistics = history.statistics(line.column, history.indices_between(from, to.saturating_add_ns(1)))?;
         let factor = line.factor();
@@ -92,15 +92,15 @@ impl Recorder {
     }
 
     /// Returns the sample of a line nearest to a point in time, or `None` if nothing was recorded at that time.
-    pub fn at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
+    pub fn sample_at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         /// Divisor of the visible range. The result is the maximum distance of a cursor from the first or last sample.
-        const BESIDE: i64 = 200;
+        const EDGE_DIVISOR: i64 = 200;
         let history = self.history(line)?;
         let all = history.indices();
         let (first, last) = (history.time(all.start)?, history.time(all.end.checked_sub(1)?)?);
-        let beside = self.span() / BESIDE;
+        let beside = self.window_length() / EDGE_DIVISOR;
         (time >= first.saturating_add_ns(-beside) && time <= last.saturating_add_ns(beside))
-            .then(|| self.nearest(line, time))
+            .then(|| self.nearest_sample(line, time))
             .flatten()
     }
 
@@ -108,7 +108,7 @@ impl Recorder {
     /// itself.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<SampleTime>) {
         let nearest = |time: SampleTime| {
-            let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
+            let samples = self.visible_series().filter_map(|line| self.sample_at(line, time)).map(|sample| sample.time);
             samples.min_by_key(|own| own.nanoseconds_since(time).saturating_abs()).unwrap_or(time)
         };
         let time = time.map(nearest);
@@ -125,8 +125,8 @@ impl Recorder {
             self.cursors = [None; 2];
             return;
         }
-        let (mut from, mut to) = self.window();
-        if let Some((first, last)) = self.recorded()
+        let (mut from, mut to) = self.window_bounds();
+        if let Some((first, last)) = self.recorded_span()
             && first.max(from) < last.min(to)
         {
             (from, to) = (first.max(from), last.min(to));

@@ -15,11 +15,11 @@ use crate::store::{FileError, write_atomically_with};
 
 /// Number of rows in a portion.
 const ROWS: usize = 16_384;
-const WAITING: usize = 2;
+const QUEUED_CHUNKS: usize = 2;
 
 /// A table that is being written. If it is dropped before all rows have been passed on, no file is written.
 #[derive(Debug)]
-pub struct Export {
+pub struct TableExport {
     pub path: PathBuf,
     number: ExportNumber,
     cancelled: Arc<AtomicBool>,
@@ -27,7 +27,7 @@ pub struct Export {
     total: u64,
     sender: Option<Sender<Chunk>>,
     next: Option<Chunk>,
-    heads: Vec<Head>,
+    heads: Vec<ExportPosition>,
     columns: Vec<Column>,
     lost: u64,
     /// Time up to which the recording is exported, or `None` if only the visible part is exported.
@@ -40,8 +40,8 @@ pub(in crate::app) struct ExportNumber(u64);
 
 impl ExportNumber {
     fn new() -> Self {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
-        ExportNumber(NEXT.fetch_add(1, Ordering::Relaxed))
+        static NEXT_NUMBER: AtomicU64 = AtomicU64::new(0);
+        ExportNumber(NEXT_NUMBER.fetch_add(1, Ordering::Relaxed))
     }
 }
 
@@ -55,7 +55,7 @@ pub struct ExportResult {
 
 /// Position in the samples of a group up to which they have been passed on.
 #[derive(Debug)]
-struct Head {
+struct ExportPosition {
     group: GroupId,
     next: u64,
     end: u64,
@@ -93,7 +93,7 @@ struct Cell {
 }
 
 /// The part of an export that runs on a thread. It writes rows as they arrive.
-pub(in crate::app) struct Writing {
+pub(in crate::app) struct ExportWriter {
     path: PathBuf,
     number: ExportNumber,
     counts: bool,
@@ -103,13 +103,13 @@ pub(in crate::app) struct Writing {
     written: Arc<AtomicU64>,
 }
 
-impl Export {
+impl TableExport {
     pub fn progress(&self) -> (u64, u64) {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }
 
     /// Returns the number of samples that were removed from the recording before they could be written.
-    pub fn lost(&self) -> u64 {
+    pub fn dropped_samples(&self) -> u64 {
         self.lost
     }
 
@@ -119,7 +119,7 @@ impl Export {
 }
 
 impl Recorder {
-    pub fn export(&self) -> Option<&Export> {
+    pub fn export(&self) -> Option<&TableExport> {
         self.export.as_ref()
     }
 
@@ -127,12 +127,12 @@ impl Recorder {
     ///
     /// Returns the part to run on a thread; [`pass_rows_to_export`](Self::pass_rows_to_export) supplies it with rows. Returns `None` if
     /// there is nothing to write, or if a table is already being written.
-    pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
+    pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<ExportWriter> {
         if self.export.is_some() {
             return None;
         }
-        let (from, to) = self.window();
-        let mut heads: Vec<Head> = Vec::new();
+        let (from, to) = self.window_bounds();
+        let mut heads: Vec<ExportPosition> = Vec::new();
         let mut columns = Vec::new();
         for line in self.selected_series().filter(|line| !visible || self.visible_series().any(|own| own.id == line.id))
         {
@@ -141,10 +141,10 @@ impl Recorder {
                 if visible { history.indices_between(from, to.saturating_add_ns(1)) } else { history.indices() };
             let head = heads.iter().position(|head| head.group == line.group).unwrap_or(heads.len());
             if head == heads.len() {
-                heads.push(Head { group: line.group, next: range.start, end: range.end });
+                heads.push(ExportPosition { group: line.group, next: range.start, end: range.end });
             }
             columns.push(Column {
-                heading: heading(line),
+                heading: column_heading(line),
                 head,
                 column: line.column,
                 factor: line.factor(),
@@ -155,11 +155,11 @@ impl Recorder {
         if total == 0 {
             return None;
         }
-        let (sender, receiver) = bounded(WAITING);
+        let (sender, receiver) = bounded(QUEUED_CHUNKS);
         let (cancelled, written) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
         let headings = columns.iter().map(|column: &Column| column.heading.clone()).collect();
         let number = ExportNumber::new();
-        let writing = Writing {
+        let writing = ExportWriter {
             path: path.to_owned(),
             number,
             counts: self.counts,
@@ -168,7 +168,7 @@ impl Recorder {
             cancelled: cancelled.clone(),
             written: written.clone(),
         };
-        self.export = Some(Export {
+        self.export = Some(TableExport {
             path: path.to_owned(),
             number,
             cancelled,
@@ -179,7 +179,7 @@ impl Recorder {
             heads,
             columns,
             lost: 0,
-            until: self.recorded().map(|(_, last)| last).filter(|_| !visible),
+            until: self.recorded_span().map(|(_, last)| last).filter(|_| !visible),
         });
         self.pass_rows_to_export();
         Some(writing)
@@ -216,14 +216,14 @@ impl Recorder {
     }
 
     /// Returns the duration of the recording in nanoseconds that has not been exported.
-    pub fn unsaved(&self) -> i64 {
-        let Some((first, last)) = self.recorded() else { return 0 };
+    pub fn unexported_duration(&self) -> i64 {
+        let Some((first, last)) = self.recorded_span() else { return 0 };
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
     /// Returns the next rows. The samples of all groups are in the order of time, and samples of the same time are in
     /// one row.
-    fn next_rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Chunk {
+    fn next_rows(&self, heads: &mut [ExportPosition], columns: &[Column], lost: &mut u64) -> Chunk {
         // The histories have the order of the heads. A group that was removed no longer has samples.
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
@@ -236,7 +236,7 @@ impl Recorder {
         let mut rows = Rows::default();
         let mut due = vec![None; heads.len()];
         while rows.times.len() < ROWS {
-            let time = |(head, history): (&Head, &Option<&History>)| {
+            let time = |(head, history): (&ExportPosition, &Option<&History>)| {
                 (head.next < head.end).then(|| history.and_then(|history| history.time(head.next))).flatten()
             };
             let Some(now) = heads.iter().zip(&histories).filter_map(time).min() else { break };
@@ -245,13 +245,13 @@ impl Recorder {
                 head.next += u64::from(due.is_some());
             }
             rows.times.push(now);
-            rows.cells.extend(columns.iter().map(|column| cell(column, &histories, &due)));
+            rows.cells.extend(columns.iter().map(|column| cell_of(column, &histories, &due)));
         }
         if rows.times.is_empty() { Chunk::End } else { Chunk::Rows(rows) }
     }
 }
 
-fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) -> Cell {
+fn cell_of(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) -> Cell {
     let sample = || {
         let index = (*due.get(column.head)?)?;
         (*histories.get(column.head)?)?.sample(column.column, index)
@@ -264,14 +264,14 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
 }
 
 /// Returns the heading of a column with name and unit. It does not depend on the language of the window.
-fn heading(line: &Series) -> String {
+fn column_heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal_text()),
         None => line.heading.clone(),
     }
 }
 
-impl Writing {
+impl ExportWriter {
     /// Writes rows until all have arrived. Calls `wake` whenever more rows can be passed on.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> ExportResult {
         let mut given_up = false;
@@ -341,14 +341,14 @@ impl Rows {
                 }
             }
             text.push(',');
-            text.push_str(remark(flags));
+            text.push_str(flag_remark(flags));
             text.push('\n');
         }
     }
 }
 
 /// Returns the most severe flag in a row.
-fn remark(flags: Flags) -> &'static str {
+fn flag_remark(flags: Flags) -> &'static str {
     if flags.contains(Flags::BAD) {
         "bad"
     } else if flags.contains(Flags::WARNING) {

@@ -47,7 +47,7 @@ pub struct Series {
 
 impl Series {
     /// Creates a line for a column of a group. `scales` must not be empty; the first one is displayed.
-    pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
+    pub fn new(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
             id: SeriesId::default(),
             name,
@@ -66,12 +66,12 @@ impl Series {
     }
 
     #[must_use]
-    pub(crate) fn hidden(self) -> Self {
+    pub(crate) fn into_hidden(self) -> Self {
         Series { shown: false, ..self }
     }
 
     #[must_use]
-    pub(crate) fn derived(self) -> Self {
+    pub(crate) fn into_derived(self) -> Self {
         Series { derived: true, ..self }
     }
 
@@ -92,12 +92,12 @@ impl Series {
     }
 
     /// Returns the unit chosen by the user, or `None` for the default.
-    pub(super) fn chosen(&self) -> Option<Text> {
+    pub(super) fn chosen_unit(&self) -> Option<Text> {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
     /// Selects the unit of displayed values, or the default unit if there is no such unit.
-    pub(super) fn choose(&mut self, unit: Option<&Text>) {
+    pub(super) fn choose_unit(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
 
@@ -106,7 +106,7 @@ impl Series {
     }
 
     /// Returns the useful number of decimal places in the displayed unit.
-    pub fn decimals(&self) -> usize {
+    pub fn decimal_places(&self) -> usize {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 

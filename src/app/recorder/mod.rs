@@ -14,13 +14,13 @@ mod view;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub use cursors::{Cursor, Measured};
-pub use export::{Export, ExportResult};
+pub use cursors::{Cursor, CursorReadings};
+pub use export::{ExportResult, TableExport};
 pub use line::{Scale, Series, SeriesId};
 pub use trigger::{Trigger, TriggerCondition, TriggerState};
 pub use view::TimeWindow;
 
-use trigger::Watch;
+use trigger::TriggerDetector;
 
 use crate::analysis::SampleTime;
 use crate::analysis::history::{BatchError, ColumnPart, History, Kind, Sample};
@@ -75,8 +75,8 @@ pub struct SampleGroupStamp(u64);
 
 impl SampleGroupStamp {
     fn new() -> Self {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
-        SampleGroupStamp(NEXT.fetch_add(1, Ordering::Relaxed))
+        static NEXT_STAMP: AtomicU64 = AtomicU64::new(0);
+        SampleGroupStamp(NEXT_STAMP.fetch_add(1, Ordering::Relaxed))
     }
 }
 
@@ -107,8 +107,8 @@ pub struct Recorder {
     finished: bool,
     one_axis: bool,
     cursors: [Option<SampleTime>; 2],
-    watch: Option<Watch>,
-    export: Option<Export>,
+    watch: Option<TriggerDetector>,
+    export: Option<TableExport>,
     /// Time up to which the recording has been exported to a table.
     saved: Option<SampleTime>,
 }
@@ -121,7 +121,7 @@ impl Recorder {
 
     /// Creates a recorder for samples without times. The time of a sample is its number times [`SAMPLE`]. The view
     /// follows the samples and shows the given number of them.
-    pub fn counting(samples: i64) -> Self {
+    pub fn without_times(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
@@ -130,7 +130,7 @@ impl Recorder {
         self.finished = true;
     }
 
-    pub fn counts(&self) -> bool {
+    pub fn counts_samples(&self) -> bool {
         self.counts
     }
 
@@ -169,7 +169,7 @@ impl Recorder {
         }
     }
 
-    pub(in crate::app) fn remark(&mut self, id: SeriesId, remark: Option<Text>) {
+    pub(in crate::app) fn set_remark(&mut self, id: SeriesId, remark: Option<Text>) {
         self.with_line(id, |line| line.remark = remark);
     }
 
@@ -200,7 +200,7 @@ impl Recorder {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
 
-    pub fn act(&mut self, action: RecorderAction) {
+    pub fn handle_action(&mut self, action: RecorderAction) {
         match action {
             RecorderAction::Show(id, shown) => self.with_line(id, |line| line.shown = shown),
             RecorderAction::SetScale(id, scale) => self.set_scale(id, scale),
@@ -212,12 +212,12 @@ impl Recorder {
                 self.one_axis = one_axis;
                 self.lines.iter_mut().for_each(|line| line.range = None);
             }
-            RecorderAction::Follow => self.follow(),
+            RecorderAction::Follow => self.follow_newest(),
             RecorderAction::Pause => self.pause(),
-            RecorderAction::Fit => self.fit(),
+            RecorderAction::Fit => self.fit_window(),
             RecorderAction::Look(from, to) => self.zoom_to(from, to),
             RecorderAction::SetSpan(span) => self.set_span(span),
-            RecorderAction::Zoom(about, factor) => self.zoom(about, factor),
+            RecorderAction::Zoom(about, factor) => self.zoom_around(about, factor),
             RecorderAction::SetCursor(cursor, time) => self.set_cursor(cursor, time),
             RecorderAction::ShowCursors(shown) => self.show_cursors(shown),
             RecorderAction::Arm(trigger) => self.arm(trigger),
@@ -232,17 +232,17 @@ impl Recorder {
     }
 
     /// Returns all lines, in the order in which they were added.
-    pub fn lines(&self) -> &[Series] {
+    pub fn series(&self) -> &[Series] {
         &self.lines
     }
 
-    pub fn line(&self, id: SeriesId) -> Option<&Series> {
+    pub fn series_by_id(&self, id: SeriesId) -> Option<&Series> {
         self.lines.iter().find(|line| line.id == id)
     }
 
     /// Returns the displayed lines. A line that has ended is included only if it has samples in the visible range.
     pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
-        let (from, to) = self.window();
+        let (from, to) = self.window_bounds();
         let is_visible = move |line: &&Series| {
             !line.ended
                 || self
@@ -273,7 +273,7 @@ impl Recorder {
     }
 
     /// Returns the sample of a line that is nearest to a point in time.
-    pub fn nearest(&self, line: &Series, time: SampleTime) -> Option<Sample> {
+    pub fn nearest_sample(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest_index(time)?)
     }
@@ -284,7 +284,7 @@ impl Recorder {
     }
 
     /// Returns the times of the first and last samples of all groups.
-    pub fn recorded(&self) -> Option<(SampleTime, SampleTime)> {
+    pub fn recorded_span(&self) -> Option<(SampleTime, SampleTime)> {
         let ends = self.groups.values().filter_map(|Group { history, .. }| {
             let all = history.indices();
             Some((history.time(all.start)?, history.time(all.end.checked_sub(1)?)?))
@@ -304,9 +304,9 @@ impl Recorder {
         self.export = None;
         self.saved = None;
         self.cursors = [None; 2];
-        self.watch = self.watch.take().map(Watch::again);
+        self.watch = self.watch.take().map(TriggerDetector::rearmed);
         self.lines.iter_mut().for_each(|line| line.range = None);
-        self.follow();
+        self.follow_newest();
     }
 
     fn set_scale(&mut self, id: SeriesId, scale: usize) {

@@ -17,8 +17,8 @@ fn recorder(span: i64) -> (Recorder, GroupId, [SeriesId; 2]) {
     let degrees = Scale::new("unit.degrees", 360.0 / 4096.0, 3);
     let scales = vec![Scale::new("unit.steps", 1.0, 0), degrees];
     let name = || Text::new("recorder.position");
-    let counts = recorder.add_line(Series::of(group, 0, name(), "position", scales));
-    let volts = recorder.add_line(Series::of(group, 1, name(), "sine", vec![Scale::new("unit.steps", 1.0, 4)]));
+    let counts = recorder.add_line(Series::new(group, 0, name(), "position", scales));
+    let volts = recorder.add_line(Series::new(group, 1, name(), "sine", vec![Scale::new("unit.steps", 1.0, 4)]));
     (recorder, group, [counts, volts])
 }
 
@@ -37,21 +37,21 @@ fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
 #[test]
 fn the_view_follows_the_newest_sample_until_held() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
-    assert_eq!(recorder.window(), (at(0), at(100)));
+    assert_eq!(recorder.window_bounds(), (at(0), at(100)));
     ramp(&mut recorder, group, 0, 50);
-    assert_eq!(recorder.window(), (at(0), at(100)), "filled from the left");
+    assert_eq!(recorder.window_bounds(), (at(0), at(100)), "filled from the left");
     ramp(&mut recorder, group, 50, 301);
-    assert_eq!(recorder.window(), (at(200), at(300)));
-    recorder.act(RecorderAction::Pause);
+    assert_eq!(recorder.window_bounds(), (at(200), at(300)));
+    recorder.handle_action(RecorderAction::Pause);
     ramp(&mut recorder, group, 301, 400);
-    assert_eq!(recorder.window(), (at(200), at(300)), "recorded on");
-    assert!(!recorder.follows());
-    recorder.act(RecorderAction::Follow);
-    assert_eq!(recorder.window(), (at(299), at(399)));
-    recorder.act(RecorderAction::Zoom(at(350), 0.5));
-    assert_eq!(recorder.window(), (at(349), at(399)), "the newest stays at the edge");
-    recorder.act(RecorderAction::Fit);
-    let (from, to) = recorder.window();
+    assert_eq!(recorder.window_bounds(), (at(200), at(300)), "recorded on");
+    assert!(!recorder.follows_newest());
+    recorder.handle_action(RecorderAction::Follow);
+    assert_eq!(recorder.window_bounds(), (at(299), at(399)));
+    recorder.handle_action(RecorderAction::Zoom(at(350), 0.5));
+    assert_eq!(recorder.window_bounds(), (at(349), at(399)), "the newest stays at the edge");
+    recorder.handle_action(RecorderAction::Fit);
+    let (from, to) = recorder.window_bounds();
     assert!(from == at(0) && to > at(399) && to < at(402));
 }
 
@@ -59,24 +59,27 @@ fn the_view_follows_the_newest_sample_until_held() {
 fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
-    recorder.act(RecorderAction::Look(at(400), at(200)));
-    assert_eq!(recorder.window(), (at(200), at(400)), "whichever end was first");
-    recorder.act(RecorderAction::Zoom(at(250), 0.5));
-    assert_eq!(recorder.window(), (at(225), at(325)));
+    recorder.handle_action(RecorderAction::Look(at(400), at(200)));
+    assert_eq!(recorder.window_bounds(), (at(200), at(400)), "whichever end was first");
+    recorder.handle_action(RecorderAction::Zoom(at(250), 0.5));
+    assert_eq!(recorder.window_bounds(), (at(225), at(325)));
     for factor in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        recorder.act(RecorderAction::Zoom(at(250), factor));
-        assert_eq!(recorder.window(), (at(225), at(325)));
+        recorder.handle_action(RecorderAction::Zoom(at(250), factor));
+        assert_eq!(recorder.window_bounds(), (at(225), at(325)));
     }
-    recorder.act(RecorderAction::SetSpan(10 * MILLISECOND));
-    assert_eq!(recorder.window(), (at(315), at(325)));
-    (0..100).for_each(|_| recorder.act(RecorderAction::Zoom(at(320), 0.1)));
-    assert_eq!(recorder.span(), 100);
-    (0..100).for_each(|_| recorder.act(RecorderAction::Zoom(at(320), 1e9)));
-    assert_eq!(recorder.span(), 8_640_000 * 1_000 * MILLISECOND, "a hundred days");
-    recorder.act(RecorderAction::Look(at(5), at(5)));
-    assert_eq!(recorder.span(), 100);
-    recorder.act(RecorderAction::Look(SampleTime::from_nanoseconds(i64::MIN), SampleTime::from_nanoseconds(i64::MAX)));
-    assert!(recorder.span() > 0);
+    recorder.handle_action(RecorderAction::SetSpan(10 * MILLISECOND));
+    assert_eq!(recorder.window_bounds(), (at(315), at(325)));
+    (0..100).for_each(|_| recorder.handle_action(RecorderAction::Zoom(at(320), 0.1)));
+    assert_eq!(recorder.window_length(), 100);
+    (0..100).for_each(|_| recorder.handle_action(RecorderAction::Zoom(at(320), 1e9)));
+    assert_eq!(recorder.window_length(), 8_640_000 * 1_000 * MILLISECOND, "a hundred days");
+    recorder.handle_action(RecorderAction::Look(at(5), at(5)));
+    assert_eq!(recorder.window_length(), 100);
+    recorder.handle_action(RecorderAction::Look(
+        SampleTime::from_nanoseconds(i64::MIN),
+        SampleTime::from_nanoseconds(i64::MAX),
+    ));
+    assert!(recorder.window_length() > 0);
 }
 
 /// Python: statistics of 100…200 in steps of 1: mean 150, stdev 29.300170647967224, times 360/4096.
@@ -86,12 +89,12 @@ fn cursors_measure_on_the_raw_samples() {
     ramp(&mut recorder, group, 0, 150);
     add(&mut recorder, group, 150, 1 << 50, 9.0, Flags::BAD);
     ramp(&mut recorder, group, 151, 1000);
-    assert_eq!(recorder.measure(recorder.line(counts).unwrap()), None);
-    recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(200))));
-    recorder.act(RecorderAction::SetCursor(Cursor::B, Some(SampleTime::from_nanoseconds(99_800_000))));
+    assert_eq!(recorder.readings_at_cursors(recorder.series_by_id(counts).unwrap()), None);
+    recorder.handle_action(RecorderAction::SetCursor(Cursor::A, Some(at(200))));
+    recorder.handle_action(RecorderAction::SetCursor(Cursor::B, Some(SampleTime::from_nanoseconds(99_800_000))));
     assert_eq!(recorder.cursor_distance(), Some(-100 * MILLISECOND), "on the samples that are read");
-    recorder.act(RecorderAction::SetScale(counts, 1));
-    let measured = recorder.measure(recorder.line(counts).unwrap()).unwrap();
+    recorder.handle_action(RecorderAction::SetScale(counts, 1));
+    let measured = recorder.readings_at_cursors(recorder.series_by_id(counts).unwrap()).unwrap();
     let degrees = 360.0 / 4096.0;
     assert_eq!((measured.a, measured.b), (Some(200.0 * degrees), Some(100.0 * degrees)), "the nearest raw samples");
     assert_eq!(measured.difference, Some(-100.0 * degrees));
@@ -101,11 +104,11 @@ fn cursors_measure_on_the_raw_samples() {
     assert!((between.mean - 150.0 * degrees).abs() < 1e-12);
     // Without the invalid one in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
     assert!((between.deviation - 29.447_779_494_755_07 * degrees).abs() < 1e-9, "{}", between.deviation / degrees);
-    recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(150))));
-    let measured = recorder.measure(recorder.line(volts).unwrap()).unwrap();
+    recorder.handle_action(RecorderAction::SetCursor(Cursor::A, Some(at(150))));
+    let measured = recorder.readings_at_cursors(recorder.series_by_id(volts).unwrap()).unwrap();
     assert_eq!((measured.a, measured.difference), (None, None), "what is bad is not read");
-    recorder.act(RecorderAction::ShowCursors(false));
-    assert_eq!(recorder.measure(recorder.line(volts).unwrap()), None);
+    recorder.handle_action(RecorderAction::ShowCursors(false));
+    assert_eq!(recorder.readings_at_cursors(recorder.series_by_id(volts).unwrap()), None);
 }
 
 #[test]
@@ -113,18 +116,18 @@ fn a_cursor_outside_the_recording_reads_nothing() {
     let (mut recorder, group, [counts, _]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Whole], 100, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
-    let late = recorder.add_line(Series::of(slow, 0, Text::new("recorder.speed"), "counter", scales));
+    let late = recorder.add_line(Series::new(slow, 0, Text::new("recorder.speed"), "counter", scales));
     ramp(&mut recorder, group, 0, 1000);
     recorder.append(slow, &[at(700), at(900)], &[ColumnPart::from_integers(&[7, 9])]).unwrap();
-    recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(500))));
-    recorder.act(RecorderAction::SetCursor(Cursor::B, Some(at(5_000))));
+    recorder.handle_action(RecorderAction::SetCursor(Cursor::A, Some(at(500))));
+    recorder.handle_action(RecorderAction::SetCursor(Cursor::B, Some(at(5_000))));
     assert_eq!(recorder.cursor(Cursor::B), Some(at(5_000)), "it stands where it was put");
-    let measure = |id| recorder.measure(recorder.line(id).unwrap()).unwrap();
+    let measure = |id| recorder.readings_at_cursors(recorder.series_by_id(id).unwrap()).unwrap();
     assert_eq!((measure(counts).a, measure(counts).b, measure(counts).difference), (Some(500.0), None, None));
     assert_eq!((measure(late).a, measure(late).b), (None, None), "it was not recorded yet");
     assert_eq!(measure(late).between.unwrap().count, 2);
-    recorder.act(RecorderAction::Fit);
-    recorder.act(RecorderAction::ShowCursors(true));
+    recorder.handle_action(RecorderAction::Fit);
+    recorder.handle_action(RecorderAction::ShowCursors(true));
     assert_eq!(Cursor::BOTH.map(|cursor| recorder.cursor(cursor)), [Some(at(333)), Some(at(666))]);
 }
 
@@ -133,7 +136,7 @@ fn a_held_view_is_not_evicted_by_newer_samples() {
     let mut recorder = Recorder::new(100 * MILLISECOND);
     let group = recorder.add_group(&[Kind::Whole], 10_000, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
-    let line = recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "position", scales));
+    let line = recorder.add_line(Series::new(group, 0, Text::new("recorder.position"), "position", scales));
     let feed = |recorder: &mut Recorder, from: i64, to: i64| {
         let times: Vec<SampleTime> = (from..to).map(at).collect();
         let values: Vec<i64> = (from..to).collect();
@@ -141,14 +144,14 @@ fn a_held_view_is_not_evicted_by_newer_samples() {
     };
     arm(&mut recorder, line, TriggerCondition::Rising, 5_000.0, false);
     (0..100).for_each(|portion| feed(&mut recorder, portion * 1000, (portion + 1) * 1000));
-    let (from, to) = recorder.window();
+    let (from, to) = recorder.window_bounds();
     assert_eq!((from, to), (at(4_975), at(5_075)));
-    let own = recorder.line(line).unwrap();
-    let seen = |time| recorder.nearest(own, at(time)).unwrap().value.to_f64() as i64;
+    let own = recorder.series_by_id(line).unwrap();
+    let seen = |time| recorder.nearest_sample(own, at(time)).unwrap().value.to_f64() as i64;
     assert_eq!((seen(4_975), seen(5_075)), (4_975, 5_075), "still there");
-    recorder.act(RecorderAction::Disarm);
+    recorder.handle_action(RecorderAction::Disarm);
     feed(&mut recorder, 100_000, 101_000);
-    assert_eq!(recorder.recorded().unwrap().1, at(100_999), "and goes on");
+    assert_eq!(recorder.recorded_span().unwrap().1, at(100_999), "and goes on");
 }
 
 #[test]
@@ -157,13 +160,13 @@ fn a_trigger_searches_a_finished_recording_immediately() {
     ramp(&mut recorder, group, 0, 1000);
     recorder.finish();
     arm(&mut recorder, counts, TriggerCondition::Rising, 600.0, false);
-    assert_eq!((state(&recorder), recorder.window()), (TriggerState::Held(at(600)), (at(575), at(675))));
+    assert_eq!((state(&recorder), recorder.window_bounds()), (TriggerState::Held(at(600)), (at(575), at(675))));
     arm(&mut recorder, counts, TriggerCondition::Falling, 600.0, false);
     assert_eq!(state(&recorder), TriggerState::Missed);
 }
 
 fn arm(recorder: &mut Recorder, line: SeriesId, when: TriggerCondition, level: f64, repeat: bool) {
-    recorder.act(RecorderAction::Arm(Trigger { line, when, level, before: 0.25, repeat }));
+    recorder.handle_action(RecorderAction::Arm(Trigger { line, when, level, before: 0.25, repeat }));
 }
 
 fn state(recorder: &Recorder) -> TriggerState {
@@ -174,19 +177,19 @@ fn state(recorder: &Recorder) -> TriggerState {
 fn a_trigger_shows_the_samples_before_it_and_holds() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 500);
-    recorder.act(RecorderAction::SetScale(counts, 1));
+    recorder.handle_action(RecorderAction::SetScale(counts, 1));
     // 600 steps in degrees: a level is in the displayed unit.
     arm(&mut recorder, counts, TriggerCondition::Rising, 600.0 * 360.0 / 4096.0, false);
     assert_eq!(state(&recorder), TriggerState::Armed);
     ramp(&mut recorder, group, 500, 601);
     assert_eq!(state(&recorder), TriggerState::Fired(at(600)));
-    assert_eq!(recorder.window(), (at(575), at(675)));
+    assert_eq!(recorder.window_bounds(), (at(575), at(675)));
     ramp(&mut recorder, group, 601, 674);
     assert_eq!(state(&recorder), TriggerState::Fired(at(600)));
     ramp(&mut recorder, group, 674, 2000);
     assert_eq!(state(&recorder), TriggerState::Held(at(600)));
-    assert_eq!(recorder.window(), (at(575), at(675)), "held");
-    recorder.act(RecorderAction::SetScale(counts, 0));
+    assert_eq!(recorder.window_bounds(), (at(575), at(675)), "held");
+    recorder.handle_action(RecorderAction::SetScale(counts, 0));
     assert_eq!(recorder.trigger(), None, "the level was in another unit");
 }
 
@@ -224,7 +227,7 @@ fn an_edge_across_a_gap_does_not_trigger() {
     add(&mut recorder, group, 10, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 700, 0, 9.0, Flags::NONE);
     assert_eq!(state(&recorder), TriggerState::Armed);
-    recorder.act(RecorderAction::Arm(Trigger {
+    recorder.handle_action(RecorderAction::Arm(Trigger {
         line: volts,
         when: TriggerCondition::Rising,
         level: f64::NAN,
@@ -241,7 +244,7 @@ fn a_repeated_trigger_shows_complete_windows() {
     let wave = |time: i64| if time % 70 < 35 { -1.0 } else { 1.0 };
     (0..400).for_each(|time| add(&mut recorder, group, time, 0, wave(time), Flags::NONE));
     // Edges at 35, 105, 175, …: after 35 + 75 the next picture begins with the edge at 175, then at 315.
-    assert_eq!(recorder.window(), (at(290), at(390)));
+    assert_eq!(recorder.window_bounds(), (at(290), at(390)));
     assert_eq!(state(&recorder), TriggerState::Armed);
 }
 
@@ -253,7 +256,7 @@ fn removing_the_last_line_removes_its_samples() {
     recorder.remove_line(counts);
     assert!(recorder.trigger().is_none() && !recorder.is_empty());
     recorder.remove_line(volts);
-    assert!(recorder.is_empty() && recorder.recorded().is_none());
+    assert!(recorder.is_empty() && recorder.recorded_span().is_none());
     assert_eq!(recorder.append(group, &[at(20)], &[]), Err(BatchError::Shape));
 }
 
@@ -261,13 +264,13 @@ fn removing_the_last_line_removes_its_samples() {
 fn clearing_removes_only_the_samples() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
-    recorder.act(RecorderAction::SetScale(counts, 1));
-    recorder.act(RecorderAction::ShowCursors(true));
-    recorder.act(RecorderAction::Clear);
+    recorder.handle_action(RecorderAction::SetScale(counts, 1));
+    recorder.handle_action(RecorderAction::ShowCursors(true));
+    recorder.handle_action(RecorderAction::Clear);
     assert!(recorder.is_empty() && recorder.cursor(Cursor::A).is_none());
-    assert_eq!(recorder.line(counts).unwrap().scale_number(), 1);
+    assert_eq!(recorder.series_by_id(counts).unwrap().scale_number(), 1);
     add(&mut recorder, group, 5, 1, 1.0, Flags::NONE);
-    assert_eq!(recorder.recorded(), Some((at(5), at(5))), "time may begin anew");
+    assert_eq!(recorder.recorded_span(), Some((at(5), at(5))), "time may begin anew");
 }
 
 fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
@@ -293,33 +296,33 @@ fn a_table_has_a_row_per_time_and_blanks_for_bad_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Real], 100, None);
     let celsius = vec![Scale::new("unit.degrees", 1.0, 1)];
-    recorder.add_line(Series::of(slow, 0, Text::new("recorder.position"), "temperature, \"inside\"", celsius));
+    recorder.add_line(Series::new(slow, 0, Text::new("recorder.position"), "temperature, \"inside\"", celsius));
     add(&mut recorder, group, -1, 4096, 0.5, Flags::NONE);
     add(&mut recorder, group, 2, 1024, f64::NAN, Flags::NONE);
     add(&mut recorder, group, 3, 7, 0.25, Flags::BAD);
     recorder.append(slow, &[at(2), at(1_000)], &[ColumnPart::from_reals(&[21.5, 22.0])]).unwrap();
-    recorder.act(RecorderAction::SetScale(counts, 1));
+    recorder.handle_action(RecorderAction::SetScale(counts, 1));
     let expected = "time [s],position [°],sine [steps],temperature   inside  [°],remark\n\
                     -0.001000000,360,0.5,,\n\
                     0.002000000,90,,21.5,bad\n\
                     0.003000000,,,,bad\n\
                     1.000000000,,,22,\n";
-    assert_eq!(recorder.unsaved(), 1_001 * MILLISECOND);
+    assert_eq!(recorder.unexported_duration(), 1_001 * MILLISECOND);
     assert_eq!(exported(&mut recorder, false).unwrap(), expected);
-    assert_eq!(recorder.unsaved(), 0);
-    recorder.act(RecorderAction::Look(at(-5), at(1)));
-    recorder.act(RecorderAction::Show(volts, false));
+    assert_eq!(recorder.unexported_duration(), 0);
+    recorder.handle_action(RecorderAction::Look(at(-5), at(1)));
+    recorder.handle_action(RecorderAction::Show(volts, false));
     let visible = exported(&mut recorder, true).unwrap();
     assert_eq!(visible.lines().skip(1).collect::<Vec<_>>(), ["-0.001000000,360,,"]);
-    recorder.act(RecorderAction::Look(at(10_000), at(20_000)));
+    recorder.handle_action(RecorderAction::Look(at(10_000), at(20_000)));
     assert_eq!(exported(&mut recorder, true), None, "nothing to write");
 }
 
 #[test]
 fn samples_without_times_are_counted() {
-    let mut recorder = Recorder::counting(100);
+    let mut recorder = Recorder::without_times(100);
     let group = recorder.add_group(&[Kind::Real], 100, None);
-    recorder.add_line(Series::of(
+    recorder.add_line(Series::new(
         group,
         0,
         Text::new("recorder.position"),
@@ -328,7 +331,7 @@ fn samples_without_times_are_counted() {
     ));
     let times: Vec<SampleTime> = (0..3).map(|sample| SampleTime::from_nanoseconds(sample * SAMPLE)).collect();
     recorder.append(group, &times, &[ColumnPart::from_reals(&[0.5, 1.5, 2.5])]).unwrap();
-    assert_eq!(recorder.span(), 100 * SAMPLE);
+    assert_eq!(recorder.window_length(), 100 * SAMPLE);
     assert_eq!(exported(&mut recorder, false).unwrap(), "sample,sine [steps],remark\n0,0.5,\n1,1.5,\n2,2.5,\n");
 }
 
@@ -345,7 +348,7 @@ fn a_long_export_is_complete_and_can_be_cancelled() {
     std::fs::write(&path, "the old one").unwrap();
     let writing = recorder.begin_export(&path, false).unwrap();
     assert!(recorder.begin_export(&path, false).is_none(), "one at a time");
-    recorder.act(RecorderAction::CancelExport);
+    recorder.handle_action(RecorderAction::CancelExport);
     recorder.pass_rows_to_export();
     let given_up = writing.run(&|| {});
     assert!(given_up.rows.unwrap().is_none());
@@ -369,7 +372,7 @@ fn an_export_is_cancelled_when_its_samples_are_evicted() {
         let writing = recorder.begin_export(&path, false).unwrap();
         recorder.pass_rows_to_export();
         if clear {
-            recorder.act(RecorderAction::Clear);
+            recorder.handle_action(RecorderAction::Clear);
         }
         drop(recorder);
         assert!(writing.run(&|| {}).rows.unwrap().is_none());

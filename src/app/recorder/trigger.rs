@@ -53,7 +53,7 @@ pub enum TriggerState {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Watch {
+pub(super) struct TriggerDetector {
     trigger: Trigger,
     when: TriggerCondition,
     level: f64,
@@ -64,16 +64,16 @@ pub(super) struct Watch {
     span: i64,
 }
 
-impl Watch {
+impl TriggerDetector {
     pub(super) fn trigger(&self) -> &Trigger {
         &self.trigger
     }
 
-    pub(super) fn again(self) -> Self {
-        Watch { state: TriggerState::Armed, last: None, ..self }
+    pub(super) fn rearmed(self) -> Self {
+        TriggerDetector { state: TriggerState::Armed, last: None, ..self }
     }
 
-    fn window(&self, at: SampleTime) -> (SampleTime, SampleTime) {
+    fn event_window(&self, at: SampleTime) -> (SampleTime, SampleTime) {
         let from = at.saturating_add_ns(-((self.span as f64 * self.trigger.before) as i64));
         (from, from.saturating_add_ns(self.span))
     }
@@ -103,7 +103,7 @@ impl Recorder {
     }
 
     pub(super) fn arm(&mut self, trigger: Trigger) {
-        let Some(factor) = self.line(trigger.line).map(super::Series::factor) else { return };
+        let Some(factor) = self.series_by_id(trigger.line).map(super::Series::factor) else { return };
         let level = trigger.level / factor;
         if trigger.when.needs_level() && !level.is_finite() {
             return;
@@ -118,8 +118,8 @@ impl Recorder {
         };
         let before = if trigger.before.is_finite() { trigger.before.clamp(0.0, 1.0) } else { 0.5 };
         let trigger = Trigger { before, ..trigger };
-        let span = self.span();
-        self.watch = Some(Watch { trigger, when, level, state: TriggerState::Armed, last: None, span });
+        let span = self.window_length();
+        self.watch = Some(TriggerDetector { trigger, when, level, state: TriggerState::Armed, last: None, span });
         if self.finished {
             self.search();
         } else {
@@ -130,7 +130,7 @@ impl Recorder {
     /// Searches the recorded samples for the first event.
     fn search(&mut self) {
         let Some(mut watch) = self.watch else { return };
-        let Some(line) = self.line(watch.trigger.line) else { return };
+        let Some(line) = self.series_by_id(watch.trigger.line) else { return };
         let (Some(history), column) = (self.history(line), line.column) else { return };
         let found = history.indices().find_map(|index| {
             let sample = history.sample(column, index)?;
@@ -139,7 +139,7 @@ impl Recorder {
         watch.state = found.map_or(TriggerState::Missed, TriggerState::Held);
         self.watch = Some(watch);
         if let Some(at) = found {
-            let (from, to) = watch.window(at);
+            let (from, to) = watch.event_window(at);
             self.view = TimeWindow::Fixed { from, to };
         }
     }
@@ -152,7 +152,7 @@ impl Recorder {
         let Some(oldest) = history.time(history.indices().start) else { return false };
         // Samples before the view may be displaced.
         let remains = history.oldest_remaining_time(more);
-        remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
+        remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.event_window(at).0)
     }
 
     pub(super) fn disarm(&mut self) {
@@ -162,13 +162,13 @@ impl Recorder {
     /// Searches the new samples of a group, starting at `from`.
     pub(super) fn find_trigger(&mut self, group: GroupId, from: u64) {
         let Some(mut watch) = self.watch else { return };
-        let Some(line) = self.line(watch.trigger.line).filter(|line| line.group == group) else { return };
+        let Some(line) = self.series_by_id(watch.trigger.line).filter(|line| line.group == group) else { return };
         let (Some(history), column) = (self.history(line), line.column) else { return };
         let mut shown = None;
         for index in from..history.indices().end {
             let Some(sample) = history.sample(column, index) else { continue };
             if let TriggerState::Fired(at) = watch.state
-                && sample.time >= watch.window(at).1
+                && sample.time >= watch.event_window(at).1
             {
                 watch.state = if watch.trigger.repeat { TriggerState::Armed } else { TriggerState::Held(at) };
                 shown = Some(at);
@@ -183,7 +183,7 @@ impl Recorder {
         }
         self.watch = Some(watch);
         if let Some(at) = shown {
-            let (from, to) = watch.window(at);
+            let (from, to) = watch.event_window(at);
             self.view = TimeWindow::Fixed { from, to };
         }
     }

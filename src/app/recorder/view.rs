@@ -4,9 +4,9 @@ use super::Recorder;
 use crate::analysis::SampleTime;
 
 /// Minimum length of a view in nanoseconds.
-const SHORTEST: i64 = 100;
+const MIN_LENGTH_NS: i64 = 100;
 /// Maximum length of a view in nanoseconds: a hundred days.
-const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
+const MAX_LENGTH_NS: i64 = 100 * 86_400 * 1_000_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
@@ -28,18 +28,18 @@ impl Default for TimeWindow {
 }
 
 impl Recorder {
-    pub fn view(&self) -> TimeWindow {
+    pub fn time_window(&self) -> TimeWindow {
         self.view
     }
 
-    pub fn follows(&self) -> bool {
+    pub fn follows_newest(&self) -> bool {
         matches!(self.view, TimeWindow::Follow { .. })
     }
 
-    pub fn window(&self) -> (SampleTime, SampleTime) {
+    pub fn window_bounds(&self) -> (SampleTime, SampleTime) {
         match self.view {
             TimeWindow::Fixed { from, to } => (from, to),
-            TimeWindow::Follow { span } => match self.recorded() {
+            TimeWindow::Follow { span } => match self.recorded_span() {
                 Some((first, last)) if last.nanoseconds_since(first) >= span => (last.saturating_add_ns(-span), last),
                 Some((first, _)) => (first, first.saturating_add_ns(span)),
                 None => (SampleTime::ORIGIN, SampleTime::ORIGIN.saturating_add_ns(span)),
@@ -47,38 +47,38 @@ impl Recorder {
         }
     }
 
-    pub fn span(&self) -> i64 {
-        let (from, to) = self.window();
+    pub fn window_length(&self) -> i64 {
+        let (from, to) = self.window_bounds();
         to.nanoseconds_since(from).max(1)
     }
 
-    pub(super) fn follow(&mut self) {
+    pub(super) fn follow_newest(&mut self) {
         // The view keeps its duration.
-        self.view = TimeWindow::Follow { span: self.span() };
+        self.view = TimeWindow::Follow { span: self.window_length() };
         self.lines.iter_mut().for_each(|line| line.range = None);
     }
 
     pub(super) fn pause(&mut self) {
-        let (from, to) = self.window();
+        let (from, to) = self.window_bounds();
         self.view = TimeWindow::Fixed { from, to };
     }
 
-    pub(super) fn fit(&mut self) {
+    pub(super) fn fit_window(&mut self) {
         self.lines.iter_mut().for_each(|line| line.range = None);
-        let Some((first, last)) = self.recorded() else { return };
+        let Some((first, last)) = self.recorded_span() else { return };
         // The view ends slightly later, so the last sample is visible.
-        let span = last.nanoseconds_since(first).max(SHORTEST);
+        let span = last.nanoseconds_since(first).max(MIN_LENGTH_NS);
         self.view = TimeWindow::Fixed { from: first, to: last.saturating_add_ns(span / 200 + 1) };
     }
 
     pub(super) fn zoom_to(&mut self, from: SampleTime, to: SampleTime) {
         let (from, to) = (from.min(to), from.max(to));
-        let span = to.nanoseconds_since(from).clamp(SHORTEST, LONGEST);
+        let span = to.nanoseconds_since(from).clamp(MIN_LENGTH_NS, MAX_LENGTH_NS);
         self.view = TimeWindow::Fixed { from, to: from.saturating_add_ns(span) };
     }
 
     pub(super) fn set_span(&mut self, span: i64) {
-        let span = span.clamp(SHORTEST, LONGEST);
+        let span = span.clamp(MIN_LENGTH_NS, MAX_LENGTH_NS);
         self.view = match self.view {
             TimeWindow::Follow { .. } => TimeWindow::Follow { span },
             TimeWindow::Fixed { to, .. } => TimeWindow::Fixed { from: to.saturating_add_ns(-span), to },
@@ -86,12 +86,12 @@ impl Recorder {
     }
 
     /// Zooms around a time. If the view follows the samples, the newest one stays in place.
-    pub(super) fn zoom(&mut self, about: SampleTime, factor: f64) {
+    pub(super) fn zoom_around(&mut self, about: SampleTime, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;
         }
         let longer = |nanoseconds: i64| (nanoseconds as f64 * factor).round() as i64;
-        let span = longer(self.span()).clamp(SHORTEST, LONGEST);
+        let span = longer(self.window_length()).clamp(MIN_LENGTH_NS, MAX_LENGTH_NS);
         match self.view {
             TimeWindow::Follow { .. } => self.view = TimeWindow::Follow { span },
             TimeWindow::Fixed { from, to } => {

@@ -24,7 +24,7 @@ impl Permit {
     /// All permits in display order, except those for individual fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::TypeMismatch, Permit::Mounting, Permit::Recreate];
 
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             Permit::OtherDevice => "review.allow_other",
             Permit::TypeMismatch => "review.allow_other_type",
@@ -34,7 +34,7 @@ impl Permit {
         }
     }
 
-    pub const fn hint(self) -> Option<&'static str> {
+    pub const fn hint_id(self) -> Option<&'static str> {
         match self {
             Permit::OtherDevice | Permit::Copy(_) => None,
             Permit::TypeMismatch => Some("review.allow_other_type_hint"),
@@ -44,7 +44,7 @@ impl Permit {
     }
 
     /// Returns the restore option for a permit, or `None` if not all kinds of devices have this option.
-    pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
+    pub fn restore_option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
             Permit::TypeMismatch => Some(&mut options.allow_other_type),

@@ -3,7 +3,7 @@
 
 #![warn(missing_docs)]
 
-use super::drafts::DRAFT_BACK;
+use super::drafts::DRAFT_RESTORED_ID;
 use super::{DraftEdits, DraftKey, DraftOutcome, HasSession, Kind, Phase, ProfileFile, SaveRequest, Source};
 use crate::app::services::Services;
 use crate::app::{PendingEdits, Severity, Text, explain};
@@ -18,18 +18,18 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 pub trait HasDraft: HasSession {
     /// Returns the key of the device in the logbook. Returns `None` before the device has been read, and for a device
     /// that has no identity.
-    fn key(&self) -> Option<DeviceKey>;
+    fn device_key(&self) -> Option<DeviceKey>;
 
     /// Returns the type and serial number that name the draft of the device, or `None` if nothing has been read.
     ///
     /// The type is included because another type may use the same number. The serial number is empty for a device that
     /// has no identity.
     fn type_and_serial(&self) -> Option<(String, String)> {
-        self.key().map(|key| (key.device_type, key.serial_number))
+        self.device_key().map(|key| (key.device_type, key.serial_number))
     }
 
     /// Returns the current edits.
-    fn edited(&self) -> Edits<Self>;
+    fn current_edits(&self) -> Edits<Self>;
 
     /// Restores earlier edits. Edits that are no longer valid are left out.
     fn take_edits(&mut self, edits: Edits<Self>);
@@ -38,14 +38,14 @@ pub trait HasDraft: HasSession {
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument);
 
     /// Returns the edits for counting.
-    fn pending(&self) -> &dyn PendingEdits;
+    fn pending_edits(&self) -> &dyn PendingEdits;
 
     /// Returns the edits for undo and redo.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
     /// Discards all edits as one undo step.
     fn revert_edits(&mut self) {
-        self.pending_mut().revert();
+        self.pending_mut().discard_all();
     }
 
     /// Handles the successful saving of a connected device's profile to a file.
@@ -75,10 +75,10 @@ pub trait HasDraft: HasSession {
 
     /// Handles the result of a draft task.
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
-        let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().has_no_edits());
-        if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
+        let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.current_edits().has_no_edits());
+        if let Some(edits) = self.session_mut().drafting.handle_outcome(done, key.as_ref(), dirty, &name, services) {
             self.take_edits(edits);
-            let edits = self.edited();
+            let edits = self.current_edits();
             self.session_mut().drafting.restore_edits(edits, &name, services);
         }
     }
@@ -88,14 +88,14 @@ pub trait HasDraft: HasSession {
         if !self.session().drafting.is_due() {
             return;
         }
-        let (key, name, edits) = (self.draft_key(), self.session().name(), self.edited());
+        let (key, name, edits) = (self.draft_key(), self.session().name(), self.current_edits());
         let nameless = key.is_none() && self.type_and_serial().is_some();
         if nameless && !edits.has_no_edits() {
             self.session_mut().drafting.report_missing_draft(&name, services);
         }
         if edits.has_no_edits() {
             // The edits were written, saved or discarded.
-            services.log.settle(DRAFT_BACK, Some(&name));
+            services.log.remove_from_window(DRAFT_RESTORED_ID, Some(&name));
         }
         self.session_mut().drafting.save(key, edits, services);
     }
@@ -107,13 +107,13 @@ pub trait HasDraft: HasSession {
 
     /// Leaves the edits of the previous device on disk, because another device or none is opened.
     fn release_draft(&mut self, services: &mut Services) {
-        let (key, edits) = (self.draft_key(), self.edited());
-        self.session_mut().drafting.leave(key, edits, services);
+        let (key, edits) = (self.draft_key(), self.current_edits());
+        self.session_mut().drafting.leave_on_disk(key, edits, services);
     }
 
     /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and leaves none
     /// behind.
-    fn written(
+    fn handle_profile_written(
         &mut self,
         saving: SaveRequest,
         file: ProfileFile,
@@ -123,7 +123,7 @@ pub trait HasDraft: HasSession {
         let name = self.session().name();
         self.session_mut().is_saving = false;
         if let Err(error) = result {
-            let texts = vec![explain::file(&error), Text::new(NOT_SAVED)];
+            let texts = vec![explain::file_error_text(&error), Text::new(NOT_SAVED)];
             return services.notify(Severity::Error, texts, Some(&name));
         }
         let severity = if saving.remarks.is_empty() { Severity::Good } else { Severity::Warning };
@@ -137,10 +137,10 @@ pub trait HasDraft: HasSession {
             self.adopt_written_file(file, *saving.document, services);
         }
         // Earlier notices about this document no longer apply.
-        services.log.settle(NOT_SAVED, Some(&name));
+        services.log.remove_from_window(NOT_SAVED, Some(&name));
         services.log.remove_file_notices(&saving.path);
-        if self.edited().has_no_edits() {
-            services.log.settle(DRAFT_BACK, Some(&name));
+        if self.current_edits().has_no_edits() {
+            services.log.remove_from_window(DRAFT_RESTORED_ID, Some(&name));
         }
         services.notify(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
     }
@@ -150,11 +150,11 @@ pub trait HasDraft: HasSession {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {
             let before = self.draft_key();
-            self.session_mut().drafting.forget(before, services);
+            self.session_mut().drafting.remove_draft(before, services);
         }
         self.apply_document(file, document);
         if moves && let Some(key) = self.draft_key() {
-            self.session_mut().drafting.begin(key, services);
+            self.session_mut().drafting.begin_for_profile(key, services);
         }
     }
 }

@@ -11,16 +11,16 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::app::action::{Action, Done};
+use crate::app::action::{Action, TaskResult};
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::store::{Claim, Drafts, FileError};
 
-pub(super) const DRAFT_BACK: &str = "session.draft_back";
+pub(super) const DRAFT_RESTORED_ID: &str = "session.draft_back";
 
 /// Maximum time for another session to release its claim. A closed session may still be writing.
-const PATIENCE: Duration = Duration::from_secs(1);
+const CLAIM_TIMEOUT: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -106,16 +106,16 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 
     pub(in crate::app) fn load(&mut self, key: DraftKey, services: &Services) {
-        self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
+        self.claim_draft(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
     /// Takes over the draft of a newly saved profile. The profile has no edits, and an earlier draft belongs to the
     /// file that it replaced.
-    pub(in crate::app) fn begin(&mut self, key: DraftKey, services: &Services) {
-        self.claim(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
+    pub(in crate::app) fn begin_for_profile(&mut self, key: DraftKey, services: &Services) {
+        self.claim_draft(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
 
-    fn claim(
+    fn claim_draft(
         &mut self,
         key: DraftKey,
         services: &Services,
@@ -127,7 +127,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
             let began = Instant::now();
             let claim = loop {
                 match drafts.claim(&key.kind, &key.name) {
-                    Ok(None) if began.elapsed() < PATIENCE => std::thread::sleep(RETRY),
+                    Ok(None) if began.elapsed() < CLAIM_TIMEOUT => std::thread::sleep(RETRY),
                     Ok(claim) => break Ok(claim),
                     Err(error) => break Err(error),
                 }
@@ -136,7 +136,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
                 Ok(None) => Ok(None),
                 _ => load(&drafts, &key),
             };
-            Action::Done(Done::Draft(session, DraftOutcome::Looked { key, claim, result }))
+            Action::Done(TaskResult::Draft(session, DraftOutcome::Looked { key, claim, result }))
         });
     }
 
@@ -144,7 +144,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     ///
     /// A result about a draft other than `own` is outdated. If `dirty` is set, new edits take precedence over earlier
     /// ones.
-    pub(in crate::app) fn take(
+    pub(in crate::app) fn handle_outcome(
         &mut self,
         done: DraftOutcome,
         own: Option<&DraftKey>,
@@ -174,7 +174,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         let text = match result {
             Ok(text) => text?,
             Err(error) => {
-                services.notify(Severity::Warning, vec![explain::file(&error)], Some(name));
+                services.notify(Severity::Warning, vec![explain::file_error_text(&error)], Some(name));
                 return None;
             }
         };
@@ -196,7 +196,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     /// Handles the restoration of earlier edits. `edits` are those that are still valid.
     pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.has_no_edits() {
-            services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
+            services.notify(Severity::Warning, vec![Text::new(DRAFT_RESTORED_ID)], Some(name));
         }
         self.kept = edits;
     }
@@ -214,7 +214,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         if let Err(error) = result
             && !std::mem::replace(&mut self.is_failure_reported, true)
         {
-            let text = Text::new("session.draft_not_kept").with_text("why", explain::file(&error));
+            let text = Text::new("session.draft_not_kept").with_text("why", explain::file_error_text(&error));
             services.notify(Severity::Warning, vec![text], Some(name));
         }
     }
@@ -261,7 +261,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 
     /// Leaves the edits of the previous device on disk, because another device or none is opened.
-    pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
+    pub(in crate::app) fn leave_on_disk(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
             && before.is_loaded
@@ -272,7 +272,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 
     /// Removes the draft, because the edits are now stored in another file.
-    pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
+    pub(in crate::app) fn remove_draft(&mut self, key: Option<DraftKey>, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
             && before.is_loaded
@@ -299,6 +299,6 @@ fn store_edits<E: DraftEdits>(
             drafts.save(&key.kind, &key.name, &ron::to_string(&edits).unwrap_or_default())
         };
         drop(claim);
-        Action::Done(Done::Draft(session, DraftOutcome::Kept { key, result }))
+        Action::Done(TaskResult::Draft(session, DraftOutcome::Kept { key, result }))
     });
 }

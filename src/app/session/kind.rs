@@ -51,12 +51,12 @@ pub trait Kind: Device + Sized {
     fn job_text(job: &Self::Job) -> Text;
 
     /// Returns whether a job changes the memory of the device.
-    fn writes(_job: &Self::Job) -> bool {
+    fn writes_memory(_job: &Self::Job) -> bool {
         false
     }
 
     /// Returns the job that reads all displayed values of the device.
-    fn survey() -> Self::Job;
+    fn survey_job() -> Self::Job;
 
     /// Returns the description of a step of a job.
     fn step_text(what: &Self::JobStep) -> Text;

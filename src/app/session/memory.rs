@@ -24,7 +24,7 @@ pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewable>::Pre
 /// A device with writable memory.
 pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Returns the open review, if any.
-    fn review(&self) -> Option<&Review<Self::Device>> {
+    fn open_review(&self) -> Option<&Review<Self::Device>> {
         self.session().review.as_ref()
     }
 
@@ -34,13 +34,13 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Describes an operation of a plan.
-    fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OperationTexts {
-        Self::Device::op(prepared, op)
+    fn operation_texts(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OperationTexts {
+        Self::Device::operation_texts(prepared, op)
     }
 
     /// Returns the review as it is displayed, after `done` operations have been executed.
-    fn sheet(&self, done: usize) -> Option<ReviewSheet> {
-        self.review().map(|review| review.review_sheet(done, |prepared, op| self.op(prepared, op)))
+    fn review_sheet(&self, done: usize) -> Option<ReviewSheet> {
+        self.open_review().map(|review| review.review_sheet(done, |prepared, op| self.operation_texts(prepared, op)))
     }
 
     /// Returns the change that writes the edits, if there are any.
@@ -57,14 +57,14 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Returns whether a plan was made for a device other than the one read before.
     fn targets_other_device(&self, prepared: &Prepared<Self>) -> bool {
-        self.key().is_some_and(|own| own != prepared.device(own.is_virtual))
+        self.device_key().is_some_and(|own| own != prepared.device(own.is_virtual))
     }
 
     /// Creates the job that prepares the plan of a change.
-    fn prepare(change: Change<Self>) -> Job<Self>;
+    fn prepare_job(change: Change<Self>) -> Job<Self>;
 
     /// Creates the job that executes an approved plan.
-    fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
+    fn commit_job(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
     /// Discards all data about the device, because another device has replied.
     fn discard_device_data(&mut self);
@@ -86,14 +86,14 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     fn schedule_rereads(&mut self) {}
 
     /// Handles the end of a plan that has been executed.
-    fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
+    fn handle_executed_plan(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
     /// Logs the start of a write and its changes.
     fn log_write_start(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
         let ops = &prepared.plan().ops;
-        let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
+        let operations = ops.iter().map(|op| Self::Device::operation_texts(prepared, op).item);
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
-        services.note(Severity::Note, vec![text], Some(&self.session().name()));
+        services.log_only(Severity::Note, vec![text], Some(&self.session().name()));
     }
 
     /// Requests a plan for writing the edits, to be reviewed by the user.
@@ -117,9 +117,9 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         let objection = self.change_rejection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {
-            return review.fail(vec![why], false, 0);
+            return review.end_early(vec![why], false, 0);
         }
-        if !self.try_submit(Self::prepare(change), services) {
+        if !self.try_submit(Self::prepare_job(change), services) {
             *self.review_mut() = None;
         }
     }
@@ -129,13 +129,13 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         if self.session().is_busy() {
             return;
         }
-        if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
+        if let Some(change) = self.open_review().and_then(|review| review.with_toggled_permit(permit)) {
             self.plan(change, services);
         }
     }
 
     /// Sets whether to write although the device has reached its limit of write cycles.
-    fn force_wear(&mut self, force: bool) {
+    fn accept_wear(&mut self, force: bool) {
         if let Some(review) = self.review_mut() {
             review.force_wear = force;
         }
@@ -143,28 +143,28 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Adopts a plan for review. If another device has replied, the plan is discarded, because the change was meant for
     /// the previous device.
-    fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
+    fn adopt_plan(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.targets_other_device(&prepared) {
             *self.review_mut() = None;
             // With edits, the change of the device was reported when it was read.
-            if !self.pending().is_dirty() {
+            if !self.pending_edits().is_dirty() {
                 let serial = prepared.device(self.session().is_virtual()).serial_number;
                 let text = Text::new("session.plan_of_another").with("serial", serial);
                 services.notify(Severity::Warning, vec![text], Some(&self.session().name()));
             }
-            return self.submit(Self::Device::survey(), services);
+            return self.submit(Self::Device::survey_job(), services);
         }
         let objection = self.rejection_reason(&prepared);
         let Some(review) = self.review_mut() else { return };
         match objection {
             None => review.state = ReviewState::Ready(prepared),
-            Some(why) => review.fail(vec![why], false, 0),
+            Some(why) => review.end_early(vec![why], false, 0),
         }
     }
 
     /// Handles a change of the device. The edits for the previous device stay on disk if it has a serial number.
     fn handle_device_replacement(&mut self, serial: &str, services: &mut Services) {
-        if self.pending().is_dirty() {
+        if self.pending_edits().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
             let text = if is_kept { "session.other_encoder" } else { "session.edits_gone" };
             let text = Text::new(text).with("serial", serial);
@@ -178,15 +178,15 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Executes the plan that the user has reviewed.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
-        if let Some(agreed) = self.agree(shown) {
-            let job = self.commit(agreed);
+        if let Some(agreed) = self.approve_plan(shown) {
+            let job = self.commit_job(agreed);
             self.begin_write(job, services);
         }
     }
 
     /// Approves the displayed plan, if it is the plan under review.
-    fn agree(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
-        let review = self.review().filter(|_| self.session().is_ready())?;
+    fn approve_plan(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
+        let review = self.open_review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
         let is_shown = prepared.plan().id() == shown;
         is_shown.then(|| worker::commit::ApprovedPlan {
@@ -213,7 +213,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Closes the review. A write in progress continues and keeps its review.
     fn close_review(&mut self) {
-        let Some(review) = self.review().filter(|review| !review.is_writing()) else { return };
+        let Some(review) = self.open_review().filter(|review| !review.is_writing()) else { return };
         let is_planning = review.is_planning();
         if let Some(line) = self.session_mut().line.as_mut().filter(|_| is_planning) {
             line.stop_job();
@@ -224,28 +224,28 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Handles the end of an executed plan. The device is read again.
     fn handle_commit_end(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
-        let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
+        let (name, stands) = (self.session().name(), self.open_review().is_some_and(Review::is_writing));
         // The review shows a success until it is closed.
         if severity == Severity::Good && stands {
-            services.note(severity, texts, Some(&name));
+            services.log_only(severity, texts, Some(&name));
         } else {
             services.notify(severity, texts, Some(&name));
         }
         self.pending_mut().clear_undo_steps();
         self.schedule_rereads();
-        self.carried_out(&committed, services);
+        self.handle_executed_plan(&committed, services);
         if let Some(review) = self.review_mut()
             && let ReviewState::Writing(prepared) = &review.state
         {
             review.state = ReviewState::Done(prepared.clone(), committed);
         }
-        self.submit(Self::Device::survey(), services);
+        self.submit(Self::Device::survey_job(), services);
     }
 
     /// Handles the early end of planning or writing. Returns whether the review reports it. A plan that is cancelled
     /// while it is prepared leaves no review.
     fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
-        let Some(review) = self.review() else { return false };
+        let Some(review) = self.open_review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
             (_, false, false) | (EarlyEnd::Lost, _, false) => return false,
             (EarlyEnd::Cancelled(_), true, _) => {
@@ -263,14 +263,14 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             }
         };
         if let Some(review) = self.review_mut() {
-            review.fail(texts.to_vec(), begun, done);
+            review.end_early(texts.to_vec(), begun, done);
         }
         true
     }
 
     /// Discards a plan that has not been started.
     fn discard_plan(&mut self) {
-        if self.review().is_some_and(Review::is_pending_plan) {
+        if self.open_review().is_some_and(Review::is_pending_plan) {
             *self.review_mut() = None;
         }
     }

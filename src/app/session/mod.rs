@@ -136,7 +136,7 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    pub fn line(&self) -> Option<&LiveSession<D>> {
+    pub fn live_session(&self) -> Option<&LiveSession<D>> {
         self.line.as_ref()
     }
 
@@ -146,15 +146,15 @@ impl<D: Kind> Session<D> {
     }
 
     pub fn is_busy(&self) -> bool {
-        self.line.as_ref().is_some_and(|line| line.running().is_some())
+        self.line.as_ref().is_some_and(|line| line.running_job().is_some())
     }
 
     pub fn is_writing(&self) -> bool {
-        self.line.as_ref().and_then(LiveSession::running).is_some_and(|running| running.writes)
+        self.line.as_ref().and_then(LiveSession::running_job).is_some_and(|running| running.writes)
     }
 
     pub fn is_polling(&self) -> bool {
-        self.line.as_ref().is_some_and(|line| line.polling().is_some())
+        self.line.as_ref().is_some_and(|line| line.polling_interval().is_some())
     }
 
     pub fn is_active(&self) -> bool {
@@ -178,11 +178,11 @@ impl<D: Kind> Session<D> {
 
     pub fn attach_connection(&mut self, opened: OpenedConnection<D>, services: &mut Services) {
         let is_sole_master = self.opening.take().is_some_and(|opening| opening.is_sole_master);
-        self.trace.begin(opened.began.clone());
+        self.trace.begin_connection(opened.began.clone());
         self.line = Some(LiveSession::new(opened));
         self.live_due = D::STARTS_LIVE && (is_sole_master || self.is_virtual());
         self.phase = Phase::Connected;
-        services.log.settle("session.not_connected", Some(&self.name()));
+        services.log.remove_from_window("session.not_connected", Some(&self.name()));
         self.just_connected = true;
     }
 
@@ -190,7 +190,7 @@ impl<D: Kind> Session<D> {
     /// is no line.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
-        let begins = line.polling().is_none();
+        let begins = line.polling_interval().is_none();
         line.poll(interval);
         Some(begins)
     }
@@ -207,17 +207,17 @@ impl<D: Kind> Session<D> {
             self.phase = Phase::Silent(why);
         }
         let texts = std::iter::once(Text::new("session.poll_failed")).chain(why).collect();
-        self.report(Severity::Error, texts, stands_there, services);
+        self.report_message(Severity::Error, texts, stands_there, services);
     }
 
     /// Starts a job. If this is impossible, the reason is reported and `false` is returned.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
-        let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
+        let (name, what, writes) = (self.name(), D::job_text(&job), D::writes_memory(&job));
         let Some(line) = &mut self.line else {
             services.notify(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
             return false;
         };
-        match line.submit(job, what.clone(), writes, services.now()) {
+        match line.submit(job, what.clone(), writes, services.current_time()) {
             Ok(id) => {
                 services.record_job_start(self.id, id, &name, what);
                 return true;
@@ -246,7 +246,7 @@ impl<D: Kind> Session<D> {
         self.live_due = false;
         if self.phase == Phase::Opening {
             let why = Text::new("session.open_cancelled");
-            services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
+            services.log_only(Severity::Note, vec![why.clone()], Some(&self.name()));
             self.phase = Phase::Lost(why);
             if let Some(opening) = &mut self.opening {
                 // Results of this attempt are ignored. The next attempt waits until it has ended.
@@ -260,22 +260,22 @@ impl<D: Kind> Session<D> {
 
     /// Releases the thread, and ends the running job with `end`. A write that is cancelled ends later and reports its
     /// result itself.
-    pub(crate) fn let_go(&mut self, end: JobState, services: &mut Services) {
+    pub(crate) fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };
         let (url, about) = (url.clone(), self.name());
         let Some(line) = self.line.take() else { return };
-        let write = line.running().filter(|running| running.writes && end == JobState::Cancelled).map(|own| own.id);
-        if let Some(running) = line.running().filter(|_| write.is_none()) {
+        let write = line.running_job().filter(|running| running.writes && end == JobState::Cancelled).map(|own| own.id);
+        if let Some(running) = line.running_job().filter(|_| write.is_none()) {
             services.end_job(self.id, running.id, end);
         }
-        services.leave(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
+        services.release_worker(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
     }
 
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // The message is displayed where the session is shown.
-        services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
-        self.let_go(JobState::Failed(why.clone()), services);
+        services.log_only(Severity::Error, vec![why.clone()], Some(&self.name()));
+        self.release_thread(JobState::Failed(why.clone()), services);
         self.opening = None;
         self.phase = Phase::Lost(why);
     }

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::{FileSnapshot, ProfileFile, SaveRequest, SessionState, Source};
-use crate::app::action::Done;
-use crate::app::documents::{document_of, read_document, read_profile};
+use crate::app::action::TaskResult;
+use crate::app::documents::{new_document, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
 use crate::profile::{Body, ProfileDocument};
@@ -32,7 +32,7 @@ impl SessionState {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
         let remarks = without.into_iter().chain(remarks).collect();
-        self.write_document(path, document_of(body), remarks, services);
+        self.write_document(path, new_document(body), remarks, services);
     }
 
     /// Adopts a profile that was read again from its file, or was saved to another file.
@@ -75,8 +75,8 @@ impl SessionState {
     pub(in crate::app) fn list_backups(&self, of: DeviceKey, services: &Services) {
         let (store, id) = (services.world.store.clone(), self.id);
         services.tasks.run("backups", move || {
-            let listed = Box::new(DeviceHistory::of(&of, &store));
-            Action::Done(Done::Listed(id, of, listed))
+            let listed = Box::new(DeviceHistory::load(&of, &store));
+            Action::Done(TaskResult::Listed(id, of, listed))
         });
     }
 
@@ -84,12 +84,12 @@ impl SessionState {
         let (session, formats) = (self.id, services.world.kinds.formats);
         services.tasks.run("backup", move || {
             let result = read_profile(&path, formats).map(Box::new);
-            Action::Done(Done::Backup { session, of, path, result })
+            Action::Done(TaskResult::Backup { session, of, path, result })
         });
     }
 
     pub(in crate::app) fn set_backups(&mut self, listed: DeviceHistory) {
-        self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
+        self.backups = Some(listed.backups.map_err(|error| explain::file_error_text(&error)));
         self.cycles = listed.cycles;
         self.statuses = listed.statuses;
         self.writes = Some(listed.writes.map_err(|error| explain::logbook_unreadable(&error)));
@@ -110,7 +110,7 @@ impl DeviceHistory {
     const STATUSES: u32 = 20;
     const WRITES: u32 = 200;
 
-    pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
+    pub(in crate::app) fn load(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list(&key.kind, &key.serial_number);
         let (writes, cycles, statuses) = match store.logbook_path() {
             path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0), Vec::new()),

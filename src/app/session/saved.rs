@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{HasMemory, HasSession, Phase, Source};
 use crate::app::Text;
 use crate::app::action::ReadError;
-use crate::app::documents::{document_of, read_error, read_only_reason};
+use crate::app::documents::{new_document, read_error, read_only_reason};
 use crate::app::services::Services;
 use crate::profile::{Body, ProfileDocument, ProfileError};
 use crate::worker::Device;
@@ -45,7 +45,7 @@ pub trait HasProfile: HasMemory {
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
     /// Returns the remarks to show when the edited profile is saved.
-    fn remarks(&self) -> Vec<Text> {
+    fn save_remarks(&self) -> Vec<Text> {
         Vec::new()
     }
 
@@ -53,23 +53,23 @@ pub trait HasProfile: HasMemory {
     /// replies, earlier readings are saved.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = read_only_reason(&self.session().source) {
-            self.session().refuse(refusal, services);
+            self.session().report_rejection(refusal, services);
         } else if let Source::File { document, .. } = &self.session().source {
             let mut document = (**document).clone();
             if let Some(body) = self.edited_body() {
                 document.body = body;
             }
-            let remarks = self.remarks();
+            let remarks = self.save_remarks();
             self.session_mut().write_document(path, document, remarks, services);
         } else if let Some(known) = self.last_read_profile().filter(|_| self.saves_last_reading()) {
             let (body, remarks) = match known {
                 Ok(known) => known,
                 Err(missing) => {
                     let text = Text::new("session.not_all_read").with_list("missing", missing);
-                    return self.session().refuse(text, services);
+                    return self.session().report_rejection(text, services);
                 }
             };
-            let mut document = document_of(body);
+            let mut document = new_document(body);
             document.note = Some("as it was read last; the device did not answer when this was saved".to_owned());
             let remarks = std::iter::once(Text::new("session.saved_as_read")).chain(remarks).collect();
             self.session_mut().write_document(path, document, remarks, services);
@@ -79,9 +79,9 @@ pub trait HasProfile: HasMemory {
     }
 
     fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
-        match self.key() {
+        match self.device_key() {
             Some(of) => self.session().read_backup(of, path, services),
-            None => self.session().refuse(Text::new("session.not_connected"), services),
+            None => self.session().report_rejection(Text::new("session.not_connected"), services),
         }
     }
 
@@ -91,24 +91,24 @@ pub trait HasProfile: HasMemory {
             self.restore(known.body, services).map_err(ReadError::Profile)
         });
         if let Err(error) = restored {
-            self.session().refuse(read_error(path, &error, services.world.kinds), services);
+            self.session().report_rejection(read_error(path, &error, services.world.kinds), services);
         }
     }
 
     /// Starts a task that lists the backups and writes.
     fn list_backups(&self, services: &Services) {
-        if let Some(key) = self.key().filter(|_| self.session().phase != Phase::Offline) {
+        if let Some(key) = self.device_key().filter(|_| self.session().phase != Phase::Offline) {
             self.session().list_backups(key, services);
         }
     }
 }
 
 /// Maximum number of remarks of one kind that are listed.
-const SAID: usize = 3;
+const MAX_LISTED_REMARKS: usize = 3;
 
 /// Lists the first few items, and the number of the remaining ones.
 pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
-    let more = things.len().saturating_sub(SAID);
+    let more = things.len().saturating_sub(MAX_LISTED_REMARKS);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
-    things.iter().take(SAID).map(words).chain(rest).collect()
+    things.iter().take(MAX_LISTED_REMARKS).map(words).chain(rest).collect()
 }

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Source, file_key};
-use crate::app::action::{Action, Done, ReadError};
+use crate::app::action::{Action, ReadError, TaskResult};
 use crate::app::diverged::ProfileConflict;
 use crate::app::studio::SessionId;
 use crate::app::{KindRegistry, Text};
@@ -55,9 +55,11 @@ impl SaveRequest {
         let formats = kinds.formats;
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
-            match changed(&self.path, &guard.text, &self.document, formats) {
+            match text_to_replace(&self.path, &guard.text, &self.document, formats) {
                 Ok(text) => self.opened = Some(FileSnapshot { key: key.clone(), text }),
-                Err(found) => return Action::Done(Done::Diverged(Box::new(ProfileConflict::new(self, *found, kinds)))),
+                Err(found) => {
+                    return Action::Done(TaskResult::Diverged(Box::new(ProfileConflict::new(self, *found, kinds))));
+                }
             }
         }
         let (text, lost) = match &self.opened {
@@ -68,13 +70,13 @@ impl SaveRequest {
             None => (self.document.emit(), Vec::new()),
         };
         if !lost.is_empty() && !self.may_lose {
-            return Action::Done(Done::WouldLose(Box::new(self), lost));
+            return Action::Done(TaskResult::WouldLose(Box::new(self), lost));
         }
         let result: Result<(), FileError> = overwrite_text(&self.path, &text);
         // The key is determined after writing. A symbolic link may lead to another file by now, and a new file exists
         // only now.
         let file = ProfileFile { key: file_key(&self.path), path: self.path.clone(), text };
-        Action::Done(Done::Written { saving: Box::new(self), file, result })
+        Action::Done(TaskResult::Written { saving: Box::new(self), file, result })
     }
 }
 
@@ -89,7 +91,7 @@ pub(in crate::app) struct DivergedFile {
 
 /// Returns the text to be replaced, or the content of the file if others have changed it. A missing file is not a
 /// change.
-fn changed(
+fn text_to_replace(
     path: &Path,
     opened: &str,
     wanted: &ProfileDocument,

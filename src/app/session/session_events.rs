@@ -35,7 +35,7 @@ pub trait SessionEvents: HasSession {
 
     /// Returns the explanation of a frame for the trace. It is empty if the bytes need none. Called once for each
     /// frame, in order.
-    fn meaning_of(&mut self, _frame: &TraceEntry) -> FrameExplanation {
+    fn explain_frame(&mut self, _frame: &TraceEntry) -> FrameExplanation {
         FrameExplanation::default()
     }
 
@@ -43,7 +43,7 @@ pub trait SessionEvents: HasSession {
     fn message_received(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
     /// Handles the result of a finished job.
-    fn finished(&mut self, output: Output<Self>, services: &mut Services);
+    fn handle_finished_job(&mut self, output: Output<Self>, services: &mut Services);
 
     /// Returns whether the error means that the link is open, but the device does not reply.
     fn is_no_response(&self, error: &Error<Self>) -> bool;
@@ -81,7 +81,7 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Processes the events of the line since the last call.
-    fn pump(&mut self, services: &mut Services) {
+    fn process_events(&mut self, services: &mut Services) {
         self.poll_line(services);
     }
 
@@ -90,7 +90,7 @@ pub trait SessionEvents: HasSession {
         // Samples that precede a job are handled before its result. Later ones are handled in the next call.
         self.fetch_samples_and_frames();
         while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {
-            self.take(event, services);
+            self.handle_event(event, services);
         }
         if self.session().line.as_ref().is_some_and(LiveSession::is_dead) {
             self.connection_lost(Text::new("session.ended"), services);
@@ -100,20 +100,20 @@ pub trait SessionEvents: HasSession {
     /// Fetches the samples and frames received since the last call.
     fn fetch_samples_and_frames(&mut self) {
         let Some(line) = &mut self.session_mut().line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
+        let (samples, dropped) = line.take_samples();
+        let (frames, missed) = line.take_frames();
         if !samples.is_empty() || dropped > 0 {
             self.handle_samples(samples, dropped);
-            self.session_mut().answers();
+            self.session_mut().mark_replying();
         }
         if !frames.is_empty() {
-            let meanings: Vec<_> = frames.iter().map(|frame| self.meaning_of(frame)).collect();
-            self.session_mut().trace.add(frames.into_iter().zip(meanings), missed);
+            let meanings: Vec<_> = frames.iter().map(|frame| self.explain_frame(frame)).collect();
+            self.session_mut().trace.add_frames(frames.into_iter().zip(meanings), missed);
         }
     }
 
     /// Handles an event of the line.
-    fn take(&mut self, event: Event<Self::Device>, services: &mut Services) {
+    fn handle_event(&mut self, event: Event<Self::Device>, services: &mut Services) {
         match event {
             Event::Started(_) => {}
             Event::Progress(_, progress) => self.handle_progress(progress.step),
@@ -121,14 +121,14 @@ pub trait SessionEvents: HasSession {
             Event::Finished(id, output) => {
                 services.end_job(self.session().id, id, JobState::Done);
                 if Self::is_device_reply(&output) {
-                    self.session_mut().answers();
+                    self.session_mut().mark_replying();
                 }
-                self.finished(*output, services);
+                self.handle_finished_job(*output, services);
             }
-            Event::Failed(id, error) => self.failed(id, &error, services),
+            Event::Failed(id, error) => self.handle_failed_job(id, &error, services),
             Event::Cancelled(id, error) => self.cancelled(id, &error, services),
             Event::PollFailed(error) => self.poll_failed(&error, services),
-            Event::Lost(error) => self.connection_lost(explain::link(&error), services),
+            Event::Lost(error) => self.connection_lost(explain::link_error_text(&error), services),
         }
         self.session_mut().drafting.mark_draft_due();
     }
@@ -152,14 +152,14 @@ pub trait SessionEvents: HasSession {
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
         let stands_there = self.handle_early_end(EarlyEnd::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
-        self.session().report(severity, texts, stands_there, services);
+        self.session().report_message(severity, texts, stands_there, services);
         if begun {
-            self.submit(Self::Device::survey(), services);
+            self.submit(Self::Device::survey_job(), services);
         }
     }
 
     /// Handles a job that failed.
-    fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
+    fn handle_failed_job(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
         services.end_job(self.session().id, id, JobState::Failed(first(&texts)));
         let stands_there = self.handle_early_end(EarlyEnd::Failed(error), &texts, services);
@@ -170,10 +170,10 @@ pub trait SessionEvents: HasSession {
                 self.session_mut().mark_unresponsive(texts, services);
             }
             None => {
-                self.session_mut().answers();
-                self.session().report(Severity::Error, texts, stands_there, services);
+                self.session_mut().mark_replying();
+                self.session().report_message(Severity::Error, texts, stands_there, services);
                 if error.has_begun() {
-                    self.submit(Self::Device::survey(), services);
+                    self.submit(Self::Device::survey_job(), services);
                 }
             }
         }
@@ -190,10 +190,10 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Releases the thread, ends the running job with `end`, and discards any plan.
-    fn let_go(&mut self, end: JobState, services: &mut Services) {
+    fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.prepare_release();
         self.discard_requests();
-        self.session_mut().let_go(end, services);
+        self.session_mut().release_thread(end, services);
     }
 }
 

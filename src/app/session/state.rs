@@ -65,7 +65,7 @@ impl SessionState {
     }
 
     /// Returns the source of the data without secrets.
-    pub fn place(&self) -> String {
+    pub fn data_source(&self) -> String {
         match &self.source {
             Source::Link(url) => self.kinds.display_link(url),
             Source::File { path, .. } => path.display().to_string(),
@@ -90,11 +90,11 @@ impl SessionState {
         let Source::Link(url) = &self.source else { return };
         let link = Text::new("log.answers").with("link", self.kinds.display_link(url));
         let texts = std::iter::once(link).chain(facts).collect();
-        services.note(Severity::Note, texts, Some(&self.name()));
+        services.log_only(Severity::Note, texts, Some(&self.name()));
     }
 
     /// Marks the device as replying, even if it only refuses requests.
-    pub(crate) fn answers(&mut self) {
+    pub(crate) fn mark_replying(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;
         }
@@ -104,15 +104,21 @@ impl SessionState {
     /// to do.
     pub(crate) fn mark_unresponsive(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
-        services.log.settle("session.not_connected", Some(&self.name()));
-        services.note(Severity::Error, why, Some(&self.name()));
+        services.log.remove_from_window("session.not_connected", Some(&self.name()));
+        services.log_only(Severity::Error, why, Some(&self.name()));
     }
 
     /// Reports a message about this device. It is only logged if it is already shown where it was requested
     /// (`stands_there`).
-    pub(crate) fn report(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
+    pub(crate) fn report_message(
+        &self,
+        severity: Severity,
+        texts: Vec<Text>,
+        stands_there: bool,
+        services: &mut Services,
+    ) {
         match stands_there {
-            true => services.note(severity, texts, Some(&self.name())),
+            true => services.log_only(severity, texts, Some(&self.name())),
             false => services.notify(severity, texts, Some(&self.name())),
         }
     }
@@ -123,7 +129,7 @@ impl SessionState {
         self.statuses.clear();
     }
 
-    pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
+    pub(crate) fn report_rejection(&self, why: Text, services: &mut Services) {
         services.notify(Severity::Error, vec![why], Some(&self.name()));
     }
 }

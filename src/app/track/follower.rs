@@ -1,7 +1,7 @@
 //! Tracking of positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
 //! cannot have made an unnoticed turn.
 
-use super::Meaning;
+use super::PositionScales;
 use crate::analysis::{Motion, MotionRates, PositionUnwrapper, SampleTime, UnwrappedPosition};
 
 /// Duration in nanoseconds over which speed is averaged.
@@ -9,7 +9,7 @@ const WINDOW: i64 = 250_000_000;
 
 #[derive(Debug)]
 pub(super) struct PositionTracker {
-    pub(super) meaning: Meaning,
+    pub(super) meaning: PositionScales,
     unwrap: PositionUnwrapper,
     motion: Motion,
     /// Last position without wrap-around, with its time.
@@ -21,7 +21,7 @@ pub(super) struct PositionTracker {
 }
 
 impl PositionTracker {
-    pub(super) fn new(meaning: Meaning) -> Self {
+    pub(super) fn new(meaning: PositionScales) -> Self {
         let unwrap = meaning.range.and_then(PositionUnwrapper::rotary).unwrap_or_else(PositionUnwrapper::without_wrap);
         PositionTracker {
             meaning,
@@ -58,11 +58,11 @@ impl PositionTracker {
             self.motion.reset();
             (self.last, self.pace) = (None, None);
         }
-        self.follow(time, next.steps);
+        self.follow_position(time, next.steps);
         Some((next, self.motion.next(time, next.steps)))
     }
 
-    fn follow(&mut self, time: SampleTime, steps: i64) {
+    fn follow_position(&mut self, time: SampleTime, steps: i64) {
         let pace = |(before, from): (SampleTime, i64)| {
             let seconds = time.seconds_since(before);
             (seconds > 0.0).then(|| (steps.saturating_sub(from) as f64 / seconds).abs())

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Meaning {
+pub struct PositionScales {
     /// Number of positions in the range after which they wrap, or `None` for a linear encoder.
     pub(in crate::app) range: Option<i64>,
     /// Units of position, speed and acceleration. Samples are in steps.
@@ -14,7 +14,7 @@ pub struct Meaning {
     step: Option<f64>,
 }
 
-impl Meaning {
+impl PositionScales {
     /// Creates the meaning of steps whose size is unknown.
     pub fn for_steps(range: Option<i64>) -> Self {
         let scales = [
@@ -22,7 +22,7 @@ impl Meaning {
             vec![Scale::new("unit.steps_per_second", 1.0, 0)],
             vec![Scale::new("unit.steps_per_second_squared", 1.0, 0)],
         ];
-        Meaning { range, scales, is_linear: false, step: None }
+        PositionScales { range, scales, is_linear: false, step: None }
     }
 
     /// Creates the meaning of positions on a shaft. The number of steps per revolution may be fractional.
@@ -45,7 +45,7 @@ impl Meaning {
                 Scale::new("unit.steps_per_second_squared", 1.0, 0),
             ],
         ];
-        Meaning { range, scales, is_linear: false, step: Some(turns) }
+        PositionScales { range, scales, is_linear: false, step: Some(turns) }
     }
 
     /// Creates the meaning of linear positions, with the length of a step in millimetres.
@@ -62,12 +62,12 @@ impl Meaning {
                 Scale::new("unit.steps_per_second_squared", 1.0, 0),
             ],
         ];
-        Meaning { range: None, scales, is_linear: true, step: Some(millimetres) }
+        PositionScales { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
     /// Returns whether both describe the same positions. The units may differ.
-    pub(super) fn is_same_location(&self, other: &Meaning) -> bool {
-        let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
+    pub(super) fn is_same_location(&self, other: &PositionScales) -> bool {
+        let own = |meaning: &PositionScales| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)
     }
 
@@ -76,16 +76,16 @@ impl Meaning {
         [("recorder.position", "position"), (speed, "speed"), ("recorder.acceleration", "acceleration")]
     }
 
-    pub(super) fn lines(&self, group: GroupId) -> [Series; 3] {
+    pub(super) fn create_series(&self, group: GroupId) -> [Series; 3] {
         let [position, speed, acceleration] = self.scales.clone();
         let [own_position, own_speed, own_acceleration] = self.column_headings();
         let line = |column, (name, heading): (&'static str, &'static str), scales| {
-            Series::of(group, column, Text::new(name), heading, scales)
+            Series::new(group, column, Text::new(name), heading, scales)
         };
         [
             line(0, own_position, position),
-            line(1, own_speed, speed).derived(),
-            line(2, own_acceleration, acceleration).derived().hidden(),
+            line(1, own_speed, speed).into_derived(),
+            line(2, own_acceleration, acceleration).into_derived().into_hidden(),
         ]
     }
 }

@@ -11,8 +11,8 @@ impl Watchable for Nothing {
         true
     }
 
-    fn line(&self, group: GroupId) -> Series {
-        Series::of(group, 0, Text::new("recorder.position"), "nothing", vec![Scale::new("unit.steps", 1.0, 0)])
+    fn create_series(&self, group: GroupId) -> Series {
+        Series::new(group, 0, Text::new("recorder.position"), "nothing", vec![Scale::new("unit.steps", 1.0, 0)])
     }
 }
 
@@ -29,7 +29,7 @@ fn stream(from: u64, count: u64) -> Vec<PositionSample> {
 }
 
 fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
-    let line = &track.recorder.lines()[line];
+    let line = &track.recorder.series()[line];
     let history = track.recorder.history(line).unwrap();
     let sample = |at| history.sample(line.column(), at).unwrap();
     history.indices().map(sample).map(|own| (own.time.as_nanoseconds(), own.value.to_f64(), own.flags)).collect()
@@ -37,12 +37,12 @@ fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags
 
 #[test]
 fn a_stream_is_recorded_completely() {
-    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
+    let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
     // In portions of odd sizes.
     let all = stream(0, 40_000);
-    all.chunks(173).for_each(|portion| track.add(portion, &meaning));
-    assert_eq!((track.positions(), track.dropped_count()), (40_000, 0));
+    all.chunks(173).for_each(|portion| track.add_positions(portion, &meaning));
+    assert_eq!((track.position_count(), track.dropped_count()), (40_000, 0));
     for (number, (time, steps, flags)) in samples(&track, 0).into_iter().enumerate() {
         assert_eq!((time, steps), (number as i64 * 50_000, number as f64 * 50.0), "the wrap is none");
         assert_eq!(flags, Flags::NONE);
@@ -55,19 +55,19 @@ fn a_stream_is_recorded_completely() {
 
 #[test]
 fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
-    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
+    let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
     let mut own = stream(0, 6);
     own[2].position = None;
     own[4].is_bad = true;
     own[5].is_warned = true;
-    track.add(&own, &meaning);
+    track.add_positions(&own, &meaning);
     track.record_dropped(3);
-    track.add(&stream(9, 2), &meaning);
-    track.gap();
-    track.add(&stream(11, 1), &meaning);
+    track.add_positions(&stream(9, 2), &meaning);
+    track.mark_gap();
+    track.add_positions(&stream(11, 1), &meaning);
     // One that was read singly before is not recorded again.
-    track.add(&stream(5, 1), &meaning);
+    track.add_positions(&stream(5, 1), &meaning);
     let (none, bad, broken) = (Flags::NONE, Flags::BAD | Flags::BREAK, Flags::BREAK);
     // A damaged one is between two that are joined; one that the device marks invalid separates its neighbours.
     let expected = [
@@ -82,19 +82,19 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
         (550_000, 550.0, broken),
     ];
     assert_eq!(samples(&track, 0), expected);
-    assert_eq!((track.positions(), track.dropped_count()), (9, 3));
+    assert_eq!((track.position_count(), track.dropped_count()), (9, 3));
 }
 
 /// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps
 /// in 50 µs.
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
-    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
+    let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     for damaged in [10, 3] {
         let mut track = DeviceRecorder::<Nothing>::default();
         let mut all = stream(0, 20_000);
         all.iter_mut().skip(1).step_by(damaged).for_each(|own| (own.position, own.is_bad) = (None, true));
-        all.chunks(173).for_each(|portion| track.add(portion, &meaning));
+        all.chunks(173).for_each(|portion| track.add_positions(portion, &meaning));
         let speeds = samples(&track, 1);
         let is_damaged = |number: usize| number % damaged == 1;
         for (number, (_, speed, flags)) in speeds.iter().enumerate().skip(5_010) {
@@ -113,12 +113,12 @@ fn damaged_frames_do_not_interrupt_the_speed() {
 /// are not bridged, a few are.
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
-    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
+    let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     for (missing, is_broken) in [(1, false), (3, false), (5, true), (30, true)] {
         let mut track = DeviceRecorder::<Nothing>::default();
         let mut all = stream(0, 50);
         all.iter_mut().skip(10).take(missing).for_each(|own| (own.position, own.is_bad) = (None, true));
-        track.add(&all, &meaning);
+        track.add_positions(&all, &meaning);
         let (_, _, flags) = samples(&track, 0)[10 + missing];
         assert_eq!(flags == Flags::BREAK, is_broken, "{missing}: {flags:?}");
     }
@@ -137,12 +137,12 @@ fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
 }
 
 fn names(track: &DeviceRecorder<Nothing>) -> Vec<(String, bool)> {
-    track.recorder.lines().iter().map(|line| (line.heading.clone(), line.ended)).collect()
+    track.recorder.series().iter().map(|line| (line.heading.clone(), line.ended)).collect()
 }
 
 /// Returns the positions of lines, by their headings.
 fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
-    let at = track.recorder.lines().iter().position(|line| line.heading == heading).unwrap();
+    let at = track.recorder.series().iter().position(|line| line.heading == heading).unwrap();
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
 }
 
@@ -150,11 +150,11 @@ fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
 #[test]
 fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let mut track = DeviceRecorder::<Nothing>::default();
-    track.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
-    track.add(&seconds(0, 3), &Meaning::for_steps_per_turn(None, 1000.0));
+    track.begin_session(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
+    track.add_positions(&seconds(0, 3), &PositionScales::for_steps_per_turn(None, 1000.0));
     let [position, ..] = track.lines;
-    track.recorder.act(recorder::RecorderAction::SetScale(position, 1));
-    track.add(&seconds(3, 2), &Meaning::for_steps_per_turn(None, 400.0));
+    track.recorder.handle_action(recorder::RecorderAction::SetScale(position, 1));
+    track.add_positions(&seconds(3, 2), &PositionScales::for_steps_per_turn(None, 400.0));
     let current = [("position", false), ("speed", false), ("acceleration", false)];
     let ended = ["position", "speed", "acceleration"].map(|name| (format!("{name} until 09:00:02"), true));
     let expected: Vec<(String, bool)> =
@@ -163,21 +163,21 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     assert_eq!(steps(&track, "position until 09:00:02"), [0.0, 10.0, 20.0]);
     assert_eq!(steps(&track, "position"), [30.0, 40.0]);
     // A step was 0.36 degrees, and is 0.9.
-    let factor = |at: usize| track.recorder.lines()[at].factor();
+    let factor = |at: usize| track.recorder.series()[at].factor();
     assert_eq!((factor(3), factor(0)), (360.0 / 1000.0, 360.0 / 400.0));
     assert_eq!(
-        track.recorder.recorded().map(|(from, to)| (from.as_nanoseconds(), to.as_nanoseconds())),
+        track.recorder.recorded_span().map(|(from, to)| (from.as_nanoseconds(), to.as_nanoseconds())),
         Some((0, 4_000_000_000))
     );
     // They are drawn where they are, and nowhere else.
     let drawn = |track: &DeviceRecorder<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
-    track.recorder.act(recorder::RecorderAction::Look(
+    track.recorder.handle_action(recorder::RecorderAction::Look(
         SampleTime::from(Moment::from_elapsed(Duration::from_secs(3))),
         SampleTime::from_nanoseconds(9_000_000_000),
     ));
     assert_eq!(drawn(&track), 0);
-    track.recorder.act(recorder::RecorderAction::Clear);
+    track.recorder.handle_action(recorder::RecorderAction::Clear);
     assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
 }
 
@@ -185,21 +185,21 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
 #[test]
 fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
-        let mut meaning = Meaning::for_steps_per_turn(None, 1000.0);
+        let mut meaning = PositionScales::for_steps_per_turn(None, 1000.0);
         meaning.scales[0].insert(0, Scale::new("unit.millimetres", millimetres / 1000.0, 3));
         meaning
     };
     let mut track = DeviceRecorder::<Nothing>::default();
-    track.add(&seconds(0, 3), &Meaning::for_steps_per_turn(None, 1000.0));
+    track.add_positions(&seconds(0, 3), &PositionScales::for_steps_per_turn(None, 1000.0));
     let [position, ..] = track.lines;
-    track.recorder.act(recorder::RecorderAction::SetScale(position, 2));
+    track.recorder.handle_action(recorder::RecorderAction::SetScale(position, 2));
     for pitch in [1.0, 12.0] {
-        track.add(&seconds(3, 1), &on_spindle(pitch));
-        track.add(&seconds(4, 1), &on_spindle(pitch + 0.5));
+        track.add_positions(&seconds(3, 1), &on_spindle(pitch));
+        track.add_positions(&seconds(4, 1), &on_spindle(pitch + 0.5));
     }
     assert_eq!(names(&track).len(), 3);
     assert_eq!(steps(&track, "position"), [0.0, 10.0, 20.0, 30.0, 40.0, 40.0]);
-    let line = track.recorder.line(position).unwrap();
+    let line = track.recorder.series_by_id(position).unwrap();
     assert_eq!((line.scales()[0].factor, line.scale().unwrap().unit.id()), (0.0125, "unit.steps"));
 }
 
@@ -213,20 +213,20 @@ fn a_value_no_longer_watched_keeps_its_samples() {
         is_warned: false,
         never: None,
     };
-    track.watch(&[Nothing]);
-    track.watch(&[]);
+    track.set_watched(&[Nothing]);
+    track.set_watched(&[]);
     assert_eq!(names(&track).len(), 3, "there was nothing yet");
-    track.watch(&[Nothing]);
+    track.set_watched(&[Nothing]);
     track.add_watched(&Nothing, &watching(1));
-    track.watch(&[]);
+    track.set_watched(&[]);
     track.add_watched(&Nothing, &watching(2));
-    assert_eq!((track.watched().len(), names(&track)[3].1), (0, true));
-    track.watch(&[Nothing]);
+    assert_eq!((track.watched_values().len(), names(&track)[3].1), (0, true));
+    track.set_watched(&[Nothing]);
     track.add_watched(&Nothing, &watching(3));
     assert_eq!((names(&track)[3].clone(), steps(&track, "nothing")), (("nothing".to_owned(), false), vec![1.0, 3.0]));
-    track.watch(&[]);
-    track.recorder.act(recorder::RecorderAction::Clear);
-    track.watch(&[Nothing]);
+    track.set_watched(&[]);
+    track.recorder.handle_action(recorder::RecorderAction::Clear);
+    track.set_watched(&[Nothing]);
     track.add_watched(&Nothing, &watching(4));
     assert_eq!(steps(&track, "nothing"), [4.0]);
 }
@@ -234,15 +234,15 @@ fn a_value_no_longer_watched_keeps_its_samples() {
 /// Issue 21.12: another device. Elsewhere the user is asked before two minutes are lost.
 #[test]
 fn minutes_of_another_device_are_kept() {
-    let meaning = Meaning::for_steps_per_turn(None, 1000.0);
+    let meaning = PositionScales::for_steps_per_turn(None, 1000.0);
     for (count, lines) in [(120, 3), (121, 6)] {
         let mut track = DeviceRecorder::<Nothing>::default();
-        track.add(&seconds(0, count), &meaning);
-        track.watch(&[Nothing]);
-        track.forget();
-        assert_eq!((track.positions(), track.watched().len()), (0, 1));
-        track.add(&seconds(count, 1), &meaning);
-        assert_eq!(track.recorder.lines().len(), lines + 1, "{count}");
+        track.add_positions(&seconds(0, count), &meaning);
+        track.set_watched(&[Nothing]);
+        track.clear_unless_long();
+        assert_eq!((track.position_count(), track.watched_values().len()), (0, 1));
+        track.add_positions(&seconds(count, 1), &meaning);
+        assert_eq!(track.recorder.series().len(), lines + 1, "{count}");
         assert_eq!(steps(&track, "position").len(), 1);
     }
 }
@@ -250,13 +250,14 @@ fn minutes_of_another_device_are_kept() {
 /// Issue 21.12: words of which only the newest are stored are decoded again, and the rest is not lost.
 #[test]
 fn samples_that_cannot_be_decoded_again_are_kept() {
-    let (before, after) = (Meaning::for_steps_per_turn(None, 1000.0), Meaning::for_steps_per_turn(None, 400.0));
+    let (before, after) =
+        (PositionScales::for_steps_per_turn(None, 1000.0), PositionScales::for_steps_per_turn(None, 400.0));
     for (kept, ended) in [(5, 0), (4, 3)] {
         let mut track = DeviceRecorder::<Nothing>::default();
-        track.add(&seconds(0, 5), &before);
+        track.add_positions(&seconds(0, 5), &before);
         track.prepare_redecoding(kept);
-        track.add(&seconds(5 - kept as u64, kept as u64), &after);
-        assert_eq!(track.recorder.lines().iter().filter(|line| line.ended).count(), ended, "{kept}");
+        track.add_positions(&seconds(5 - kept as u64, kept as u64), &after);
+        assert_eq!(track.recorder.series().iter().filter(|line| line.ended).count(), ended, "{kept}");
         assert_eq!(steps(&track, "position").len(), kept);
     }
 }

@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub trait Watchable: Clone + PartialEq {
     fn is_whole(&self) -> bool;
 
-    fn line(&self, group: GroupId) -> Series;
+    fn create_series(&self, group: GroupId) -> Series;
 
     /// Returns whether the samples of this value can be continued by samples of `other`, which may have different
     /// units.
@@ -25,7 +25,7 @@ impl Watchable for Infallible {
         match *self {}
     }
 
-    fn line(&self, _group: GroupId) -> Series {
+    fn create_series(&self, _group: GroupId) -> Series {
         match *self {}
     }
 }

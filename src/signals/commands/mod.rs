@@ -55,9 +55,9 @@ fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
     let analysis = Analysis::from_samples(samples);
     let diagnosis = diagnose(&record, analysis.as_ref(), &family.limits());
     let findings: Vec<String> =
-        diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal_text()).collect();
+        diagnosis.findings.iter().map(|finding| explain::signal::diagnosis_text(finding).terminal_text()).collect();
     let analysis = analysis.map_err(|error| {
-        let why = explain::signal::analysis(path, &error).terminal_text();
+        let why = explain::signal::analysis_error_text(path, &error).terminal_text();
         // If the wires were recorded, their findings explain more than the missing ellipse.
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
@@ -102,7 +102,7 @@ fn analyse_revolution(
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
     let revolution =
         Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
-    revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal_text())).ok()
+    revolution.inspect_err(|error| output.remark(&explain::signal::revolution_error_text(error).terminal_text())).ok()
 }
 
 struct CaptureReport<'a> {

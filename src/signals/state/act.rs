@@ -12,7 +12,7 @@ use super::{
 use crate::analysis::capture::TableHints;
 use crate::analysis::diagnosis::{DiagnosisChanges, DiagnosisFinding, compare};
 use crate::analysis::quality::Family;
-use crate::app::number::MOST_PERIODS;
+use crate::app::number::MAX_PERIODS;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::{Payload, PayloadKindError, Severity, SineCosineSource, Text, Tool, ToolContext, explain, recorder};
@@ -58,7 +58,7 @@ impl Default for Signals {
 }
 
 impl Tool for Signals {
-    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError> {
+    fn handle_action(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError> {
         match action.open()? {
             SignalsAction::Source(SourceAction::StartAdapter) => self.start_adapter_when_free(context),
             action => Signals::handle_action(self, action, context.services()),
@@ -66,12 +66,12 @@ impl Tool for Signals {
         Ok(())
     }
 
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
+    fn handle_result(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
         Signals::handle_result(self, done.open()?, services);
         Ok(())
     }
 
-    fn pump(&mut self, services: &mut Services) {
+    fn process_events(&mut self, services: &mut Services) {
         Signals::process_samples(self, services);
     }
 
@@ -92,7 +92,7 @@ impl Tool for Signals {
         &mut self.scope.recorder
     }
 
-    fn follow(&mut self, source: &mut dyn SineCosineSource) {
+    fn adopt_reading(&mut self, source: &mut dyn SineCosineSource) {
         self.synchronise.follow_source(source);
     }
 
@@ -100,7 +100,7 @@ impl Tool for Signals {
         self.source.release_connection(url, services);
     }
 
-    fn takes(&self, path: &Path) -> bool {
+    fn can_open(&self, path: &Path) -> bool {
         path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
     }
 
@@ -188,7 +188,7 @@ impl Signals {
     }
 
     pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
-        self.periods = Some(periods.clamp(1, MOST_PERIODS));
+        self.periods = Some(periods.clamp(1, MAX_PERIODS));
         self.periods_of_source = of_source;
         if self.measurement.as_ref().is_some_and(|own| own.judge != self.diagnosis_settings()) {
             self.update_verdicts(services);
@@ -282,7 +282,7 @@ impl Signals {
 
     /// Replaces the displayed samples. This cancels an export of the previous samples.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
-        self.scope.recorder.act(recorder::RecorderAction::CancelExport);
+        self.scope.recorder.handle_action(recorder::RecorderAction::CancelExport);
         task_guard::drop_in_background(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
@@ -321,11 +321,11 @@ impl Signals {
             }
             Err(error @ ReadCaptureError::Cancelled) => {
                 self.table = reading.settled.clone();
-                services.note(Severity::Note, vec![explain::signal::read(&path, &error)], None);
+                services.log_only(Severity::Note, vec![explain::signal::read(&path, &error)], None);
             }
             Err(error) => {
                 let text = explain::signal::read(&path, &error);
-                services.note(Severity::Error, vec![text.clone()], None);
+                services.log_only(Severity::Error, vec![text.clone()], None);
                 self.problem = Some(text);
                 self.table = Some(table);
             }

@@ -105,7 +105,7 @@ impl AdapterLink {
             }
             // The connection can only be opened after its previous users have released it.
             for (ending, patience) in before {
-                ending.wait(patience);
+                ending.wait_for_end(patience);
             }
             open()
         });
@@ -204,7 +204,7 @@ impl SignalFeed {
 
 fn spawn_stream<P: Producer>(producer: P, clock: Arc<dyn Clock>, services: &Services) -> Result<Stream<P>, Text> {
     let refused = |error| Text::new("session.no_thread").with("why", error);
-    Stream::spawn(producer, MAX_WAITING_SAMPLES, clock, services.tasks.wake()).map_err(refused)
+    Stream::spawn(producer, MAX_WAITING_SAMPLES, clock, services.tasks.wake_callback()).map_err(refused)
 }
 
 fn to_channels<S: Into<ChannelSamples>>(batch: Batch<S>) -> Batch<ChannelSamples> {
@@ -215,7 +215,7 @@ fn to_channels<S: Into<ChannelSamples>>(batch: Batch<S>) -> Batch<ChannelSamples
 fn bridge_error_text(error: &BridgeError) -> Text {
     match error {
         BridgeError::Open(error) => open_error_text(error),
-        BridgeError::Tap(AdapterStreamError::Link(error)) => explain::link(error),
+        BridgeError::Tap(AdapterStreamError::Link(error)) => explain::link_error_text(error),
         BridgeError::Tap(AdapterStreamError::Adapter(error)) => bridge::adapter(error),
         BridgeError::Tap(AdapterStreamError::Cancelled) => TEXTS.text("virtual.ended"),
     }

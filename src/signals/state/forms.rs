@@ -1,7 +1,7 @@
 //! Parsing of entries in the Signals tab. The error messages name the valid values.
 
 use crate::app::Text;
-use crate::app::number::{MOST_PERIODS, whole};
+use crate::app::number::{MAX_PERIODS, parse_integer};
 use crate::signals::state::TEXTS;
 
 /// Parses the number of signal periods per revolution.
@@ -9,7 +9,7 @@ use crate::signals::state::TEXTS;
 /// # Errors
 /// Returns an error if the entry is invalid.
 pub fn parse_periods(text: &str) -> Result<u32, Text> {
-    whole(TEXTS.text("quality.periods_per_turn"), text, 1, MOST_PERIODS)
+    parse_integer(TEXTS.text("quality.periods_per_turn"), text, 1, MAX_PERIODS)
 }
 
 /// Parses a finite number with a decimal point or comma.
@@ -17,7 +17,7 @@ pub fn parse_periods(text: &str) -> Result<u32, Text> {
 /// # Errors
 /// Returns an error if the entry is invalid.
 pub fn parse_number(text: &str) -> Result<f64, Text> {
-    crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
+    crate::app::parse_decimal(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
 
 /// Parses the volts per unit of a table.

@@ -4,7 +4,7 @@
 
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, FilterResponse, InputFilter, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
-use crate::app::number::{MOST_PERIODS, parse_quantity, whole, within};
+use crate::app::number::{MAX_PERIODS, parse_in_range, parse_integer, parse_quantity};
 use crate::signals::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,8 +54,8 @@ impl Form {
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
     pub fn calculate_circuit(&self) -> Result<InputCircuitResult, Text> {
-        let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
-        let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MAX_RPM)?;
+        let periods = parse_integer(TEXTS.text("input.periods"), &self.periods, 1, MAX_PERIODS)?;
+        let speed_rpm = parse_in_range(TEXTS.text("input.speed"), &self.speed, 0.0, MAX_RPM)?;
         let ohms = parse_quantity(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
         let farads =
             parse_quantity(TEXTS.text("input.capacitance"), &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;

@@ -47,7 +47,7 @@ impl TableSource {
     pub fn name(&self) -> Text {
         let path = self.path();
         let name = path.file_name().unwrap_or(path.as_os_str());
-        explain::plain(name.to_string_lossy())
+        explain::literal_text(name.to_string_lossy())
     }
 
     pub(super) fn path(&self) -> PathBuf {
@@ -153,7 +153,7 @@ impl MeasurementResult {
     /// Returns the reason why the capture could not be analysed, if any.
     pub fn failure_text(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
-        Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
+        Some(explain::signal::analysis_error_text(Path::new(&self.origin.name().to_string_in(language)), error))
     }
 }
 

@@ -51,7 +51,7 @@ impl Scope {
     pub(super) fn from_capture(capture: &Capture) -> Self {
         let count = capture.sine_v.len().min(capture.cosine_v.len());
         let counts = capture.time_s.len() < count;
-        let recorder = if counts { Recorder::counting(1) } else { Recorder::new(SPAN) };
+        let recorder = if counts { Recorder::without_times(1) } else { Recorder::new(SPAN) };
         let mut scope = Scope::new(capture.wires.is_some(), count.max(1), recorder);
         let mut from = 0;
         if !counts && capture.time_s.iter().any(|seconds| seconds.abs() > FARTHEST_S) {
@@ -65,7 +65,7 @@ impl Scope {
         if scope.refused.is_some() {
             scope.recorder.clear();
         }
-        scope.recorder.act(recorder::RecorderAction::Fit);
+        scope.recorder.handle_action(recorder::RecorderAction::Fit);
         scope.recorder.finish();
         scope
     }
@@ -76,10 +76,10 @@ impl Scope {
         let group = recorder.add_group(&columns, capacity, None);
         for (column, (name, heading)) in DIFFERENCES.iter().chain(wires).enumerate() {
             let scales = vec![Scale::new("unit.volts", 1.0, 4), Scale::new("unit.millivolts", 1e3, 1)];
-            let line = Series::of(group, column, TEXTS.text(name), *heading, scales);
+            let line = Series::new(group, column, TEXTS.text(name), *heading, scales);
             let derived = *name == "scope.vector";
-            let line = if derived { line.derived() } else { line };
-            recorder.add_line(if column < DIFFERENCES.len() { line } else { line.hidden() });
+            let line = if derived { line.into_derived() } else { line };
+            recorder.add_line(if column < DIFFERENCES.len() { line } else { line.into_hidden() });
         }
         Scope { recorder, refused: None, group }
     }
@@ -87,7 +87,9 @@ impl Scope {
     fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), BatchError> {
         let part = |column: &[f64]| column.get(range.clone()).unwrap_or_default().to_vec();
         let times = range.clone().map(|at| match capture.time_s.get(at) {
-            Some(seconds) if !self.recorder.counts() => SampleTime::from_nanoseconds((seconds * 1e9).round() as i64),
+            Some(seconds) if !self.recorder.counts_samples() => {
+                SampleTime::from_nanoseconds((seconds * 1e9).round() as i64)
+            }
             _ => SampleTime::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(SAMPLE)),
         });
         let times: Vec<SampleTime> = times.collect();
@@ -154,8 +156,8 @@ mod tests {
     }
 
     fn value(scope: &Scope, line: usize, nanoseconds: i64) -> f64 {
-        let line = &scope.recorder.lines()[line];
-        let sample = scope.recorder.nearest(line, SampleTime::from_nanoseconds(nanoseconds)).unwrap();
+        let line = &scope.recorder.series()[line];
+        let sample = scope.recorder.nearest_sample(line, SampleTime::from_nanoseconds(nanoseconds)).unwrap();
         line.value(&sample)
     }
 
@@ -177,12 +179,12 @@ mod tests {
         };
         let scope = Scope::from_capture(&capture);
         assert_eq!(names(&scope), ["scope.sine", "scope.cosine", "scope.vector"]);
-        assert_eq!(scope.recorder.lines().len(), 7);
+        assert_eq!(scope.recorder.series().len(), 7);
         // The vector of 0.3 and 0.4 is 0.5.
         for (line, expected) in [0.3, 0.4, 0.5, 2.9, 2.5, 2.8, 2.4].into_iter().enumerate() {
             assert!((value(&scope, line, -1_000) - expected).abs() < 1e-12, "{line}");
         }
-        assert!(!scope.recorder.counts() && scope.refused.is_none());
+        assert!(!scope.recorder.counts_samples() && scope.refused.is_none());
     }
 
     fn batch(first: i64, count: usize) -> Batch<ChannelSamples> {
@@ -201,7 +203,7 @@ mod tests {
     fn unrecorded_samples_leave_a_break_and_refused_ones_are_counted() {
         let mut scope = Scope::live(true);
         let broken = |scope: &Scope| {
-            let history = scope.recorder.history(&scope.recorder.lines()[0]).unwrap();
+            let history = scope.recorder.history(&scope.recorder.series()[0]).unwrap();
             let all = history.indices();
             let is_break = |at: &u64| history.sample(0, *at).unwrap().flags.contains(Flags::BREAK);
             all.filter(is_break).collect::<Vec<u64>>()
@@ -220,8 +222,8 @@ mod tests {
     fn without_times_samples_are_counted_and_backward_times_refused() {
         let mut capture = Capture { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![0.0; 3], ..Capture::default() };
         let scope = Scope::from_capture(&capture);
-        assert!(scope.recorder.counts() && (value(&scope, 0, 2_000) - 3.0).abs() < 1e-12);
-        assert_eq!(scope.recorder.lines().len(), 3);
+        assert!(scope.recorder.counts_samples() && (value(&scope, 0, 2_000) - 3.0).abs() < 1e-12);
+        assert_eq!(scope.recorder.series().len(), 3);
         capture.time_s = vec![0.0, 2.0, 1.0];
         let scope = Scope::from_capture(&capture);
         assert!(scope.refused == Some(TimeAxisError::GoBack) && scope.recorder.is_empty());

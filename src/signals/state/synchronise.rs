@@ -5,7 +5,7 @@
 use crate::analysis::arctan::{Phase, from_voltages};
 use crate::analysis::quality::{Limits, Verdict};
 use crate::analysis::synchronise::{AmbiguousPeriodError, STEPS, SynchronisedPosition, Synchroniser, measure_offset};
-use crate::app::number::{MOST_PERIODS, parse_number_or_hex, whole, within};
+use crate::app::number::{MAX_PERIODS, parse_in_range, parse_integer, parse_number_or_hex};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::signals::state::TEXTS;
 
@@ -143,14 +143,14 @@ impl Form {
     /// Returns the reason why the first invalid entry was refused.
     pub fn max_unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.create_synchroniser()?;
-        let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
+        let jitter_ms = parse_in_range(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
         Ok(0.5 * 60.0 / (f64::from(periods) * jitter_ms / 1e3))
     }
 
     fn create_synchroniser(&self) -> Result<(u32, Synchroniser), Text> {
-        let periods = whole(TEXTS.text("synchronise.periods"), &self.periods, 1, MOST_PERIODS)?;
-        let turns = whole(TEXTS.text("synchronise.turns"), &self.turns, 1, MAX_TURNS)?;
-        let offset_steps = within(TEXTS.text("synchronise.offset"), &self.offset, -32.0, 32.0)?;
+        let periods = parse_integer(TEXTS.text("synchronise.periods"), &self.periods, 1, MAX_PERIODS)?;
+        let turns = parse_integer(TEXTS.text("synchronise.turns"), &self.turns, 1, MAX_TURNS)?;
+        let offset_steps = parse_in_range(TEXTS.text("synchronise.offset"), &self.offset, -32.0, 32.0)?;
         let half_step = self.half_step;
         let whole = Synchroniser::new(u64::from(periods) * u64::from(turns));
         Ok((periods, Synchroniser { offset_steps, half_step, ..whole }))
@@ -160,14 +160,14 @@ impl Form {
         let no_signal = || TEXTS.text("synchronise.no_signal");
         match self.phase_input {
             PhaseInput::Periods => {
-                Phase::from_periods(within(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?)
+                Phase::from_periods(parse_in_range(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?)
             }
-            PhaseInput::Degrees => {
-                Phase::from_periods(within(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0)
-            }
+            PhaseInput::Degrees => Phase::from_periods(
+                parse_in_range(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0,
+            ),
             PhaseInput::Volts => from_voltages(
-                within(TEXTS.text("synchronise.sine"), &self.sine_v, -10.0, 10.0)?,
-                within(TEXTS.text("synchronise.cosine"), &self.cosine_v, -10.0, 10.0)?,
+                parse_in_range(TEXTS.text("synchronise.sine"), &self.sine_v, -10.0, 10.0)?,
+                parse_in_range(TEXTS.text("synchronise.cosine"), &self.cosine_v, -10.0, 10.0)?,
             ),
         }
         .ok_or_else(no_signal)

@@ -1,7 +1,7 @@
 //! Tasks of the Signals tab. Every task delivers a result, even if it could not be started or was aborted.
 
 use super::{TAB, TaskResult};
-use crate::app::action::{Action, Done as StudioDone};
+use crate::app::action::{Action, TaskResult as StudioDone};
 use crate::app::tasks::{ActionMailbox, TaskRunner};
 
 /// Guard that reports a failure if the task ends without a result.
@@ -25,7 +25,7 @@ impl Drop for CompletionGuard {
 }
 
 fn done_action(done: TaskResult) -> Action {
-    Action::Done(StudioDone::tool(TAB, done))
+    Action::Done(StudioDone::from_tool(TAB, done))
 }
 
 /// Runs a task on a thread. If the task ends without a result, `failed` is delivered instead.

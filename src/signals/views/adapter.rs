@@ -7,7 +7,8 @@ use crate::app::Action;
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::translate;
 use crate::ui::controls::{
-    button, card_with_trailing, choice, entry, icon_button, paragraph, primary_button, show_error_below, text_entry,
+    card_with_trailing, dropdown, entry, icon_button, labelled_button, paragraph, primary_button, show_error_below,
+    text_entry,
 };
 use crate::ui::{Theme, icons};
 
@@ -38,8 +39,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         let word = translate(theme, "adapter.rate");
         entry(ui, theme, &word, |ui| {
             let mut rate = source.sample_hz();
-            let rates = RATES.map(|hz| (hz, theme.words(&TEXTS.text("adapter.kilohertz").with("count", hz / 1_000))));
-            if choice(ui, &word, &mut rate, rates) {
+            let rates =
+                RATES.map(|hz| (hz, theme.format_text(&TEXTS.text("adapter.kilohertz").with("count", hz / 1_000))));
+            if dropdown(ui, &word, &mut rate, rates) {
                 ask(SourceAction::SetSampleRate(rate));
             }
         });
@@ -48,7 +50,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
             let mut supply = source.supplied_family();
             let families = Family::ALL.map(|family| (Some(family), supply_text(theme, family)));
             let elsewhere = (None, translate(theme, "adapter.supply_elsewhere"));
-            if choice(ui, &word, &mut supply, std::iter::once(elsewhere).chain(families)) {
+            if dropdown(ui, &word, &mut supply, std::iter::once(elsewhere).chain(families)) {
                 ask(SourceAction::SetSupply(supply));
             }
         });
@@ -57,7 +59,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
             started |= primary_button(ui, theme, true, icons::PLAY, &translate(theme, "adapter.start")).clicked();
             if source.link() != VIRTUAL_ADAPTER
-                && button(ui, icons::CPU, &translate(theme, "adapter.use_virtual")).clicked()
+                && labelled_button(ui, icons::CPU, &translate(theme, "adapter.use_virtual")).clicked()
             {
                 ask(SourceAction::SetLink(VIRTUAL_ADAPTER.to_owned()));
             }
@@ -77,5 +79,5 @@ fn supply_text(theme: &Theme, family: Family) -> String {
     let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;
     let text = TEXTS.text("adapter.supply_of").with("family", family.name());
     let text = text.with_number("volts", volts(voltage.given), 1).with_number("least", volts(voltage.least), 1);
-    theme.words(&text.with_number("greatest", volts(voltage.greatest), 1))
+    theme.format_text(&text.with_number("greatest", volts(voltage.greatest), 1))
 }

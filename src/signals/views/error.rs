@@ -22,13 +22,13 @@ pub(super) fn page_ui(
     source::settings_ui(ui, theme, signals, &view.source, actions);
     let Ok(analysis) = &measurement.analysis else {
         quality::refusal_ui(ui, theme, measurement);
-        theme.gap(ui);
+        theme.add_gap(ui);
         octant::card_ui(ui, theme, &mut view.octant);
         return;
     };
     let compared = signals.compared_result();
     curves_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
-    theme.gap(ui);
+    theme.add_gap(ui);
     split(
         ui,
         theme,
@@ -45,14 +45,14 @@ pub(super) fn page_ui(
                 let own = error_quantities(analysis, signals.signal_periods());
                 numbers::rows_ui(ui, theme, "error.numbers", &own, others.as_deref());
                 ui.add_space(theme.space.inside);
-                paragraph(ui, theme.caption(theme.words(&basis_text(analysis.error.basis))));
+                paragraph(ui, theme.caption(theme.format_text(&basis_text(analysis.error.basis))));
             });
         },
         |ui, _| harmonics_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
     );
-    theme.gap(ui);
+    theme.add_gap(ui);
     nonlinearity::card_ui(ui, theme, measurement, compared.map(AsRef::as_ref));
-    theme.gap(ui);
+    theme.add_gap(ui);
     octant::card_ui(ui, theme, &mut view.octant);
 }
 
@@ -83,7 +83,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
         let own = Chart {
             traces: &traces,
             label: &translate(theme, "error.curve"),
-            value: &theme.words(&value),
+            value: &theme.format_text(&value),
             height: 180.0,
             x_unit: "°",
             y_unit: "°",
@@ -104,7 +104,7 @@ fn harmonics_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Opt
     let traces = error_series(error, compared_error(compared), trace);
     card(ui, theme, TEXTS.text("error.harmonics"), |ui| {
         let peaks: Vec<String> =
-            harmonic_amplitudes(&error.raw_deg).iter().map(|peak| theme.number(*peak, 3)).collect();
+            harmonic_amplitudes(&error.raw_deg).iter().map(|peak| theme.format_number(*peak, 3)).collect();
         let own = Chart {
             traces: &traces,
             label: &translate(theme, "error.harmonics"),

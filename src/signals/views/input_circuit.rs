@@ -26,19 +26,19 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         form,
         |ui, form| {
             entries_ui(ui, theme, form, circuit.as_ref().err());
-            theme.gap(ui);
+            theme.add_gap(ui);
             notes_ui(ui, theme);
         },
         |ui, _| {
             if let Ok(circuit) = &circuit {
                 operating_point_ui(ui, theme, circuit);
-                theme.gap(ui);
+                theme.add_gap(ui);
                 table_ui(ui, theme, circuit);
             }
         },
     );
     if let Ok(circuit) = &circuit {
-        theme.gap(ui);
+        theme.add_gap(ui);
         curves_ui(ui, theme, circuit);
     }
 }
@@ -69,7 +69,11 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) 
     let OperatingPoint { frequency_hz, response, shaft_deg, .. } = circuit.here;
     let limit_khz = BANDWIDTH_HZ / 1e3;
     card(ui, theme, TEXTS.text("input.here"), |ui| {
-        ui.label(theme.value(format!("{} {}", theme.number(frequency_hz / 1e3, 3), Unit::Kilohertz.unit_symbol())));
+        ui.label(theme.value(format!(
+            "{} {}",
+            theme.format_number(frequency_hz / 1e3, 3),
+            Unit::Kilohertz.unit_symbol()
+        )));
         let (icon, colour, id) = match circuit.is_within_bandwidth() {
             true => (icons::CHECK_CIRCLE, theme.palette.good, "input.within"),
             false => (icons::WARNING, theme.palette.warn, "input.beyond"),
@@ -77,18 +81,23 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) 
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
             let text = TEXTS.text(id).with_number("limit", limit_khz, 0);
-            paragraph(ui, RichText::new(theme.words(&text)).color(colour));
+            paragraph(ui, RichText::new(theme.format_text(&text)).color(colour));
         });
-        let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
-        let khz =
-            |hertz: f64| theme.monospace(format!("{} {}", theme.number(hertz / 1e3, 1), Unit::Kilohertz.unit_symbol()));
-        let rpm = format!("{} {}", theme.number(circuit.most_rpm, 1), translate(theme, "input.rpm"));
+        let number =
+            |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.format_number(value, decimals)));
+        let khz = |hertz: f64| {
+            theme.monospace(format!("{} {}", theme.format_number(hertz / 1e3, 1), Unit::Kilohertz.unit_symbol()))
+        };
+        let rpm = format!("{} {}", theme.format_number(circuit.most_rpm, 1), translate(theme, "input.rpm"));
         row(ui, theme, &translate(theme, "input.most"), theme.monospace(rpm));
         row(ui, theme, &translate(theme, "input.lag"), number(response.phase_deg, 3, "° el."));
         row(ui, theme, &translate(theme, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
         row(ui, theme, &translate(theme, "input.lag_shaft"), number(shaft_deg, 5, "°"));
-        let gain =
-            format!("{}  ({} dB)", theme.number(response.gain, 5), theme.number(20.0 * response.gain.log10(), 2));
+        let gain = format!(
+            "{}  ({} dB)",
+            theme.format_number(response.gain, 5),
+            theme.format_number(20.0 * response.gain.log10(), 2)
+        );
         row(ui, theme, &translate(theme, "input.gain"), theme.monospace(gain));
         row(ui, theme, &translate(theme, "input.corner"), khz(circuit.corner_hz));
         row(ui, theme, &translate(theme, "input.sampling"), khz(2.0 * frequency_hz));
@@ -116,7 +125,7 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
                         (response.lag_in_steps(), 3),
                         (response.gain, 5),
                     ] {
-                        ui.label(theme.monospace(format!("{:>7}", theme.number(value, decimals))));
+                        ui.label(theme.monospace(format!("{:>7}", theme.format_number(value, decimals))));
                     }
                     ui.end_row();
                 }
@@ -143,7 +152,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
             .text("input.curves_value")
             .with_number("lag", course.last().map_or(0.0, |point| point.response.phase_deg), 2)
             .with_number("rpm", circuit.most_rpm, 0);
-        let value = theme.words(&value);
+        let value = theme.format_text(&value);
         let drawn = Chart {
             traces: &traces,
             label: &label,

@@ -72,14 +72,14 @@ impl ToolView for SignalsView {
         page_infos::<Page>()
     }
 
-    fn begin(&self) -> Box<dyn ToolPages> {
+    fn create_pages(&self) -> Box<dyn ToolPages> {
         Box::new(SignalsUiState::default())
     }
 }
 
 impl ToolPages for SignalsUiState {
     fn page(&self) -> usize {
-        self.page.place()
+        self.page.index()
     }
 
     fn open(&mut self, page: usize) {
@@ -87,7 +87,7 @@ impl ToolPages for SignalsUiState {
     }
 
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-        if let Some(signals) = studio.tool() {
+        if let Some(signals) = studio.tool_as() {
             page_ui(ui, theme, signals, studio.sine_cosine(), self, actions);
         }
     }
@@ -101,7 +101,7 @@ fn page_ui(
     view: &mut SignalsUiState,
     actions: &mut Vec<Action>,
 ) {
-    page::scrollable_page(ui, theme, view.page.place(), |ui| match view.page {
+    page::scrollable_page(ui, theme, view.page.index(), |ui| match view.page {
         Page::Scope => {
             if source::source_ui(ui, theme, signals, &mut view.source, actions) {
                 scope::page_ui(ui, theme, signals, view, actions);
@@ -130,5 +130,5 @@ fn page_ui(
 
 /// Returns a message in the window's language, from the Signals catalogue or the common one.
 pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
-    theme.words(&TEXTS.text(id))
+    theme.format_text(&TEXTS.text(id))
 }

@@ -7,7 +7,7 @@ use crate::app::explain;
 use crate::signals::state::{MeasurementResult, Nonlinearities, TEXTS, nonlinearity_quantities};
 use crate::signals::views::translate;
 use crate::ui::Theme;
-use crate::ui::controls::{card, paragraph, problem};
+use crate::ui::controls::{card, paragraph, problem_ui};
 use crate::ui::widgets::{Chart, Trace, chart};
 
 pub(super) fn card_ui(
@@ -31,10 +31,10 @@ pub(super) fn card_ui(
             );
             if nonlinearities.revolutions < 1.0 {
                 let text = TEXTS.text("nonlinearity.part").with_number("revolutions", nonlinearities.revolutions, 2);
-                paragraph(ui, theme.caption(theme.words(&text)));
+                paragraph(ui, theme.caption(theme.format_text(&text)));
             }
         }
-        Some(Err(error)) => problem(ui, theme, Some(&explain::signal::revolution(error))),
+        Some(Err(error)) => problem_ui(ui, theme, Some(&explain::signal::revolution_error_text(error))),
         None => paragraph(ui, theme.label(translate(theme, "nonlinearity.no_reference"))),
     });
 }
@@ -58,7 +58,7 @@ fn curve_ui(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
     let own = Chart {
         traces: &traces,
         label: &translate(theme, "nonlinearity.title"),
-        value: &theme.words(&value),
+        value: &theme.format_text(&value),
         height: 180.0,
         x_unit: "°",
         y_unit: "°",

@@ -79,15 +79,15 @@ fn comparison_ui(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<
         ui.label("");
         return;
     };
-    let number = |value: f64| theme.monospace(theme.number(value, quantity.decimals));
+    let number = |value: f64| theme.monospace(theme.format_number(value, quantity.decimals));
     ui.label(number(other.value).color(theme.palette.muted));
     let difference = without_negative_zero(quantity.value - other.value, quantity.decimals);
     let sign = if difference > 0.0 { "+" } else { "" };
-    ui.label(theme.monospace(format!("{sign}{}", theme.number(difference, quantity.decimals))));
+    ui.label(theme.monospace(format!("{sign}{}", theme.format_number(difference, quantity.decimals))));
 }
 
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
-    with_unit_symbol(theme.number(without_negative_zero(value, decimals), decimals), unit)
+    with_unit_symbol(theme.format_number(without_negative_zero(value, decimals), decimals), unit)
 }
 
 /// Returns zero for a value that is displayed as zero, which avoids a minus sign.
@@ -97,7 +97,7 @@ fn without_negative_zero(value: f64, decimals: usize) -> f64 {
 }
 
 fn limit_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
-    let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
+    let plain = |value: f64| theme.format_plain((value * 1e6).round() / 1e6);
     let words = match bound {
         QuantityLimit::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
         QuantityLimit::Within(most) => format!("± {}", plain(most)),
@@ -117,7 +117,7 @@ fn with_unit_symbol(words: String, unit: Unit) -> String {
 
 /// Draws a verdict icon in its colour, with a label for screen readers and the limit as a tooltip.
 fn verdict_icon_ui(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
-    let (icon, colour) = controls::verdict(theme, verdict);
+    let (icon, colour) = controls::verdict_badge(theme, verdict);
     let id = match verdict {
         Verdict::Ok => "quality.inside",
         Verdict::Warn => "quality.outside",

@@ -8,7 +8,7 @@ use crate::signals::state::TEXTS;
 use crate::signals::state::interpolation::{INTERVALS, interpolate, table_errors};
 use crate::signals::views::translate;
 use crate::ui::Theme;
-use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
+use crate::ui::controls::{card, dropdown, entry, labelled_entry, paragraph, problem_ui, row, split};
 
 pub(super) struct OctantUiState {
     sine: String,
@@ -39,9 +39,9 @@ fn tables_ui(ui: &mut Ui, theme: &Theme) {
         ui.end_row();
         for table in table_errors() {
             ui.label(theme.monospace(table.intervals.to_string()));
-            ui.label(theme.monospace(format!("{}°", theme.number(table.largest_deg, 5))));
+            ui.label(theme.monospace(format!("{}°", theme.format_number(table.largest_deg, 5))));
             ui.label(theme.monospace(format!("1/{:.0}", table.parts)));
-            ui.label(theme.monospace(theme.number(table.bits, 2)));
+            ui.label(theme.monospace(theme.format_number(table.bits, 2)));
             ui.end_row();
         }
     });
@@ -53,13 +53,13 @@ fn voltage_pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     }
     let word = translate(theme, "octant.intervals");
     entry(ui, theme, &word, |ui| {
-        choice(ui, &word, &mut view.intervals, INTERVALS.map(|own| (own, own.to_string())));
+        dropdown(ui, &word, &mut view.intervals, INTERVALS.map(|own| (own, own.to_string())));
     });
     match interpolate(&view.sine, &view.cosine, view.intervals) {
         Ok(found) => {
             for (id, phase) in [("octant.exact", found.exact), ("octant.table", found.table)] {
-                let degrees = theme.number(phase.to_degrees(), 5);
-                let periods = theme.number(phase.to_periods(), 6);
+                let degrees = theme.format_number(phase.to_degrees(), 5);
+                let periods = theme.format_number(phase.to_periods(), 6);
                 row(
                     ui,
                     theme,
@@ -67,9 +67,9 @@ fn voltage_pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
                     theme.monospace(format!("{degrees}°  φ {periods}  {:04X}h", phase.step(16))),
                 );
             }
-            let difference = format!("{}°", theme.number(found.difference_deg, 5));
+            let difference = format!("{}°", theme.format_number(found.difference_deg, 5));
             row(ui, theme, &translate(theme, "octant.difference"), theme.monospace(difference));
         }
-        Err(why) => problem(ui, theme, Some(&why)),
+        Err(why) => problem_ui(ui, theme, Some(&why)),
     }
 }

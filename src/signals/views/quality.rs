@@ -16,8 +16,10 @@ use crate::app::{Action, Text, explain};
 use crate::signals::state::{
     Measurement, MeasurementResult, Signals, SignalsAction as Signals_, forms, signal_quantities,
 };
-use crate::ui::controls::{card, card_with_trailing, choice, committed_entry, entry, name, paragraph, problem, split};
-use crate::ui::widgets::{Lissajous, LissajousFigure, density_image, lissajous, series};
+use crate::ui::controls::{
+    card, card_with_trailing, committed_entry, dropdown, entry, name, paragraph, problem_ui, split,
+};
+use crate::ui::widgets::{Lissajous, LissajousFigure, density_image, lissajous, series_colour};
 use crate::ui::{Theme, icons};
 
 /// Common numbers of periods per revolution.
@@ -39,7 +41,7 @@ pub(super) fn page_ui(
         (view, actions),
         |ui, (view, _)| {
             figure_ui(ui, theme, signals, measurement, view);
-            theme.gap(ui);
+            theme.add_gap(ui);
             verdict_ui(ui, theme, signals, measurement);
         },
         |ui, (view, actions)| {
@@ -91,7 +93,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
             ok_v: limits.ok_v,
             fault_v: limits.fault_v,
             label: &translate(theme, "quality.lissajous"),
-            value: &theme.words(&value),
+            value: &theme.format_text(&value),
         };
         lissajous(ui, theme, &lissajous_, side);
         paragraph(ui, theme.caption(translate(theme, "quality.rings")));
@@ -111,7 +113,7 @@ impl Picture {
         corrected: bool,
         colour: usize,
     ) -> Option<(TextureId, PlotSquare)> {
-        let colour = series(theme, colour);
+        let colour = series_colour(theme, colour);
         let density = if corrected { &measurement.corrected } else { &measurement.raw };
         let density = density.as_ref()?;
         let same = |(own, own_corrected, own_colour, _): &(Arc<MeasurementResult>, bool, Color32, TextureHandle)| {
@@ -144,7 +146,7 @@ fn quality_figure(
 pub(super) fn refusal_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
     let Some(why) = measurement.failure_text(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
-        line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));
+        line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.format_text(&why));
         for finding in &measurement.diagnosis.findings {
             finding_ui(ui, theme, finding);
         }
@@ -165,14 +167,14 @@ fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &DiagnosisFinding) {
         Severity::Warning => (icons::WARNING, palette.warn),
         Severity::Fault => (icons::X_CIRCLE, palette.bad),
     };
-    line_ui(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
+    line_ui(ui, icon, colour, theme.format_text(&explain::signal::diagnosis_text(finding)));
 }
 
 fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
         match measurement.failure_text(theme.language) {
-            Some(why) => line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why)),
+            Some(why) => line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.format_text(&why)),
             None if findings.is_empty() => {
                 line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, translate(theme, "quality.good"));
             }
@@ -192,7 +194,7 @@ fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measu
 fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChanges) {
     let under = |ui: &mut Ui, id| {
         ui.add_space(theme.space.inside);
-        ui.label(theme.caption(theme.words(&TEXTS.text(id).with_text("name", name.clone()))));
+        ui.label(theme.caption(theme.format_text(&TEXTS.text(id).with_text("name", name.clone()))));
     };
     under(ui, "compare.worse");
     if changes.worse.is_empty() && changes.untold.is_empty() {
@@ -202,7 +204,12 @@ fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChange
         finding_ui(ui, theme, finding);
     }
     for untold in &changes.untold {
-        line_ui(ui, icons::QUESTION, theme.palette.muted, theme.words(&explain::signal::comparison_obstacle(*untold)));
+        line_ui(
+            ui,
+            icons::QUESTION,
+            theme.palette.muted,
+            theme.format_text(&explain::signal::comparison_obstacle(*untold)),
+        );
     }
     if !changes.changed.is_empty() {
         under(ui, "compare.changed");
@@ -225,7 +232,7 @@ fn values_ui(
         let mut family = signals.family();
         entry(ui, theme, &word, |ui| {
             let families = Family::ALL.map(|own| (own, own.name().to_owned()));
-            if choice(ui, &word, &mut family, families) {
+            if dropdown(ui, &word, &mut family, families) {
                 actions.push(Action::tool(Signals_::SetFamily(family)));
             }
         });
@@ -265,7 +272,7 @@ pub(super) fn periods_ui(
         name(menu.response, true, &usual).on_hover_text(usual);
     });
     if let Some((_, Some(why))) = draft {
-        problem(ui, theme, Some(why));
+        problem_ui(ui, theme, Some(why));
     }
     if signals.signal_periods().is_none() {
         line_ui(ui, icons::QUESTION, theme.palette.warn, translate(theme, "quality.periods_open"));

@@ -34,10 +34,10 @@ pub(super) fn page_ui(
     source::settings_ui(ui, theme, signals, &view.source, actions);
     trace(ui, theme, signals, &mut view.scope, actions);
     let Some(measurement) = signals.measurement() else { return };
-    theme.gap(ui);
+    theme.add_gap(ui);
     spectrum_ui(ui, theme, signals, measurement, &mut view.scope);
     if measurement.analysis.is_err() {
-        theme.gap(ui);
+        theme.add_gap(ui);
         quality::refusal_ui(ui, theme, measurement);
     }
 }
@@ -58,7 +58,7 @@ fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeUiState,
             );
             plot::plot_ui(ui, theme, &scope.recorder, RecorderOwner::Tool(TAB), &mut view.plot, &empty, actions);
         });
-        if scope.recorder.counts() {
+        if scope.recorder.counts_samples() {
             paragraph(ui, theme.caption(translate(theme, "scope.counts")));
         }
     });
@@ -81,7 +81,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
         let spectra = match &measurement.spectra {
             Ok(spectra) => spectra,
             Err(error) => {
-                paragraph(ui, theme.label(theme.words(&explain::signal::spectrum(error))));
+                paragraph(ui, theme.label(theme.format_text(&explain::signal::spectrum(error))));
                 return;
             }
         };
@@ -132,7 +132,7 @@ fn lines_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra
         spectra.spacing_hz,
         if spectra.spacing_hz < 10.0 { 2 } else { 0 },
     );
-    paragraph(ui, theme.caption(theme.words(&text)));
+    paragraph(ui, theme.caption(theme.format_text(&text)));
 }
 
 fn peaks_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
@@ -151,7 +151,7 @@ fn peaks_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measure
                 ui.label(theme.monospace(with_unit(theme, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
                 ui.label(theme.monospace(with_unit(theme, decibel_volts(peak.amplitude_v), 1, Unit::DecibelVolts)));
                 let order = signal_hz.filter(|hertz| *hertz > 0.0).map(|hertz| peak.frequency_hz / hertz);
-                ui.label(theme.monospace(order.map_or_else(|| "–".to_owned(), |order| theme.number(order, 2))));
+                ui.label(theme.monospace(order.map_or_else(|| "–".to_owned(), |order| theme.format_number(order, 2))));
                 ui.end_row();
             }
         }

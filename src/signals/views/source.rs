@@ -9,8 +9,8 @@ use crate::signals::state::{
     ExampleCapture, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TEXTS, TableSource,
 };
 use crate::signals::views::translate;
-use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
-use crate::ui::widgets::series;
+use crate::ui::controls::{badge, enabled_button, fill_width, icon_button, labelled_button, name, paragraph, spinner};
+use crate::ui::widgets::series_colour;
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -84,7 +84,9 @@ fn reading_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<A
     let Some(reading) = signals.capture_reading() else { return };
     ui.horizontal(|ui| {
         spinner(ui, theme);
-        ui.label(theme.label(theme.words(&TEXTS.text("signals.reading").with_text("name", reading.place.name()))));
+        ui.label(
+            theme.label(theme.format_text(&TEXTS.text("signals.reading").with_text("name", reading.place.name()))),
+        );
         if let Some(share) = reading.fraction_read() {
             ui.add(egui::ProgressBar::new(share as f32).desired_height(4.0).desired_width(160.0));
         }
@@ -102,10 +104,10 @@ pub(super) fn problem_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
         ui.vertical(|ui| {
-            paragraph(ui, theme.words(problem));
+            paragraph(ui, theme.format_text(problem));
             if let Some(measurement) = signals.measurement() {
                 let text = TEXTS.text("signals.still_shown").with_text("name", measurement.origin.name());
-                paragraph(ui, theme.caption(theme.words(&text)));
+                paragraph(ui, theme.caption(theme.format_text(&text)));
             }
         });
     });
@@ -119,8 +121,8 @@ fn displayed_capture_ui(
     view: &mut SourceUiState,
     actions: &mut Vec<Action>,
 ) {
-    theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
-        fill(ui);
+    theme.card_frame().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
+        fill_width(ui);
         ui.horizontal_wrapped(|ui| {
             title_ui(ui, theme, signals);
             source_menu_ui(ui, theme, view, actions);
@@ -139,7 +141,7 @@ fn title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     if current_source(signals).is_some() {
         live_title_ui(ui, theme, signals);
     } else if let Some(measurement) = signals.measurement() {
-        let name = theme.words(&measurement.origin.name());
+        let name = theme.format_text(&measurement.origin.name());
         let response = ui.add(egui::Label::new(theme.heading(name)).truncate());
         match &measurement.origin {
             Origin::Table(TableSource::File(path)) => drop(response.on_hover_text(path.display().to_string())),
@@ -166,9 +168,9 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
         (false, ..) => shown.cloned(),
     };
     let name = origin.as_ref().map_or(TEXTS.text("adapter.title"), Origin::name);
-    ui.add(egui::Label::new(theme.heading(theme.words(&name))).truncate());
+    ui.add(egui::Label::new(theme.heading(theme.format_text(&name))).truncate());
     if matches!(origin, Some(Origin::Virtual | Origin::Adapter { is_virtual: true, .. })) {
-        badge(ui, theme, &theme.say("shell.virtual"), palette.warn);
+        badge(ui, theme, &theme.translate("shell.virtual"), palette.warn);
     }
     let (id, colour) = match (source.is_running(), source.is_held()) {
         (true, _) if origin.is_none() => ("adapter.asking", palette.accent),
@@ -183,10 +185,10 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
         let actual = TEXTS.text("adapter.actual").with_number("rate", rate, 0).with_number("volts", volts, 3);
         let hello = &streaming.hello;
         let who = [hello.name.as_str(), &hello.serial, &hello.firmware].join(" · ");
-        response.on_hover_text(format!("{who}\n{}", theme.words(&actual)));
+        response.on_hover_text(format!("{who}\n{}", theme.format_text(&actual)));
         if let Some((millivolt, milliampere)) = streaming.supplied {
             let text = TEXTS.text("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
-            ui.label(theme.label(theme.words(&text.with("milliampere", milliampere))));
+            ui.label(theme.label(theme.format_text(&text.with("milliampere", milliampere))));
         } else if hello.capabilities.has(Capabilities::SUPPLY) {
             let word = RichText::new(translate(theme, "adapter.supply_off")).color(palette.warn);
             ui.label(word).on_hover_text(translate(theme, "adapter.supply_off_hint"));
@@ -194,7 +196,7 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     }
     if source.lost_samples() > 0 {
         let text = TEXTS.text("virtual.lost").with("count", source.lost_samples());
-        ui.label(RichText::new(theme.words(&text)).color(palette.warn));
+        ui.label(RichText::new(theme.format_text(&text)).color(palette.warn));
     }
 }
 
@@ -209,15 +211,15 @@ fn source_buttons_ui(
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
     let Some(kind) = current_source(signals) else { return };
     if source.is_running() {
-        if button(ui, icons::STOP, &translate(theme, "virtual.stop")).clicked() {
+        if labelled_button(ui, icons::STOP, &translate(theme, "virtual.stop")).clicked() {
             ask(SourceAction::Stop);
         }
         let held = source.is_held();
         let (icon, id) = if held { (icons::PLAY, "virtual.go_on") } else { (icons::PAUSE, "virtual.hold") };
-        if button(ui, icon, &translate(theme, id)).clicked() {
+        if labelled_button(ui, icon, &translate(theme, id)).clicked() {
             ask(SourceAction::Hold(!held));
         }
-    } else if button(ui, icons::PLAY, &translate(theme, "virtual.again")).clicked() {
+    } else if labelled_button(ui, icons::PLAY, &translate(theme, "virtual.again")).clicked() {
         ask(match kind {
             SourceKind::Encoder => SourceAction::Start,
             SourceKind::Adapter => SourceAction::StartAdapter,
@@ -256,9 +258,9 @@ fn compared_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &
         let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 12.0), egui::Sense::hover());
         let ends = [rect.left_center(), rect.right_center()];
-        let stroke = egui::Stroke::new(2.0, series(theme, 1));
+        let stroke = egui::Stroke::new(2.0, series_colour(theme, 1));
         ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
-        ui.add(egui::Label::new(theme.label(theme.words(&text))).truncate());
+        ui.add(egui::Label::new(theme.label(theme.format_text(&text))).truncate());
         if icon_button(ui, true, icons::X, &translate(theme, "compare.drop")).clicked() {
             actions.push(Action::tool(Signals_::DropComparison));
         }
@@ -270,19 +272,19 @@ fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions:
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {
         ui.set_width(220.0);
         let mut chosen = None;
-        if button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
+        if labelled_button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
             chosen = Some(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
+        if labelled_button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
             chosen = Some(Action::tool(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
+        if labelled_button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
             view.adapter = true;
             ui.close();
         }
         ui.label(theme.caption(translate(theme, "signals.examples")));
         for example in ExampleCapture::ALL {
-            if button(ui, icons::FILE_TEXT, &translate(theme, example.keyword())).clicked() {
+            if labelled_button(ui, icons::FILE_TEXT, &translate(theme, example.keyword())).clicked() {
                 chosen = Some(Action::tool(Signals_::Example(example)));
             }
         }
@@ -305,19 +307,19 @@ fn empty_page_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sourc
         ui.add_space(theme.space.between);
         ui.add(egui::Label::new(theme.label(translate(theme, "signals.nothing"))).wrap());
         ui.add_space(theme.space.between);
-        if button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
+        if labelled_button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
             actions.push(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
+        if labelled_button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
             actions.push(Action::tool(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
+        if labelled_button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
             view.adapter = true;
         }
-        theme.gap(ui);
+        theme.add_gap(ui);
         ui.label(theme.caption(translate(theme, "signals.try_example")));
         for example in ExampleCapture::ALL {
-            if button(ui, icons::WAVE_SINE, &translate(theme, example.keyword())).clicked() {
+            if labelled_button(ui, icons::WAVE_SINE, &translate(theme, example.keyword())).clicked() {
                 actions.push(Action::tool(Signals_::Example(example)));
             }
         }

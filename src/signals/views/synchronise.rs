@@ -7,10 +7,10 @@ use crate::signals::state::synchronise::{Form, PhaseInput, SynchroniseAction as 
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::SynchronisationResult};
 use crate::signals::views::translate;
 use crate::ui::controls::{
-    card, card_with_trailing, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row,
+    card, card_with_trailing, dropdown, enabled_button, entry, icon_button, labelled_entry, paragraph, problem_ui, row,
     show_error_below, split, verdict_ui,
 };
-use crate::ui::widgets::{StepRing, series, step_ring};
+use crate::ui::widgets::{StepRing, series_colour, step_ring};
 use crate::ui::{Theme, controls, icons};
 
 const ENTRY_WIDTH: f32 = 112.0;
@@ -42,7 +42,7 @@ pub(super) fn page_ui(
             }
         },
     );
-    theme.gap(ui);
+    theme.add_gap(ui);
     split(
         ui,
         theme,
@@ -50,9 +50,9 @@ pub(super) fn page_ui(
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
             measured_offset_ui(ui, theme, state, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             captured_offset_ui(ui, theme, signals, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             counter_ui(ui, theme, form);
         },
         |ui, _| order_ui(ui, theme),
@@ -88,7 +88,7 @@ fn positions_ui(
                 (PhaseInput::Volts, "synchronise.in_volts"),
             ];
             let ways = ways.map(|(way, id)| (way, translate(theme, id)));
-            choice(ui, &translate(theme, "synchronise.analogue"), &mut form.phase_input, ways);
+            dropdown(ui, &translate(theme, "synchronise.analogue"), &mut form.phase_input, ways);
         });
         match form.phase_input {
             PhaseInput::Periods | PhaseInput::Degrees => {
@@ -123,7 +123,7 @@ fn measured_offset_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, acti
         paragraph(ui, theme.label(translate(theme, "synchronise.measured_words")));
         row(ui, theme, &translate(theme, "synchronise.readings"), theme.monospace(count.to_string()));
         let offset = state.measured_offset();
-        let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", theme.number(offset, 2)));
+        let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", theme.format_number(offset, 2)));
         row(ui, theme, &translate(theme, "synchronise.mean"), theme.monospace(words));
         if enabled_button(ui, offset.is_some(), icons::CHECK, &translate(theme, "synchronise.use")).clicked() {
             actions.push(to_action(Page::UseOffset));
@@ -142,10 +142,10 @@ fn captured_offset_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut
             return;
         };
         let name = TEXTS.text("synchronise.captured_from").with_text("name", own.origin.name());
-        paragraph(ui, theme.label(theme.words(&name)));
+        paragraph(ui, theme.label(theme.format_text(&name)));
         match offset {
             Ok(offset) => {
-                let steps = |steps| theme.monospace(format!("{}/32", theme.number(steps, 2)));
+                let steps = |steps| theme.monospace(format!("{}/32", theme.format_number(steps, 2)));
                 let state = signals.synchronise();
                 row(ui, theme, &translate(theme, "quality.samples"), theme.monospace(offset.samples.to_string()));
                 row(ui, theme, &translate(theme, "synchronise.mean"), steps(state.add_half_step(offset.offset_steps)));
@@ -154,17 +154,17 @@ fn captured_offset_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut
                     actions.push(to_action(Page::UseCaptured(offset.offset_steps)));
                 }
             }
-            Err(why) => problem(ui, theme, Some(&why.text())),
+            Err(why) => problem_ui(ui, theme, Some(&why.text())),
         }
     });
 }
 
 fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult) {
     let (verdict, words) = synchronisation.to_text();
-    let (_, colour) = controls::verdict(theme, verdict);
+    let (_, colour) = controls::verdict_badge(theme, verdict);
     card(ui, theme, TEXTS.text("synchronise.result"), |ui| {
         let fine = synchronisation.result.ok();
-        let (label, value) = (translate(theme, "synchronise.ring"), theme.words(&words));
+        let (label, value) = (translate(theme, "synchronise.ring"), theme.format_text(&words));
         let ring = StepRing {
             step: synchronisation.step,
             phase: synchronisation.phase.to_periods(),
@@ -173,7 +173,7 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult
             label: &label,
             value: &value,
         };
-        let shown = fine.map_or_else(|| "–".to_owned(), |fine| theme.number(fine.periods(), 5));
+        let shown = fine.map_or_else(|| "–".to_owned(), |fine| theme.format_number(fine.periods(), 5));
         ui.label(theme.value(shown));
         verdict_ui(ui, theme, verdict, &words);
         ui.add_space(theme.space.inside);
@@ -191,20 +191,21 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult
 }
 
 fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult) {
-    let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
+    let number =
+        |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.format_number(value, decimals)));
     row(ui, theme, &translate(theme, "synchronise.period"), theme.monospace(synchronisation.period.to_string()));
     // The numbers have the colours of the ring.
     row(
         ui,
         theme,
         &translate(theme, "synchronise.step"),
-        theme.monospace(format!("{}/32", synchronisation.step)).color(series(theme, 0)),
+        theme.monospace(format!("{}/32", synchronisation.step)).color(series_colour(theme, 0)),
     );
     row(
         ui,
         theme,
         &translate(theme, "synchronise.phase_now"),
-        number(synchronisation.phase.to_periods(), 5, "").color(series(theme, 1)),
+        number(synchronisation.phase.to_periods(), 5, "").color(series_colour(theme, 1)),
     );
     row(ui, theme, &translate(theme, "synchronise.difference"), number(synchronisation.difference_steps, 2, "/32"));
     if let Ok(fine) = synchronisation.result {
@@ -229,20 +230,20 @@ fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         typed_entry_ui(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
         match form.quadrature_position() {
             Ok(Some(fine)) => {
-                row(ui, theme, &translate(theme, "synchronise.fine"), theme.monospace(theme.number(fine, 5)))
+                row(ui, theme, &translate(theme, "synchronise.fine"), theme.monospace(theme.format_number(fine, 5)))
             }
             Ok(None) => {}
-            Err(why) => problem(ui, theme, Some(&why)),
+            Err(why) => problem_ui(ui, theme, Some(&why)),
         }
         ui.add_space(theme.space.inside);
         paragraph(ui, theme.label(translate(theme, "synchronise.check_words")));
         typed_entry_ui(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
         match form.max_unlatched_rpm() {
             Ok(rpm) => {
-                let words = format!("{} {}", theme.number(rpm, 1), translate(theme, "input.rpm"));
+                let words = format!("{} {}", theme.format_number(rpm, 1), translate(theme, "input.rpm"));
                 row(ui, theme, &translate(theme, "synchronise.below"), theme.monospace(words));
             }
-            Err(why) => problem(ui, theme, Some(&why)),
+            Err(why) => problem_ui(ui, theme, Some(&why)),
         }
     });
 }

@@ -8,7 +8,7 @@ use crate::app::Action;
 use crate::signals::state::{Column, SignalsAction as Signals, TEXTS, Table, forms};
 use crate::signals::views::translate;
 use crate::ui::controls::{
-    button, card_with_trailing, choice, committed_entry, entry, paragraph, problem, two_columns,
+    card_with_trailing, committed_entry, dropdown, entry, labelled_button, paragraph, problem_ui, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -40,7 +40,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     let mut act = |action: Signals| actions.push(Action::tool(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
-        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "columns.detect")).clicked();
+        again = labelled_button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "columns.detect")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("columns.title"), aside, |ui| {
         lines_ui(ui, theme, table);
@@ -56,11 +56,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
             },
         );
         if let Some((_, Some(why))) = &view.volts {
-            problem(ui, theme, Some(why));
+            problem_ui(ui, theme, Some(why));
         }
         if let Some(clock) = table.layout.as_ref().and_then(|layout| layout.clock) {
             let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
-            paragraph(ui, theme.caption(theme.words(&text)));
+            paragraph(ui, theme.caption(theme.format_text(&text)));
         }
         if table.half_chosen != (None, None) {
             paragraph(ui, theme.caption(translate(theme, "columns.half_chosen")));
@@ -92,7 +92,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signa
     let mut delimiter = table.delimiter();
     entry(ui, theme, &word, |ui| {
         let options = DELIMITERS.map(|(own, id)| (Some(own), translate(theme, id)));
-        if choice(ui, &word, &mut delimiter, options) {
+        if dropdown(ui, &word, &mut delimiter, options) {
             delimiter.into_iter().for_each(|own| act(Signals::SetDelimiter(own)));
         }
     });
@@ -101,7 +101,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signa
     entry(ui, theme, &word, |ui| {
         let options =
             [(Some(false), translate(theme, "columns.point")), (Some(true), translate(theme, "columns.comma"))];
-        if choice(ui, &word, &mut comma, options) {
+        if dropdown(ui, &word, &mut comma, options) {
             comma.into_iter().for_each(|own| act(Signals::SetDecimalComma(own)));
         }
     });
@@ -119,7 +119,7 @@ fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Si
                 Some(name) => (Some(own), format!("{own}: {name}")),
                 None => (Some(own), own.to_string()),
             });
-            if choice(ui, &word, &mut number, none.into_iter().chain(numbers)) {
+            if dropdown(ui, &word, &mut number, none.into_iter().chain(numbers)) {
                 act(Signals::SetColumn(column, number));
             }
         });
@@ -128,7 +128,7 @@ fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Si
             let mut unit = table.hints.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
             entry(ui, theme, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
-                if choice(ui, &word, &mut unit, options) {
+                if dropdown(ui, &word, &mut unit, options) {
                     unit.into_iter().for_each(|own| act(Signals::SetTimeUnit(own)));
                 }
             });
@@ -138,7 +138,7 @@ fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Si
 
 fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, act: &mut impl FnMut(Signals)) {
     let volts = table.hints.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
-    let shown = volts.map(|volts| theme.plain(volts)).unwrap_or_default();
+    let shown = volts.map(|volts| theme.format_plain(volts)).unwrap_or_default();
     let word = translate(theme, "columns.volts");
     entry(ui, theme, &word, |ui| {
         committed_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {

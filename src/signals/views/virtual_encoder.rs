@@ -3,12 +3,12 @@
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 use crate::analysis::wiring::Wire;
-use crate::app::{Action, explain, number};
+use crate::app::{Action, explain, parse_decimal};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::translate;
 use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 use crate::ui::controls::{
-    button, card_with_trailing, choice, entry, label_width, paragraph, show_error_below, two_columns,
+    card_with_trailing, dropdown, entry, label_width, labelled_button, paragraph, show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -57,7 +57,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let mut reset = false;
     let aside = |ui: &mut Ui| {
-        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "virtual.reset")).clicked();
+        reset = labelled_button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "virtual.reset")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
         // The rows are low, since all of them must fit beside the curves that they affect.
@@ -94,7 +94,7 @@ fn sliders_ui(
     let rail = (ui.available_width() - label - NUMBER_WIDTH - 3.0 * theme.space.between).clamp(40.0, 220.0);
     ui.spacing_mut().slider_width = rail;
     for own in list {
-        let word = theme.words(&explain::signal::quantity(own.quantity));
+        let word = theme.format_text(&explain::signal::setting_name(own.quantity));
         let mut value = settings.get(own.quantity);
         let (style, decimals) = (*theme, own.decimals);
         let unit = own.quantity.unit();
@@ -105,8 +105,8 @@ fn sliders_ui(
                 .clamping(SliderClamping::Never)
                 .suffix(suffix)
                 .max_decimals(own.decimals)
-                .custom_formatter(move |value, _| style.number(value, decimals))
-                .custom_parser(number);
+                .custom_formatter(move |value, _| style.format_number(value, decimals))
+                .custom_parser(parse_decimal);
             let response = ui.add(slider);
             response.widget_info(|| WidgetInfo::slider(true, value, &word));
             if response.on_hover_text(&word).changed() {
@@ -122,7 +122,7 @@ fn wires_ui(ui: &mut Ui, theme: &Theme, settings: &Settings, ask: &mut impl FnMu
     entry(ui, theme, &word, |ui| {
         let wires = Wire::ALL.map(|wire| (Some(wire), wire.name().to_owned()));
         let none = [(None, translate(theme, "virtual.no_wire"))];
-        if choice(ui, &word, &mut open, none.into_iter().chain(wires)) {
+        if dropdown(ui, &word, &mut open, none.into_iter().chain(wires)) {
             ask(SourceAction::SetOpenWire(open));
         }
     });
@@ -133,7 +133,7 @@ fn wires_ui(ui: &mut Ui, theme: &Theme, settings: &Settings, ask: &mut impl FnMu
             (ReferenceLevel::Level, translate(theme, "virtual.level")),
             (ReferenceLevel::Complement, translate(theme, "virtual.complement")),
         ];
-        if choice(ui, &word, &mut references, options) {
+        if dropdown(ui, &word, &mut references, options) {
             ask(SourceAction::SetReferences(references));
         }
     });
@@ -147,12 +147,12 @@ fn window_ui(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(S
     let word = translate(theme, "virtual.window");
     let mut window = source.window_ms();
     entry(ui, theme, &word, |ui| {
-        if choice(ui, &word, &mut window, WINDOWS.map(|own| (own, format!("{own} ms")))) {
+        if dropdown(ui, &word, &mut window, WINDOWS.map(|own| (own, format!("{own} ms")))) {
             ask(SourceAction::SetWindow(window));
         }
     });
     if let Some(ms) = source.limited_window_ms() {
         let text = TEXTS.text("virtual.shortened").with_number("ms", ms, 0);
-        paragraph(ui, theme.caption(theme.words(&text)));
+        paragraph(ui, theme.caption(theme.format_text(&text)));
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{ScrollArea, Ui};
 
-use crate::ui::controls::{button, modal, paragraph, right_aligned, row};
+use crate::ui::controls::{labelled_button, modal, paragraph, right_aligned, row};
 use crate::ui::{Theme, icons};
 
 const FONT_LICENCES: &str = include_str!("../../../assets/fonts/LICENCES.txt");
@@ -14,13 +14,13 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
     modal(ctx, theme, "about", 560.0, |ui| {
         ui.label(theme.value("encoder-studio"));
         let version = crate::app::Text::new("about.version").with("version", env!("CARGO_PKG_VERSION"));
-        ui.label(theme.label(theme.words(&version)));
+        ui.label(theme.label(theme.format_text(&version)));
         ui.add_space(theme.space.between);
         for id in ["about.words", "about.trademark", "about.licence"] {
-            paragraph(ui, theme.say(id));
+            paragraph(ui, theme.translate(id));
         }
         ui.add_space(theme.space.between);
-        ui.label(theme.heading(theme.say("about.made_of")));
+        ui.label(theme.heading(theme.translate("about.made_of")));
         let height = (ctx.content_rect().height() - 360.0).clamp(120.0, 300.0);
         theme.sunken_frame().show(ui, |ui| {
             ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
@@ -29,9 +29,9 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
                 }
             });
         });
-        theme.gap(ui);
+        theme.add_gap(ui);
         right_aligned(ui, |ui| {
-            done = button(ui, "", &theme.say("about.close")).clicked();
+            done = labelled_button(ui, "", &theme.translate("about.close")).clicked();
         });
     });
     done
@@ -40,7 +40,7 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
 /// Draws the name and help of the open page. Returns `true` when the help is closed.
 pub(in crate::ui) fn help_ui(ctx: &egui::Context, theme: &Theme, (page, help): (&'static str, &'static str)) -> bool {
     let mut open = true;
-    let title = format!("{}  {}", icons::BOOK_OPEN_TEXT, theme.say(page));
+    let title = format!("{}  {}", icons::BOOK_OPEN_TEXT, theme.translate(page));
     egui::Window::new(title)
         .id(egui::Id::unique("help"))
         .open(&mut open)
@@ -50,10 +50,10 @@ pub(in crate::ui) fn help_ui(ctx: &egui::Context, theme: &Theme, (page, help): (
         .anchor(egui::Align2::RIGHT_TOP, [-16.0, 64.0])
         .show(ctx, |ui: &mut Ui| {
             ui.set_width(380.0);
-            paragraph(ui, theme.say(help));
+            paragraph(ui, theme.translate(help));
             ui.add_space(theme.space.between);
-            ui.label(theme.heading(theme.say("help.keys")));
-            for line in theme.say("help.keys_words").lines() {
+            ui.label(theme.heading(theme.translate("help.keys")));
+            for line in theme.translate("help.keys_words").lines() {
                 let (key, words) = line.split_once('\t').unwrap_or((line, ""));
                 row(ui, theme, key, words);
             }

@@ -12,7 +12,7 @@ use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, is_
 use crate::app::{Action, Studio, Tab, Text};
 use crate::link::LinkUrl;
 use crate::ui::controls::{
-    button, entry, icon_button, modal, mono_entry, name, paragraph, primary_button, problem, right_aligned,
+    entry, icon_button, labelled_button, modal, mono_entry, name, paragraph, primary_button, problem_ui, right_aligned,
 };
 use crate::ui::{TabViews, Theme, icons};
 
@@ -27,9 +27,9 @@ pub(in crate::ui) struct ConnectView {
 
 /// Maximum number of recent links offered.
 const LINKS: usize = 5;
-const WIDTH: f32 = 600.0;
+const DIALOG_WIDTH: f32 = 600.0;
 /// Height of the two lines reserved for the reason why the dialog cannot continue.
-const WHY: f32 = 40.0;
+const REASON_HEIGHT: f32 = 40.0;
 
 pub(in crate::ui) fn connect_ui(
     ctx: &egui::Context,
@@ -40,16 +40,16 @@ pub(in crate::ui) fn connect_ui(
 ) {
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 250.0).min(540.0);
-    modal(ctx, theme, "connect", WIDTH, |ui| {
+    modal(ctx, theme, "connect", DIALOG_WIDTH, |ui| {
         ui.horizontal(|ui| {
-            ui.label(theme.heading(theme.say("connect.title")));
-            theme.gap(ui);
+            ui.label(theme.heading(theme.translate("connect.title")));
+            theme.add_gap(ui);
             devices_ui(ui, theme, tabs, dialog.device, actions);
         });
         ui.add_space(theme.space.inside);
         // The height is constant, so nothing moves under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
-            recent_links_ui(ui, theme, studio.settings.links(dialog.device), actions);
+            recent_links_ui(ui, theme, studio.settings.links_of(dialog.device), actions);
             if let Some(own) = tabs.device(dialog.device) {
                 let form = view.forms.entry(dialog.device).or_insert_with(|| own.connect_form());
                 form.form_ui(ui, theme, dialog, &mut view.more, actions);
@@ -62,11 +62,11 @@ pub(in crate::ui) fn connect_ui(
         let refused = searching.or(url.err());
         reason_ui(ui, theme, refused.as_ref().or(dialog.problem.as_ref()));
         right_aligned(ui, |ui| {
-            let word = theme.say("connect.connect");
+            let word = theme.translate("connect.connect");
             if primary_button(ui, theme, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
                 actions.push(Action::Connect(Connect::Connect));
             }
-            if button(ui, "", &theme.say("connect.cancel")).clicked() {
+            if labelled_button(ui, "", &theme.translate("connect.cancel")).clicked() {
                 actions.push(Action::Connect(Connect::Close));
             }
         });
@@ -88,7 +88,7 @@ fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut V
     if links.is_empty() {
         return;
     }
-    ui.label(theme.caption(theme.say("connect.used")));
+    ui.label(theme.caption(theme.translate("connect.used")));
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for link in links.iter().take(LINKS) {
@@ -103,15 +103,15 @@ fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut V
 
 /// Draws the entry for the link in the form of the command line. The link and the form update each other.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
-    let hint = Text::new("connect.link_hint").with("link", dialog.example());
-    let (word, hint) = (theme.say("connect.link"), theme.words(&hint));
-    let mut link = dialog.link();
+    let hint = Text::new("connect.link_hint").with("link", dialog.example_link());
+    let (word, hint) = (theme.translate("connect.link"), theme.format_text(&hint));
+    let mut link = dialog.typed_link();
     entry(ui, theme, &word, |ui| {
         let width = (ui.available_width() - 52.0).max(0.0);
         if mono_entry(ui, theme, &mut link, width, &word, &hint).changed() {
             actions.push(Action::Connect(Connect::Use(link)));
         }
-        if icon_button(ui, url.is_some(), icons::COPY, &theme.say("shell.copy_link")).clicked()
+        if icon_button(ui, url.is_some(), icons::COPY, &theme.translate("shell.copy_link")).clicked()
             && let Some(url) = url
         {
             ui.copy_text(url.to_string());
@@ -124,9 +124,9 @@ fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, a
 fn reason_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();
     match why {
-        Some(why) if is_missing(why) => paragraph(ui, theme.label(theme.words(why))),
-        why => problem(ui, theme, why),
+        Some(why) if is_missing(why) => paragraph(ui, theme.label(theme.format_text(why))),
+        why => problem_ui(ui, theme, why),
     }
-    let rest = top + WHY - ui.cursor().top();
+    let rest = top + REASON_HEIGHT - ui.cursor().top();
     ui.add_space(rest.max(0.0));
 }

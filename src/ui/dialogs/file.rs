@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::app::{Action, ActionMailbox, FileQuestion, Text};
 use crate::store::BaseFolders;
-use crate::ui::controls::{button, modal, primary_button, right_aligned, text_entry};
+use crate::ui::controls::{labelled_button, modal, primary_button, right_aligned, text_entry};
 use crate::ui::{Theme, icons};
 
 pub(in crate::ui) struct FileView {
@@ -24,8 +24,8 @@ const TOO_FAST: Duration = Duration::from_millis(250);
 
 /// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] asks
 /// instead.
-pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: ActionMailbox) {
-    let filter = theme.words(&kind(&question));
+pub(in crate::ui) fn ask_for_file(question: FileQuestion, theme: &Theme, mailbox: ActionMailbox) {
+    let filter = theme.format_text(&kind(&question));
     if !has_dialogs() {
         mailbox.send(Action::TypePath(question));
         return;
@@ -121,9 +121,9 @@ pub(in crate::ui) fn file_ui(
     };
     let mut done = false;
     modal(ctx, theme, "file", 520.0, |ui| {
-        ui.label(theme.heading(theme.words(&title(&view.question))));
+        ui.label(theme.heading(theme.format_text(&title(&view.question))));
         ui.add_space(theme.space.between);
-        let response = text_entry(ui, &mut view.path, ui.available_width(), &theme.say("file.path"), "");
+        let response = text_entry(ui, &mut view.path, ui.available_width(), &theme.translate("file.path"), "");
         if std::mem::take(&mut view.fresh) {
             response.request_focus();
             // Select only the file name. Typing then keeps the folder.
@@ -136,19 +136,19 @@ pub(in crate::ui) fn file_ui(
             egui::TextEdit::store_state(ui.ctx(), response.id, state);
         }
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-        ui.label(theme.caption(theme.say("file.hint")));
+        ui.label(theme.caption(theme.translate("file.hint")));
         if let Some(working) = &view.working {
             let rule = Text::new("file.rule").with("folder", working.display());
-            ui.label(theme.caption(theme.words(&rule)));
+            ui.label(theme.caption(theme.format_text(&rule)));
         }
-        theme.gap(ui);
+        theme.add_gap(ui);
         right_aligned(ui, |ui| {
             let named = !view.path.trim().is_empty();
-            if primary_button(ui, theme, named, icon, &theme.say(confirm)).clicked() || (enter && named) {
+            if primary_button(ui, theme, named, icon, &theme.translate(confirm)).clicked() || (enter && named) {
                 actions.push(Action::Typed(view.question.clone(), PathBuf::from(view.path.trim())));
                 done = true;
             }
-            if button(ui, "", &theme.say("file.cancel")).clicked() {
+            if labelled_button(ui, "", &theme.translate("file.cancel")).clicked() {
                 done = true;
             }
         });

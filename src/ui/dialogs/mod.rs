@@ -12,6 +12,6 @@ pub(super) use about::{about_ui, help_ui};
 pub(super) use comparison::comparison_ui;
 pub(super) use connect::{ConnectView, connect_ui};
 pub(super) use diverged::diverged_ui;
-pub(super) use file::{FileView, ask, file_ui};
+pub(super) use file::{FileView, ask_for_file, file_ui};
 pub(super) use palette::{PaletteUiState, palette_ui};
 pub(super) use question::question_ui;

@@ -2,14 +2,14 @@
 
 use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
-use crate::app::palette::fit;
+use crate::app::palette::match_score;
 use crate::ui::Theme;
 use crate::ui::commands::{Command, CommandEffect};
 use crate::ui::controls::{modal, paragraph};
 use crate::ui::entries::text_entry;
 
-const WIDTH: f32 = 560.0;
-const ROW: f32 = 28.0;
+const DIALOG_WIDTH: f32 = 560.0;
+const ROW_HEIGHT: f32 = 28.0;
 const ROWS: usize = 11;
 
 /// State of the palette: the typed text, and the row that Enter selects.
@@ -30,9 +30,9 @@ pub(in crate::ui) fn palette_ui(
         [(Key::ArrowDown, 1), (Key::ArrowUp, -1), (Key::PageDown, ROWS as isize), (Key::PageUp, -(ROWS as isize))];
     let step: isize = steps.into_iter().filter(|(key, _)| pressed(*key)).map(|(_, step)| step).sum();
     let enter = pressed(Key::Enter);
-    modal(ctx, theme, "palette", WIDTH, |ui| {
-        let hint = theme.say("palette.hint");
-        let entry = text_entry(ui, &mut state.typed, WIDTH, &hint, &hint);
+    modal(ctx, theme, "palette", DIALOG_WIDTH, |ui| {
+        let hint = theme.translate("palette.hint");
+        let entry = text_entry(ui, &mut state.typed, DIALOG_WIDTH, &hint, &hint);
         entry.request_focus();
         if entry.changed() {
             state.selected = 0;
@@ -41,8 +41,8 @@ pub(in crate::ui) fn palette_ui(
         state.selected = state.selected.saturating_add_signed(step).min(found.len().saturating_sub(1));
         ui.add_space(theme.space.between);
         let clicked = ui
-            .allocate_ui(vec2(WIDTH, ROW * ROWS as f32), |ui| {
-                ui.set_min_height(ROW * ROWS as f32);
+            .allocate_ui(vec2(DIALOG_WIDTH, ROW_HEIGHT * ROWS as f32), |ui| {
+                ui.set_min_height(ROW_HEIGHT * ROWS as f32);
                 rows_ui(ui, theme, &found, state, step != 0)
             })
             .inner;
@@ -55,8 +55,8 @@ pub(in crate::ui) fn palette_ui(
 /// Returns the commands that match the typed text. The best match comes first, and unavailable commands come last.
 fn matching_commands(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     let fitting = commands.into_iter().filter_map(|command| {
-        let fit = fit(typed, &command.name)
-            .or_else(|| Some(10 + fit(typed, &format!("{} {}", command.about, command.name))?))?;
+        let fit = match_score(typed, &command.name)
+            .or_else(|| Some(10 + match_score(typed, &format!("{} {}", command.about, command.name))?))?;
         Some((!command.is_enabled, fit, command))
     });
     let mut fitting: Vec<(bool, usize, Command)> = fitting.collect();
@@ -66,14 +66,14 @@ fn matching_commands(typed: &str, commands: Vec<Command>) -> Vec<Command> {
 
 fn rows_ui(ui: &mut Ui, theme: &Theme, commands: &[Command], state: &PaletteUiState, scroll: bool) -> Option<usize> {
     if commands.is_empty() {
-        paragraph(ui, theme.label(theme.say("palette.none")));
+        paragraph(ui, theme.label(theme.translate("palette.none")));
         return None;
     }
     let mut clicked = None;
     ui.spacing_mut().item_spacing.y = 0.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         for (at, command) in commands.iter().enumerate() {
-            let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+            let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
             let is_selected = at == state.selected;
             if is_selected && scroll {
                 ui.scroll_to_rect(rect, None);

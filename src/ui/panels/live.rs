@@ -6,8 +6,8 @@ use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, RecorderOwner, Rgb, Studio, Text};
-use crate::ui::controls::{choice, empty_placeholder, enabled_button, icon_button, label_width, name, row};
-use crate::ui::page::apart;
+use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_button, label_width, name, row};
+use crate::ui::page::with_stable_ids;
 use crate::ui::{Theme, Views, icons, plot};
 
 /// Polling intervals in microseconds. With the first one, polls follow each other without a pause.
@@ -16,17 +16,17 @@ const RATES: [(u64, &str); 4] =
 /// Sample intervals of a streaming adapter, in microseconds.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
 /// Polling interval in microseconds used if the chosen rate is not offered.
-const USUAL: u64 = 50_000;
+const DEFAULT_INTERVAL_US: u64 = 50_000;
 
 /// Panel height in points below which the numbers beside the position are on one line.
-pub(crate) const LOW: f32 = 460.0;
+pub(crate) const LOW_PANEL_HEIGHT: f32 = 460.0;
 
 /// Minimum width of the rate selector, and panel width from which the first button has a label.
-const RATE: f32 = 64.0;
+const MIN_RATE_WIDTH: f32 = 64.0;
 const ONE_ROW: f32 = 280.0;
 
 /// Time in seconds after which an unchanged position is marked.
-const NOTICED: f32 = 0.4;
+const UNCHANGED_MARK_S: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
     ui: &mut Ui,
@@ -36,7 +36,7 @@ pub(in crate::ui) fn live_ui(
     actions: &mut Vec<Action>,
 ) {
     let Some(device) = studio.selected_device() else {
-        empty_placeholder(ui, theme, &theme.say("live.nothing"), None);
+        empty_placeholder(ui, theme, &theme.translate("live.nothing"), None);
         return;
     };
     let paused = is_paused(ui, device);
@@ -46,10 +46,10 @@ pub(in crate::ui) fn live_ui(
     }
     pause_ui(ui, theme, device, paused);
     let alone = studio.settings.values_alone;
-    apart(ui, "controls", |ui| controls_ui(ui, theme, (device, alone), views, actions));
+    with_stable_ids(ui, "controls", |ui| controls_ui(ui, theme, (device, alone), views, actions));
     ui.add_space(theme.space.between);
     if !alone && !views.plot.is_expanded() {
-        apart(ui, "plot", |ui| plot_ui(ui, theme, device, views, actions));
+        with_stable_ids(ui, "plot", |ui| plot_ui(ui, theme, device, views, actions));
     }
 }
 
@@ -58,9 +58,9 @@ fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     let size = egui::vec2(ui.available_width().max(0.0), theme.sizes.caption + theme.space.inside);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_size(size);
-        if let Some(running) = device.running().filter(|_| paused) {
+        if let Some(running) = device.running_job().filter(|_| paused) {
             let text = Text::new("live.paused_by_job").with_text("job", running.title);
-            ui.add(egui::Label::new(theme.caption(theme.words(&text))).truncate());
+            ui.add(egui::Label::new(theme.caption(theme.format_text(&text))).truncate());
         }
     });
 }
@@ -71,7 +71,7 @@ fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
     // The animation runs even without a job, so the next job starts from zero.
-    let share = ui.ctx().animate_bool_with_time(id, waits, if waits { NOTICED } else { 0.0 });
+    let share = ui.ctx().animate_bool_with_time(id, waits, if waits { UNCHANGED_MARK_S } else { 0.0 });
     waits && share >= 1.0
 }
 
@@ -82,31 +82,31 @@ pub(in crate::ui) fn plot_ui(
     views: &mut Views,
     actions: &mut Vec<Action>,
 ) {
-    let empty = theme.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
+    let empty = theme.translate(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
     let owner = RecorderOwner::Device(device.id());
     plot::plot_ui(ui, theme, device.recorder(), owner, &mut views.plot, &empty, actions);
     let dropped = device.dropped_count();
     if dropped > 0 {
         let text = Text::new("live.dropped").with("count", dropped);
-        ui.label(RichText::new(theme.words(&text)).size(theme.sizes.caption).color(theme.palette.warn));
+        ui.label(RichText::new(theme.format_text(&text)).size(theme.sizes.caption).color(theme.palette.warn));
     }
 }
 
 /// Draws a short remark beside the position. It is truncated at the edge of the panel, because a panel must not outgrow
 /// the window.
-pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
-    ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
+pub(crate) fn remark_ui(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
+    ui.add(egui::Label::new(RichText::new(theme.translate(word)).color(ink)).truncate());
 }
 
 /// Draws the rows of a position that is not read yet. They reserve the space, so the buttons below do not move later.
 pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) {
     const UNKNOWN: &str = "–";
-    if ui.available_height() < LOW {
+    if ui.available_height() < LOW_PANEL_HEIGHT {
         ui.label(theme.caption(UNKNOWN));
         return;
     }
     for label in labels {
-        row(ui, theme, &theme.say(label), theme.monospace(UNKNOWN));
+        row(ui, theme, &theme.translate(label), theme.monospace(UNKNOWN));
     }
 }
 
@@ -117,7 +117,7 @@ pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     let text = egui::WidgetText::from(value.clone());
     let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Monospace);
     let value = if galley.size().x > room { value.size(theme.sizes.caption) } else { value };
-    row(ui, theme, &theme.say("live.raw"), value);
+    row(ui, theme, &theme.translate("live.raw"), value);
 }
 
 fn controls_ui(
@@ -130,32 +130,34 @@ fn controls_ui(
     let connected = *device.phase() == Phase::Connected;
     let polling = device.is_polling();
     let streams = if device.can_stream() { &STREAMS[..] } else { &[] };
-    let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.say(id))).collect();
-    let mut rate = Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(USUAL);
+    let rates: Vec<(u64, String)> =
+        streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.translate(id))).collect();
+    let mut rate =
+        Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(DEFAULT_INTERVAL_US);
     ui.horizontal_wrapped(|ui| {
         // At the usual width, they fit in one row.
         ui.spacing_mut().item_spacing.x = theme.space.inside;
-        ui.spacing_mut().combo_width = RATE;
+        ui.spacing_mut().combo_width = MIN_RATE_WIDTH;
         let button = if ui.available_width() < ONE_ROW { icon_button } else { enabled_button };
         if polling {
-            if button(ui, true, icons::PAUSE, &theme.say("live.pause")).clicked() {
+            if button(ui, true, icons::PAUSE, &theme.translate("live.pause")).clicked() {
                 actions.push(device.command(DeviceCommand::Poll(None)));
             }
-        } else if button(ui, connected, icons::PLAY, &theme.say("live.start")).clicked() {
+        } else if button(ui, connected, icons::PLAY, &theme.translate("live.start")).clicked() {
             actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));
         }
-        if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &theme.say("live.once")).clicked() {
+        if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &theme.translate("live.once")).clicked() {
             actions.push(device.command(DeviceCommand::ReadPosition));
         }
         if let Some(session) = views.session(device) {
             session.watch_menu(ui, theme, device, actions);
         }
-        let word = theme.say(if alone { "live.show_plot" } else { "live.hide_plot" });
+        let word = theme.translate(if alone { "live.show_plot" } else { "live.hide_plot" });
         let plot = egui::Button::selectable(!alone, icons::CHART_LINE).min_size(egui::vec2(28.0, 28.0));
         if name(ui.add(plot), true, &word).on_hover_text(&word).clicked() {
             actions.push(Action::ShowValuesAlone(!alone));
         }
-        if choice(ui, &theme.say("live.rate"), &mut rate, rates) {
+        if dropdown(ui, &theme.translate("live.rate"), &mut rate, rates) {
             views.rate = rate;
             if polling {
                 actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));

@@ -13,17 +13,17 @@ use crate::ui::controls::{empty_placeholder, icon_button, name};
 use crate::ui::entries::text_entry;
 use crate::ui::{Theme, Views, icons};
 
-const ROW: f32 = 18.0;
+const ROW_HEIGHT: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 /// Width of the search entry in points.
-const SEARCH: f32 = 200.0;
+const SEARCH_WIDTH: f32 = 200.0;
 /// Widths of the columns with the time and the gap, and of the arrow.
 const TIMES: [f32; 2] = [96.0, 76.0];
-const ARROW: f32 = 16.0;
+const ARROW_WIDTH: f32 = 16.0;
 /// Share of the bytes in the remaining width.
-const BYTES: f32 = 0.48;
+const BYTES_SHARE: f32 = 0.48;
 /// Width of a selected frame beside the list in points.
-const DETAIL: f32 = 290.0;
+const DETAIL_WIDTH: f32 = 290.0;
 
 #[derive(Default)]
 pub(in crate::ui) struct TraceView {
@@ -48,7 +48,7 @@ impl TraceView {
             *self = TraceView { session: Some(session), filter, ..TraceView::default() };
         }
         // A new connection starts a new log, to which an old pause does not apply.
-        self.paused_at = self.paused_at.filter(|end| *end <= log.end());
+        self.paused_at = self.paused_at.filter(|end| *end <= log.next_number());
     }
 }
 
@@ -61,20 +61,20 @@ pub(in crate::ui) fn trace_ui(
 ) {
     let shown = studio.selected_device().filter(|device| !device.trace().lines().is_empty());
     let Some((session, log)) = shown.map(|device| (device.id(), device.trace())) else {
-        empty_placeholder(ui, theme, &theme.say("trace.nothing"), None);
+        empty_placeholder(ui, theme, &theme.translate("trace.nothing"), None);
         return;
     };
     let view = &mut views.trace;
     view.select(session, log);
-    let jumps_to_end = toolbar(ui, theme, view, log, actions);
-    let selected = view.selected.and_then(|number| log.line(number));
+    let jumps_to_end = toolbar_ui(ui, theme, view, log, actions);
+    let selected = view.selected.and_then(|number| log.line_by_number(number));
     view.selected = view.selected.filter(|_| selected.is_some());
     let room = ui.available_rect_before_wrap();
     let Some(line) = selected else {
         rows_ui(ui, theme, view, log, jumps_to_end);
         return;
     };
-    let (list, detail) = room.split_left_right_at_x(room.right() - DETAIL);
+    let (list, detail) = room.split_left_right_at_x(room.right() - DETAIL_WIDTH);
     let list = Rect { max: list.max - egui::vec2(theme.space.groups, 0.0), ..list };
     ui.scope_builder(UiBuilder::new().max_rect(list), |ui| rows_ui(ui, theme, view, log, jumps_to_end));
     ui.scope_builder(UiBuilder::new().max_rect(detail), |ui| {
@@ -86,44 +86,44 @@ pub(in crate::ui) fn trace_ui(
 
 /// Draws the frames that match the filter.
 fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jumps_to_end: bool) {
-    let end = view.paused_at.unwrap_or(log.end());
+    let end = view.paused_at.unwrap_or(log.next_number());
     let (filters, language) = (!view.filter.is_empty(), theme.language);
     if filters {
-        view.matches.update(log, &view.filter, language, end);
+        view.matches.update_matches(log, &view.filter, language, end);
     }
     let matches = filters.then_some(&view.matches);
     let (rows, removed) = match matches {
-        Some(matches) => (matches.numbers().len(), matches.removed()),
-        None => (usize::try_from(end.saturating_sub(log.gone())).unwrap_or_default(), log.gone()),
+        Some(matches) => (matches.frame_numbers().len(), matches.removed_count()),
+        None => (usize::try_from(end.saturating_sub(log.removed_count())).unwrap_or_default(), log.removed_count()),
     };
     let number_of = |row: usize| match matches {
-        Some(matches) => matches.numbers().get(row).copied(),
-        None => (row < rows).then(|| log.gone() + row as u64),
+        Some(matches) => matches.frame_numbers().get(row).copied(),
+        None => (row < rows).then(|| log.removed_count() + row as u64),
     };
     let row_of = |number: u64| match matches {
-        Some(matches) => matches.numbers().binary_search(&number).ok(),
-        None => number.checked_sub(log.gone()).and_then(|row| usize::try_from(row).ok()),
+        Some(matches) => matches.frame_numbers().binary_search(&number).ok(),
+        None => number.checked_sub(log.removed_count()).and_then(|row| usize::try_from(row).ok()),
     };
     let gone = view.removed.replace(removed).map_or(0, |before| removed.saturating_sub(before));
     if rows == 0 {
         let words = match view.filter.search.trim() {
-            "" => theme.words(&Text::new("trace.no_faults").with("count", log.lines().len())),
-            _ => theme.say("trace.no_match"),
+            "" => theme.format_text(&Text::new("trace.no_faults").with("count", log.lines().len())),
+            _ => theme.translate("trace.no_match"),
         };
         empty_placeholder(ui, theme, &words, None);
         return;
     }
     // The identifier must not depend on whether a frame is shown beside the list.
     let keys = Id::unique("trace_keys");
-    let moved = step(ui, keys).and_then(|step| number_of(row_of(view.selected?)?.checked_add_signed(step)?));
+    let moved = selection_step(ui, keys).and_then(|step| number_of(row_of(view.selected?)?.checked_add_signed(step)?));
     view.selected = moved.or(view.selected);
     ui.spacing_mut().item_spacing.y = theme.space.inside;
-    let pitch = ROW + ui.spacing().item_spacing.y;
+    let pitch = ROW_HEIGHT + ui.spacing().item_spacing.y;
     let layer = ui.layer_id();
     let pressed = ui.input(|input| input.pointer.primary_pressed().then(|| input.pointer.interact_pos()).flatten());
     let pressed = pressed.filter(|place| ui.ctx().layer_id_at(*place) == Some(layer));
     // The bytes and the meaning share the rest.
-    let bytes = ((ui.available_width() - TIMES[0] - TIMES[1] - ARROW) * BYTES).max(0.0).floor();
+    let bytes = ((ui.available_width() - TIMES[0] - TIMES[1] - ARROW_WIDTH) * BYTES_SHARE).max(0.0).floor();
     let mut table = TableBuilder::new(ui)
         .id_salt("trace")
         .auto_shrink(false)
@@ -143,14 +143,16 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
     let drawn = table
         .column(Column::exact(TIMES[0]))
         .column(Column::exact(TIMES[1]))
-        .column(Column::exact(ARROW))
+        .column(Column::exact(ARROW_WIDTH))
         .column(Column::exact(bytes).clip(true))
         .column(Column::remainder().clip(true))
         .body(|body| {
-            body.rows(ROW, rows, |mut row| {
+            body.rows(ROW_HEIGHT, rows, |mut row| {
                 let number = number_of(row.index());
-                let Some((number, line)) = number.and_then(|number| Some((number, log.line(number)?))) else { return };
-                let before = number.checked_sub(1).and_then(|before| log.line(before));
+                let Some((number, line)) = number.and_then(|number| Some((number, log.line_by_number(number)?))) else {
+                    return;
+                };
+                let before = number.checked_sub(1).and_then(|before| log.line_by_number(before));
                 row.set_selected(selected == Some(number));
                 let height = line_ui(&mut row, theme, log, line, before);
                 // While frames arrive, the row under the pointer is another one at the release. A row that has just
@@ -173,7 +175,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
 }
 
 /// Returns by how many rows the arrow keys move the selection. They do so after a click on a row.
-fn step(ui: &Ui, keys: Id) -> Option<isize> {
+fn selection_step(ui: &Ui, keys: Id) -> Option<isize> {
     ui.interact(Rect::NOTHING, keys, Sense::focusable_noninteractive());
     if !ui.memory(|memory| memory.has_focus(keys)) {
         return None;
@@ -185,46 +187,46 @@ fn step(ui: &Ui, keys: Id) -> Option<isize> {
 }
 
 /// Draws search, filter, pause and save. Returns whether the newest frame is to be shown.
-fn toolbar(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, actions: &mut Vec<Action>) -> bool {
+fn toolbar_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, actions: &mut Vec<Action>) -> bool {
     let mut jumps_to_end = false;
     ui.horizontal(|ui| {
         let follows = !view.is_behind && view.paused_at.is_none();
-        let word = theme.say("trace.follow");
+        let word = theme.translate("trace.follow");
         let follow = egui::Button::selectable(follows, format!("{}  {word}", icons::FAST_FORWARD));
         let follow = name(ui.add(follow.frame_when_inactive(true)), true, &word);
-        if follow.on_hover_text(theme.say("trace.follow_hint")).clicked() {
-            view.paused_at = follows.then(|| log.end());
+        if follow.on_hover_text(theme.translate("trace.follow_hint")).clicked() {
+            view.paused_at = follows.then(|| log.next_number());
             jumps_to_end = !follows;
         }
         let mut changed = false;
-        let word = theme.say("trace.faults");
+        let word = theme.translate("trace.faults");
         let faults = egui::Button::selectable(view.filter.faults_only, format!("{}  {word}", icons::WARNING));
         if name(ui.add(faults.frame_when_inactive(true)), true, &word).clicked() {
             view.filter.faults_only = !view.filter.faults_only;
             changed = true;
         }
-        let word = theme.say("trace.search");
-        if text_entry(ui, &mut view.filter.search, SEARCH, &word, &word).changed() {
+        let word = theme.translate("trace.search");
+        if text_entry(ui, &mut view.filter.search, SEARCH_WIDTH, &word, &word).changed() {
             changed = true;
         }
         if changed {
             view.removed = None;
             jumps_to_end = true;
         }
-        if icon_button(ui, true, icons::FLOPPY_DISK, &theme.say("trace.save")).clicked() {
+        if icon_button(ui, true, icons::FLOPPY_DISK, &theme.translate("trace.save")).clicked() {
             actions.extend(view.session.map(Action::AskTrace));
         }
         if let Some(end) = view.paused_at {
-            let text = Text::new("trace.paused").with("count", log.end().saturating_sub(end));
-            ui.label(theme.label(theme.words(&text)));
+            let text = Text::new("trace.paused").with("count", log.next_number().saturating_sub(end));
+            ui.label(theme.label(theme.format_text(&text)));
         } else if !view.filter.is_empty() {
-            let shown = view.matches.numbers().len();
+            let shown = view.matches.frame_numbers().len();
             let text = Text::new("trace.matches").with("shown", shown).with("all", log.lines().len());
-            ui.label(theme.label(theme.words(&text)));
+            ui.label(theme.label(theme.format_text(&text)));
         }
         if log.dropped_count() > 0 {
             let text = Text::new("trace.dropped").with("count", log.dropped_count());
-            ui.add(egui::Label::new(RichText::new(theme.words(&text)).color(theme.palette.warn)).truncate());
+            ui.add(egui::Label::new(RichText::new(theme.format_text(&text)).color(theme.palette.warn)).truncate());
         }
     });
     jumps_to_end
@@ -240,7 +242,7 @@ fn line_ui(
 ) -> Rangef {
     let palette = theme.palette;
     let arrow = if line.direction == Direction::Sent { "→" } else { "←" };
-    let colour = ink(theme, line);
+    let colour = frame_colour(theme, line);
     row.col(|ui| {
         let time = log.line_time(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
         ui.label(theme.monospace(time).color(palette.muted));
@@ -249,8 +251,8 @@ fn line_ui(
         let Some(before) = before else { return };
         let seconds = line.at.since(before.at).as_secs_f64();
         let gap = match seconds {
-            10.0.. => format!("+{} s", theme.number(seconds, 1)),
-            _ => format!("+{} ms", theme.number(seconds * 1e3, 1)),
+            10.0.. => format!("+{} s", theme.format_number(seconds, 1)),
+            _ => format!("+{} ms", theme.format_number(seconds * 1e3, 1)),
         };
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(theme.space.inside);
@@ -264,7 +266,7 @@ fn line_ui(
         let bytes = if line.header > 0 { format!("… {}", line.message()) } else { line.bytes.clone() };
         ui.label(theme.monospace(bytes).color(colour));
     });
-    let meaning = line.words(theme.language);
+    let meaning = line.to_string_in(theme.language);
     let mut height = Rangef::NOTHING;
     row.col(|ui| {
         height = ui.max_rect().y_range();
@@ -274,7 +276,7 @@ fn line_ui(
 }
 
 /// Returns the colour of a frame by its fault and direction.
-fn ink(theme: &Theme, line: &TraceLine) -> Rgb {
+fn frame_colour(theme: &Theme, line: &TraceLine) -> Rgb {
     let palette = theme.palette;
     match (line.fault, line.direction) {
         (Some(TraceFault::Broken), _) => palette.bad,

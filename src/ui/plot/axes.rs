@@ -2,10 +2,10 @@
 
 use crate::analysis::SampleTime;
 use crate::app::recorder::SAMPLE;
-use crate::app::{Language, decimal};
+use crate::app::{Language, format_decimal};
 
 /// Returns a step of 1, 2 or 5 times a power of ten. It divides `span` into at most `most` parts.
-pub(super) fn step(span: f64, most: f64) -> f64 {
+pub(super) fn step_1_2_5(span: f64, most: f64) -> f64 {
     let least = span / most.max(1.0);
     if !least.is_finite() || least <= 0.0 {
         return 1.0;
@@ -16,24 +16,24 @@ pub(super) fn step(span: f64, most: f64) -> f64 {
 }
 
 /// Returns the number of decimals that a label needs for the given step.
-pub(super) fn decimals(step: f64) -> usize {
+pub(super) fn decimal_places(step: f64) -> usize {
     // Steps such as 1e-300 do not occur in measurements.
     (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize
 }
 
-pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
+pub(super) fn tick_values(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     /// Maximum number of ticks, more than any picture can show. Without it, a step of zero would loop forever.
-    const MOST: i64 = 200;
+    const MAX_TICKS: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
-    let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MOST) } else { 0 };
+    let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MAX_TICKS) } else { 0 };
     // Each tick is calculated from the first, so errors do not accumulate. Adding 0 turns −0 into 0.
     (0..count).map(move |at| (first + at as f64) * step + 0.0)
 }
 
 /// Formats a value as an axis label for the given step.
 pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
-    let decimals = decimals(step);
-    if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
+    let decimals = decimal_places(step);
+    if value.abs() >= 1e9 { format!("{value:.2e}") } else { format_decimal(value, decimals, language) }
 }
 
 /// Returns a range that contains `low` to `high` and has at least the length `least`. It ends at round steps, so it
@@ -51,7 +51,7 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
         return (f64::MIN / 4.0, f64::MAX / 4.0);
     }
     let (low, high) = (low - span * 0.04, high + span * 0.04);
-    let step = step(high - low, 6.0) / 2.0;
+    let step = step_1_2_5(high - low, 6.0) / 2.0;
     ((low / step).floor() * step, (high / step).ceil() * step)
 }
 
@@ -93,9 +93,10 @@ pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language
 /// Returns ticks labelled with sample numbers instead of times.
 pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
     let number = |time: SampleTime| time.as_nanoseconds() as f64 / SAMPLE as f64;
-    let step = step(number(to) - number(from), most as f64).max(1.0);
-    let tick = |value: f64| (SampleTime::from_nanoseconds((value * SAMPLE as f64) as i64), decimal(value, 0, language));
-    TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
+    let step = step_1_2_5(number(to) - number(from), most as f64).max(1.0);
+    let tick =
+        |value: f64| (SampleTime::from_nanoseconds((value * SAMPLE as f64) as i64), format_decimal(value, 0, language));
+    TimeTicks { ticks: tick_values(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
 /// Returns the base time at or before `from`. It is a multiple of 0.1 s for steps below 1 ms, and of 10 s otherwise.
@@ -146,7 +147,7 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
         } else {
             3
         };
-        return format!("{} s", decimal(nanoseconds as f64 / 1e9, decimals, language));
+        return format!("{} s", format_decimal(nanoseconds as f64 / 1e9, decimals, language));
     }
     if step >= 1_000 && unit == "µs" && nanoseconds.abs() >= 1_000_000 {
         let decimals = if step >= 100_000 {
@@ -156,9 +157,9 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
         } else {
             3
         };
-        return format!("{} ms", decimal(nanoseconds as f64 / 1e6, decimals, language));
+        return format!("{} ms", format_decimal(nanoseconds as f64 / 1e6, decimals, language));
     }
-    format!("{} {unit}", decimal(nanoseconds as f64 / per, decimals, language))
+    format!("{} {unit}", format_decimal(nanoseconds as f64 / per, decimals, language))
 }
 
 /// Formats a time in whole seconds in clock notation, with tenths for a finer step.
@@ -167,7 +168,8 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     let tenths = nanoseconds.unsigned_abs() / 100_000_000;
     let (seconds, tenth) = (tenths / 10, tenths % 10);
     let (days, hours, minutes) = (seconds / 86_400, seconds / 3600 % 24, seconds / 60 % 60);
-    let fraction = if step < SECOND { decimal(tenth as f64 / 10.0, 1, language).split_off(1) } else { String::new() };
+    let fraction =
+        if step < SECOND { format_decimal(tenth as f64 / 10.0, 1, language).split_off(1) } else { String::new() };
     match (days, hours, minutes) {
         (0, 0, 0) => format!("{sign}{seconds}{fraction} s"),
         (0, 0, _) => format!("{sign}{minutes}:{:02}{fraction}", seconds % 60),
@@ -206,11 +208,11 @@ pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
         ..60e9 => ("s", 1e9),
         _ => return clock(nanoseconds, 1, language),
     };
-    format!("{sign}{} {unit}", decimal(length / per, 3, language))
+    format!("{sign}{} {unit}", format_decimal(length / per, 3, language))
 }
 
 /// Formats a duration with three digits, for narrow spaces.
-pub(super) fn about(nanoseconds: i64, language: Language) -> String {
+pub(super) fn format_short_duration(nanoseconds: i64, language: Language) -> String {
     let length = nanoseconds.unsigned_abs() as f64;
     if length >= 60e9 {
         return clock(nanoseconds / SECOND * SECOND, SECOND, language);
@@ -223,7 +225,7 @@ pub(super) fn about(nanoseconds: i64, language: Language) -> String {
     };
     let value = length / per;
     let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
-    format!("{} {unit}", decimal(value, decimals, language))
+    format!("{} {unit}", format_decimal(value, decimals, language))
 }
 
 #[cfg(test)]
@@ -242,14 +244,14 @@ mod tests {
             (f64::NAN, 4.0, 1.0),
             (f64::INFINITY, 4.0, 1.0),
         ] {
-            let found = step(span, most);
+            let found = step_1_2_5(span, most);
             assert!((found / expected - 1.0).abs() < 1e-9, "{span} {most}: {found}");
         }
-        assert_eq!([2.0, 0.5, 0.01, 0.002, 1000.0].map(decimals), [0, 1, 2, 3, 0]);
-        assert_eq!(ticks(-1.0, 1.0, 0.5).collect::<Vec<_>>(), [-1.0, -0.5, 0.0, 0.5, 1.0]);
-        assert_eq!(ticks(0.1, 0.2, 1.0).count(), 0);
-        assert_eq!(ticks(f64::NEG_INFINITY, 1.0, 0.5).count(), 0);
-        assert_eq!(ticks(0.0, 1e12, 1.0).count(), 200);
+        assert_eq!([2.0, 0.5, 0.01, 0.002, 1000.0].map(decimal_places), [0, 1, 2, 3, 0]);
+        assert_eq!(tick_values(-1.0, 1.0, 0.5).collect::<Vec<_>>(), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(tick_values(0.1, 0.2, 1.0).count(), 0);
+        assert_eq!(tick_values(f64::NEG_INFINITY, 1.0, 0.5).count(), 0);
+        assert_eq!(tick_values(0.0, 1e12, 1.0).count(), 200);
     }
 
     #[test]
@@ -356,7 +358,7 @@ mod tests {
             (123_456_789, "123 ms"),
             (61_500_000_000, "1:01"),
         ] {
-            assert_eq!(about(nanoseconds, Language::German), expected);
+            assert_eq!(format_short_duration(nanoseconds, Language::German), expected);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use super::lanes::{Lane, Layout, Reduced};
+use super::lanes::{Lane, Layout, ReducedLane};
 use super::pointer::Drag;
 use super::trace::{self, TraceStyle};
 use super::{Context, axes};
@@ -10,9 +10,9 @@ use crate::app::recorder::{Cursor, Series, TriggerState};
 use crate::ui::Theme;
 
 /// Lane height in points below which the names of the lines are omitted.
-const LOW: f32 = 40.0;
+const LOW_LANE_HEIGHT: f32 = 40.0;
 
-pub(super) fn colour(theme: &Theme, line: &Series) -> Color32 {
+pub(super) fn series_colour(theme: &Theme, line: &Series) -> Color32 {
     let series = &theme.palette.series;
     series.get(line.colour % series.len()).copied().unwrap_or(theme.palette.accent).into()
 }
@@ -21,7 +21,7 @@ pub(super) fn paint(
     painter: &Painter,
     context: &Context<'_>,
     layout: &Layout,
-    reduced: &Reduced,
+    reduced: &ReducedLane,
     drag: Option<&Drag>,
     hovered: Option<Pos2>,
 ) {
@@ -50,7 +50,7 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
     let (theme, chart) = (context.theme, layout.chart);
     let most = (chart.width() / 76.0).max(1.0) as usize;
     let (from, to) = (layout.time.time(chart.left()), layout.time.time(chart.right()));
-    let ticks = if context.recorder.counts() { axes::sample_ticks } else { axes::time_ticks };
+    let ticks = if context.recorder.counts_samples() { axes::sample_ticks } else { axes::time_ticks };
     let ticks = ticks(from, to, most, theme.language);
     let grid = Stroke::new(1.0, theme.palette.line);
     let bottom = chart.bottom() + 3.0;
@@ -78,27 +78,27 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
 }
 
 /// Minimum distance of a label from the edge of its lane, and half the height of a label.
-const EDGE: f32 = 2.0;
-const HALF: f32 = 5.5;
+const EDGE_DISTANCE: f32 = 2.0;
+const HALF_LABEL_HEIGHT: f32 = 5.5;
 
 /// Returns the labelled ticks with the heights of their labels. A label is normally beside its tick line, because the
 /// space between two lanes holds half a label. In a low lane with fewer than two such ticks, the labels of the
 /// outermost ticks are on the inside.
 fn labelled_ticks(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
-        ticks.iter().copied().filter(|(_, y)| (top + EDGE..=bottom - EDGE).contains(y)).collect();
+        ticks.iter().copied().filter(|(_, y)| (top + EDGE_DISTANCE..=bottom - EDGE_DISTANCE).contains(y)).collect();
     let (Some((first, low)), Some((last, high))) = (ticks.first(), ticks.last()) else { return inside };
-    let within = |y: f32| y.min(bottom - HALF).max(top + HALF);
+    let within = |y: f32| y.min(bottom - HALF_LABEL_HEIGHT).max(top + HALF_LABEL_HEIGHT);
     let (low, high) = (within(*low), within(*high));
-    let two = inside.len() < 2 && low - high >= HALF * 2.0;
+    let two = inside.len() < 2 && low - high >= HALF_LABEL_HEIGHT * 2.0;
     if two { vec![(*first, low), (*last, high)] } else { inside }
 }
 
 fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
-    let axis = lane.axis();
+    let axis = lane.value_axis();
     let rect = lane.rect;
     let ticks: Vec<(f64, f32)> =
-        axes::ticks(lane.range.0, lane.range.1, lane.step).map(|value| (value, axis.y(value).round())).collect();
+        axes::tick_values(lane.range.0, lane.range.1, lane.step).map(|value| (value, axis.y(value).round())).collect();
     for (_, y) in &ticks {
         painter.hline(rect.x_range(), *y, Stroke::new(1.0, theme.palette.line));
     }
@@ -112,17 +112,19 @@ fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
     painter.rect_stroke(rect, 0.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
 }
 
-fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, reduced: &Reduced) {
+fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, reduced: &ReducedLane) {
     let palette = context.theme.palette;
     let clipped = painter.with_clip_rect(lane.rect.intersect(painter.clip_rect()));
-    let axis = lane.axis();
+    let axis = lane.value_axis();
     let mut shapes = Vec::new();
     for id in &lane.lines {
-        let (Some(line), Some(picture)) = (context.recorder.line(*id), reduced.picture(*id)) else { continue };
-        let colour = colour(context.theme, line);
+        let (Some(line), Some(picture)) = (context.recorder.series_by_id(*id), reduced.picture_of(*id)) else {
+            continue;
+        };
+        let colour = series_colour(context.theme, line);
         let (bad, warning) = (palette.bad.into(), palette.warn.into());
         let pen = TraceStyle { colour, factor: line.factor(), marks: !line.derived, bad, warning };
-        trace::shapes(picture, lane.rect, &layout.time, &axis, &pen, &mut shapes);
+        trace::trace_shapes(picture, lane.rect, &layout.time, &axis, &pen, &mut shapes);
     }
     clipped.extend(shapes);
 }
@@ -130,15 +132,16 @@ fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: 
 /// Paints the name and unit of each line of a lane, in the line's colour.
 fn paint_names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let theme = context.theme;
-    if lane.rect.height() < LOW {
+    if lane.rect.height() < LOW_LANE_HEIGHT {
         // The names would cover the line. The numbers below show them too.
         return;
     }
     let mut place = lane.rect.min + vec2(8.0, 4.0);
-    for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
-        let unit = line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default();
-        let words = format!("{} / {unit}", theme.words(&line.name));
-        let words = painter.layout_no_wrap(words, FontId::proportional(theme.sizes.caption), colour(theme, line));
+    for line in lane.lines.iter().filter_map(|id| context.recorder.series_by_id(*id)) {
+        let unit = line.scale().map(|scale| theme.format_text(&scale.unit)).unwrap_or_default();
+        let words = format!("{} / {unit}", theme.format_text(&line.name));
+        let words =
+            painter.layout_no_wrap(words, FontId::proportional(theme.sizes.caption), series_colour(theme, line));
         let ground = Rect::from_min_size(place, words.size()).expand2(vec2(4.0, 1.0));
         if ground.right() > lane.rect.right() {
             break;
@@ -160,10 +163,10 @@ fn paint_cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font
         painter.vline(x, layout.chart.y_range(), Stroke::new(1.0, palette.text));
         let handle = Rect::from_center_size(pos2(x, layout.chart.top() + 8.0), vec2(16.0, 16.0));
         painter.rect_filled(handle, 3.0, palette.text);
-        painter.text(handle.center(), Align2::CENTER_CENTER, cursor.word(), font.clone(), palette.sunken.into());
+        painter.text(handle.center(), Align2::CENTER_CENTER, cursor.keyword(), font.clone(), palette.sunken.into());
         // Mark where the cursor crosses the lines. These are the raw samples of the readout.
         for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
-            if let Some(line) = context.recorder.line(*line) {
+            if let Some(line) = context.recorder.series_by_id(*line) {
                 paint_dot(painter, context, layout, lane, line, time);
             }
         }
@@ -179,10 +182,10 @@ fn paint_dot(
     line: &Series,
     time: crate::analysis::SampleTime,
 ) {
-    let Some(sample) = context.recorder.at(line, time) else { return };
-    let place = pos2(layout.time.x(sample.time), lane.axis().y(line.value(&sample)));
+    let Some(sample) = context.recorder.sample_at(line, time) else { return };
+    let place = pos2(layout.time.x(sample.time), lane.value_axis().y(line.value(&sample)));
     if place.is_finite() && lane.rect.contains(place) {
-        painter.circle(place, 3.5, colour(context.theme, line), Stroke::new(1.0, context.theme.palette.sunken));
+        painter.circle(place, 3.5, series_colour(context.theme, line), Stroke::new(1.0, context.theme.palette.sunken));
     }
 }
 
@@ -190,9 +193,9 @@ fn paint_pointer_readout(painter: &Painter, context: &Context<'_>, layout: &Layo
     let faint = Stroke::new(1.0, Color32::from(context.theme.palette.muted).gamma_multiply(0.6));
     painter.vline(place.x.round(), layout.chart.y_range(), faint);
     let time = layout.time.time(place.x);
-    let words = match context.recorder.counts() {
+    let words = match context.recorder.counts_samples() {
         true => axes::sample_number(time),
-        false => axes::time_of_day(time, context.recorder.span(), context.theme.language),
+        false => axes::time_of_day(time, context.recorder.window_length(), context.theme.language),
     };
     let font = FontId::monospace(context.theme.sizes.caption);
     let words = painter.layout_no_wrap(words, font, context.theme.palette.text.into());
@@ -208,7 +211,7 @@ fn paint_pointer_readout(painter: &Painter, context: &Context<'_>, layout: &Layo
     );
     painter.galley(corner, words, Color32::PLACEHOLDER);
     for lane in &layout.lanes {
-        for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
+        for line in lane.lines.iter().filter_map(|id| context.recorder.series_by_id(*id)) {
             paint_dot(painter, context, layout, lane, line, time);
         }
     }
@@ -221,7 +224,7 @@ fn paint_trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font
     if let Some(lane) = layout.lanes.iter().find(|lane| lane.lines.contains(&trigger.line))
         && trigger.when.needs_level()
     {
-        let y = lane.axis().y(trigger.level).round();
+        let y = lane.value_axis().y(trigger.level).round();
         if lane.rect.y_range().contains(y) {
             let ends = [pos2(lane.rect.left(), y), pos2(lane.rect.right(), y)];
             painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 6.0, 4.0));

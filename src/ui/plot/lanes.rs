@@ -11,17 +11,17 @@ use crate::analysis::history::{Grid, GridColumns, HistoryPicture};
 use crate::app::recorder::{Recorder, SampleGroupStamp, Series, SeriesId};
 
 /// Gap between two lanes, in points.
-const BETWEEN: f32 = 6.0;
+const LANE_GAP: f32 = 6.0;
 /// Minimum and maximum width of the value labels on the left, in points.
-const LEAST: f32 = 44.0;
-const MOST: f32 = 110.0;
+const MIN_LABEL_WIDTH: f32 = 44.0;
+const MAX_LABEL_WIDTH: f32 = 110.0;
 /// Height of the time labels at the bottom, in points.
-const FOOT: f32 = 18.0;
+const TIME_LABEL_HEIGHT: f32 = 18.0;
 /// Minimum distance between two ticks in points, normally and in a low lane.
-const APART: f32 = 28.0;
-const CLOSE: f32 = 13.0;
+const TICK_SPACING: f32 = 28.0;
+const LOW_LANE_TICK_SPACING: f32 = 13.0;
 /// Width in points of a character of an axis label, whose font is monospaced.
-const LETTER: f32 = 6.7;
+const CHARACTER_WIDTH: f32 = 6.7;
 
 pub(super) struct Lane {
     pub(super) rect: Rect,
@@ -32,7 +32,7 @@ pub(super) struct Lane {
 }
 
 impl Lane {
-    pub(super) fn axis(&self) -> ValueAxis {
+    pub(super) fn value_axis(&self) -> ValueAxis {
         ValueAxis::new(self.rect, self.range)
     }
 }
@@ -45,7 +45,7 @@ pub(super) struct Layout {
 
 /// Reduced samples, cached between redraws.
 #[derive(Default)]
-pub(super) struct Reduced {
+pub(super) struct ReducedLane {
     pictures: Vec<(SeriesId, HistoryPicture)>,
     made: Vec<(SeriesId, PictureInputs)>,
     gutter: f32,
@@ -59,8 +59,8 @@ struct PictureInputs {
     grid: Grid,
 }
 
-impl Reduced {
-    pub(super) fn picture(&self, line: SeriesId) -> Option<&HistoryPicture> {
+impl ReducedLane {
+    pub(super) fn picture_of(&self, line: SeriesId) -> Option<&HistoryPicture> {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
@@ -80,7 +80,7 @@ impl Reduced {
             if !cuts.iter().any(|(made, _)| *made == wanted) {
                 cuts.push((wanted.clone(), history.divide_into_pixels(grid)));
             }
-            if self.picture(line.id).is_none() {
+            if self.picture_of(line.id).is_none() {
                 self.pictures.push((line.id, HistoryPicture::default()));
             }
             let cut = cuts.iter().find(|(made, _)| *made == wanted);
@@ -94,8 +94,8 @@ impl Reduced {
     }
 
     /// Returns the minimum and maximum of the visible values, in the line's unit.
-    fn extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
-        let picture = self.picture(line.id)?;
+    fn value_extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
+        let picture = self.picture_of(line.id)?;
         // The neighbours beyond the edges only continue the line. They do not count for the range.
         let visible = |pixel: &&crate::analysis::history::Pixel| {
             time.x(pixel.to) >= chart.left() && time.x(pixel.from) <= chart.right()
@@ -109,26 +109,26 @@ impl Reduced {
     }
 }
 
-pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut Reduced) -> Layout {
+pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut ReducedLane) -> Layout {
     // The width of the labels depends on the values, and the values depend on the width. The width of the previous
     // frame is tried first. A picture that changes little is then made only once.
-    let (from, to) = recorder.window();
-    let groups = groups(recorder);
-    let mut gutter = reduced.gutter.clamp(LEAST, MOST);
+    let (from, to) = recorder.window_bounds();
+    let groups = lane_groups(recorder);
+    let mut gutter = reduced.gutter.clamp(MIN_LABEL_WIDTH, MAX_LABEL_WIDTH);
     loop {
         let corner = pos2(rect.left() + gutter, rect.top());
-        let chart = Rect::from_min_max(corner, pos2(rect.right(), rect.bottom() - FOOT)).intersect(rect);
+        let chart = Rect::from_min_max(corner, pos2(rect.right(), rect.bottom() - TIME_LABEL_HEIGHT)).intersect(rect);
         let pixels = (chart.width() * pixels_per_point).floor().max(1.0);
         let grid = Grid::new(from, to, pixels as usize);
         let scale = f64::from(1.0 / pixels_per_point) / grid.width() as f64;
         let time = TimeAxis { from: grid.pixel_start(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
         reduced.update(recorder, &grid);
         let lanes = lay_out_lanes(chart, &groups, &time, reduced);
-        let needed = (max_label_len(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
+        let needed = (max_label_len(&lanes) as f32 * CHARACTER_WIDTH + 10.0).clamp(MIN_LABEL_WIDTH, MAX_LABEL_WIDTH);
         if needed <= gutter || rect.width() < gutter * 3.0 {
             // The space is released in the next frame if it is more than a character or two. The width must not jump
             // with every sample.
-            reduced.gutter = if gutter - needed > 2.0 * LETTER { needed } else { gutter };
+            reduced.gutter = if gutter - needed > 2.0 * CHARACTER_WIDTH { needed } else { gutter };
             return Layout { lanes, time, chart };
         }
         gutter = needed;
@@ -138,23 +138,23 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
 fn max_label_len(lanes: &[Lane]) -> usize {
     let longest = |lane: &Lane| {
         let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();
-        axes::ticks(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)
+        axes::tick_values(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)
     };
     lanes.iter().filter(|lane| !lane.empty).map(longest).max().unwrap_or(0)
 }
 
-fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
+fn lane_groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
     let shown: Vec<&Series> = recorder.visible_series().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
 }
 
-fn lay_out_lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduced) -> Vec<Lane> {
+fn lay_out_lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &ReducedLane) -> Vec<Lane> {
     let count = groups.len().max(1) as f32;
-    let height = ((chart.height() - BETWEEN * (count - 1.0)) / count).max(1.0);
+    let height = ((chart.height() - LANE_GAP * (count - 1.0)) / count).max(1.0);
     let lane = |(at, lines): (usize, &Vec<&Series>)| {
-        let top = chart.top() + at as f32 * (height + BETWEEN);
+        let top = chart.top() + at as f32 * (height + LANE_GAP);
         let rect = Rect::from_min_max(pos2(chart.left(), top), pos2(chart.right(), top + height));
-        let shown = range(lines, time, chart, reduced);
+        let shown = lane_range(lines, time, chart, reduced);
         let range = shown.unwrap_or((0.0, 1.0));
         let step = value_step(range, height);
         Lane { rect, lines: lines.iter().map(|line| line.id).collect(), range, step, empty: shown.is_none() }
@@ -164,19 +164,20 @@ fn lay_out_lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced:
 
 /// Returns the step between two ticks of a lane. Ticks are closer in a low lane, where at least two must be visible.
 fn value_step((low, high): (f64, f64), height: f32) -> f64 {
-    let of_distance = |distance: f32| axes::step(high - low, f64::from((height / distance).max(2.0)));
-    let step = of_distance(APART);
-    if axes::ticks(low, high, step).count() < 2 { of_distance(CLOSE) } else { step }
+    let of_distance = |distance: f32| axes::step_1_2_5(high - low, f64::from((height / distance).max(2.0)));
+    let step = of_distance(TICK_SPACING);
+    if axes::tick_values(low, high, step).count() < 2 { of_distance(LOW_LANE_TICK_SPACING) } else { step }
 }
 
 /// Returns the value range of a lane. It is chosen by the user or fitted to the values. Returns `None` if the lane has
 /// no values.
-fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
+fn lane_range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &ReducedLane) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);
     }
-    let all = lines.iter().filter_map(|line| reduced.extent(line, time, chart));
-    let least = lines.iter().map(|line| 10_f64.powi(-(line.decimals() as i32)) * 8.0).fold(f64::INFINITY, f64::min);
+    let all = lines.iter().filter_map(|line| reduced.value_extent(line, time, chart));
+    let least =
+        lines.iter().map(|line| 10_f64.powi(-(line.decimal_places() as i32)) * 8.0).fold(f64::INFINITY, f64::min);
     let (low, high) = all.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))?;
     Some(axes::round_range(low, high, least))
 }
@@ -194,14 +195,14 @@ mod tests {
         let mut recorder = Recorder::new(1_000_000);
         let group = recorder.add_group(&[Kind::Real], 10_000, None);
         let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
-        recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "value", scales));
+        recorder.add_line(Series::new(group, 0, Text::new("recorder.position"), "value", scales));
         let times: Vec<SampleTime> = (0..1000).map(|at| SampleTime::from_nanoseconds(at * 1000)).collect();
         recorder.append(group, &times, &[ColumnPart::from_reals(&[value; 1000])]).unwrap();
         recorder
     }
 
-    fn shown(reduced: &Reduced, recorder: &Recorder) -> f64 {
-        let picture = reduced.picture(recorder.lines()[0].id).unwrap();
+    fn shown(reduced: &ReducedLane, recorder: &Recorder) -> f64 {
+        let picture = reduced.picture_of(recorder.series()[0].id).unwrap();
         picture.pixels[0].values.unwrap().first
     }
 
@@ -213,7 +214,7 @@ mod tests {
             for height in [27.0, 40.0, 60.0, 90.0, 200.0] {
                 let (low, high) = axes::round_range(value, value, 8e-5);
                 let step = value_step((low, high), height);
-                let count = axes::ticks(low, high, step).count();
+                let count = axes::tick_values(low, high, step).count();
                 assert!(count >= 2, "{count} for {value} at a height of {height}");
                 let distance = step / (high - low) * f64::from(height);
                 assert!(distance >= 11.0, "{distance} for {value} at a height of {height}");
@@ -223,25 +224,25 @@ mod tests {
 
     #[test]
     fn samples_of_another_recorder_are_not_confused() {
-        let mut reduced = Reduced::default();
+        let mut reduced = ReducedLane::default();
         let (one, mut other) = (recorder(1.0), recorder(2.0));
         layout(&one, RECT, 1.0, &mut reduced);
         assert_eq!(shown(&reduced, &one), 1.0);
         layout(&other, RECT, 1.0, &mut reduced);
         assert_eq!(shown(&reduced, &other), 2.0, "the same times, other values");
-        other.act(RecorderAction::Clear);
+        other.handle_action(RecorderAction::Clear);
         layout(&other, RECT, 1.0, &mut reduced);
-        let line = other.lines()[0].id;
-        assert!(reduced.picture(line).unwrap().pixels.is_empty());
+        let line = other.series()[0].id;
+        assert!(reduced.picture_of(line).unwrap().pixels.is_empty());
     }
 
     #[test]
     fn a_plot_with_long_labels_is_computed_once() {
-        let mut reduced = Reduced::default();
+        let mut reduced = ReducedLane::default();
         let recorder = recorder(123_456.789_1);
         layout(&recorder, RECT, 1.0, &mut reduced);
         let (made, gutter) = (reduced.made.clone(), reduced.gutter);
-        assert!(gutter > LEAST);
+        assert!(gutter > MIN_LABEL_WIDTH);
         let chart = layout(&recorder, RECT, 1.0, &mut reduced).chart;
         assert!(reduced.made == made, "nothing has changed");
         assert_eq!(chart.left(), RECT.left() + gutter);

@@ -24,7 +24,7 @@ use crate::app::{Action, RecorderOwner};
 #[derive(Default)]
 pub struct PlotUiState {
     owner: Option<RecorderOwner>,
-    reduced: lanes::Reduced,
+    reduced: lanes::ReducedLane,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     shot: snapshot::Screenshot,
@@ -59,7 +59,7 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
-    fn act(&mut self, action: recorder::RecorderAction) {
+    fn push_action(&mut self, action: recorder::RecorderAction) {
         self.actions.push(Action::Recorder(self.owner, action));
     }
 }
@@ -98,7 +98,7 @@ pub fn plot_ui(
     let shown = ui.min_rect();
     let bottom = if used <= shown.bottom() - top - height + 0.5 { shown.bottom() } else { top + height };
     let picture = Rect::from_min_max(egui::pos2(shown.left(), top), egui::pos2(shown.right(), bottom));
-    view.shot.take(ui, picture, context.actions);
+    view.shot.handle_plot(ui, picture, context.actions);
 }
 
 /// Draws the chart and returns the time under the pointer.
@@ -112,14 +112,14 @@ fn chart_ui(
     let (theme, recorder) = (context.theme, context.recorder);
     let size = vec2(ui.available_width().max(0.0), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    let word = theme.say("recorder.chart");
+    let word = theme.translate("recorder.chart");
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &word));
     ui.painter().rect_filled(rect, theme.radius, theme.palette.sunken);
     if size.x < 80.0 {
         return None;
     }
     if recorder.is_empty() || recorder.visible_series().next().is_none() {
-        let words = if recorder.is_empty() { invitation.to_owned() } else { theme.say("recorder.no_line") };
+        let words = if recorder.is_empty() { invitation.to_owned() } else { theme.translate("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));
         empty_placeholder(&mut inner, theme, &words, None);

@@ -8,9 +8,9 @@ use crate::analysis::SampleTime;
 use crate::app::recorder::{Cursor, RecorderAction};
 
 /// Distance in points within which the pointer grabs a cursor.
-const NEAR: f32 = 6.0;
+const GRAB_DISTANCE: f32 = 6.0;
 /// Size in points of a dragged box below which the drag counts as a click.
-const CLICK: f32 = 5.0;
+const CLICK_SIZE: f32 = 5.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
@@ -37,14 +37,14 @@ pub(super) fn handle_interaction(
     if response.drag_started()
         && let Some(place) = ui.input(|input| input.pointer.press_origin()).or(place)
     {
-        *drag = Some(begin(ui, response, context, layout, place));
+        *drag = Some(begin_drag(ui, response, context, layout, place));
         response.request_focus();
     }
     if response.clicked() {
         response.request_focus();
     }
     if let (Some(held), Some(place)) = (drag.as_mut(), place) {
-        follow(held, place, context, layout);
+        continue_drag(held, place, context, layout);
     }
     if response.drag_stopped()
         && let Some(Drag::Box { from, to }) = drag.take()
@@ -55,17 +55,17 @@ pub(super) fn handle_interaction(
         *drag = None;
     }
     if response.double_clicked() {
-        context.act(RecorderAction::Fit);
+        context.push_action(RecorderAction::Fit);
     }
     handle_hover(ui, response, context, layout, drag.is_some());
-    keys(ui, response, context, layout);
+    handle_keys(ui, response, context, layout);
 }
 
-fn begin(ui: &Ui, response: &Response, context: &Context<'_>, layout: &Layout, place: Pos2) -> Drag {
+fn begin_drag(ui: &Ui, response: &Response, context: &Context<'_>, layout: &Layout, place: Pos2) -> Drag {
     let shifted = ui.input(|input| input.modifiers.shift) || !response.dragged_by(PointerButton::Primary);
     match cursor_at(context, layout, place) {
         Some(cursor) if !shifted => Drag::Cursor(cursor),
-        _ if shifted => Drag::Picture { under: layout.time.time(place.x), window: context.recorder.window() },
+        _ if shifted => Drag::Picture { under: layout.time.time(place.x), window: context.recorder.window_bounds() },
         _ => Drag::Box { from: place, to: place },
     }
 }
@@ -73,23 +73,23 @@ fn begin(ui: &Ui, response: &Response, context: &Context<'_>, layout: &Layout, p
 fn cursor_at(context: &Context<'_>, layout: &Layout, place: Pos2) -> Option<Cursor> {
     let near = |cursor: &Cursor| {
         let time = context.recorder.cursor(*cursor);
-        time.is_some_and(|time| (layout.time.x(time) - place.x).abs() <= NEAR)
+        time.is_some_and(|time| (layout.time.x(time) - place.x).abs() <= GRAB_DISTANCE)
     };
     Cursor::BOTH.into_iter().find(near)
 }
 
-fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layout) {
+fn continue_drag(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layout) {
     match drag {
         Drag::Cursor(cursor) => {
             let time = layout.time.time(place.x.clamp(layout.chart.left(), layout.chart.right()));
-            context.act(RecorderAction::SetCursor(*cursor, Some(time)));
+            context.push_action(RecorderAction::SetCursor(*cursor, Some(time)));
         }
         Drag::Box { to, .. } => *to = place,
         Drag::Picture { under, window: (from, to) } => {
             // The time is relative to the start of the visible span, because the layout moves with it.
             let here = from.saturating_add_ns((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
             let by = under.nanoseconds_since(here);
-            context.act(RecorderAction::Look(from.saturating_add_ns(by), to.saturating_add_ns(by)));
+            context.push_action(RecorderAction::Look(from.saturating_add_ns(by), to.saturating_add_ns(by)));
         }
     }
 }
@@ -98,19 +98,19 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
 /// both.
 fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
-    if chosen.width() >= CLICK {
-        context.act(RecorderAction::Look(layout.time.time(chosen.left()), layout.time.time(chosen.right())));
+    if chosen.width() >= CLICK_SIZE {
+        context.push_action(RecorderAction::Look(layout.time.time(chosen.left()), layout.time.time(chosen.right())));
     }
     let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
     let part = chosen.intersect(lane.rect).height();
     // A drag is never exactly along a line. A flat box therefore selects only the time, and so does one over the whole
     // lane.
-    if part >= CLICK * 3.0 && part < lane.rect.height() * 0.9 {
-        let axis = lane.axis();
+    if part >= CLICK_SIZE * 3.0 && part < lane.rect.height() * 0.9 {
+        let axis = lane.value_axis();
         let low = axis.value(chosen.bottom().min(lane.rect.bottom()));
         let high = axis.value(chosen.top().max(lane.rect.top()));
         for line in &lane.lines {
-            context.act(RecorderAction::SetRange(*line, Some((low, high))));
+            context.push_action(RecorderAction::SetRange(*line, Some((low, high))));
         }
     }
 }
@@ -125,14 +125,14 @@ fn handle_hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout:
     let scroll = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta));
     let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
     if (factor - 1.0).abs() > 1e-4 {
-        context.act(RecorderAction::Zoom(layout.time.time(place.x), factor));
+        context.push_action(RecorderAction::Zoom(layout.time.time(place.x), factor));
     }
     if scroll.x != 0.0 {
         shift(context, -f64::from(scroll.x) / f64::from(layout.chart.width().max(1.0)));
     }
 }
 
-fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout) {
+fn handle_keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout) {
     if !response.has_focus() {
         return;
     }
@@ -152,7 +152,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
         (Key::B, RecorderAction::SetCursor(Cursor::B, Some(at))),
     ] {
         if pressed(key) {
-            context.act(action);
+            context.push_action(action);
         }
     }
     for (key, share) in [(Key::ArrowLeft, -0.1), (Key::ArrowRight, 0.1)] {
@@ -164,7 +164,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
 
 /// Shifts the visible time span by the given share of its length.
 fn shift(context: &mut Context<'_>, share: f64) {
-    let (from, to) = context.recorder.window();
-    let by = (context.recorder.span() as f64 * share) as i64;
-    context.act(RecorderAction::Look(from.saturating_add_ns(by), to.saturating_add_ns(by)));
+    let (from, to) = context.recorder.window_bounds();
+    let by = (context.recorder.window_length() as f64 * share) as i64;
+    context.push_action(RecorderAction::Look(from.saturating_add_ns(by), to.saturating_add_ns(by)));
 }

@@ -34,7 +34,7 @@ impl Screenshot {
 
     /// Handles the plot drawn at `plot`. Requests the window's pixels once the whole plot is visible. When the pixels
     /// have arrived, crops the picture to the plot.
-    pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
+    pub(super) fn handle_plot(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
             Screenshot::None => {}
             // The menu closes in the first frame.
@@ -52,13 +52,13 @@ impl Screenshot {
                 ui.scroll_to_rect(plot, None);
                 ui.ctx().request_repaint();
             }
-            Screenshot::Wanted(_) => *self = Screenshot::Asked(ask(ui.ctx()), plot),
+            Screenshot::Wanted(_) => *self = Screenshot::Asked(request_screenshot(ui.ctx()), plot),
             Screenshot::Asked(place, before) => match place.get().cloned() {
                 // The pixels belong to the previous frame.
                 Some(image) => {
                     let wanted = *before;
                     *self = Screenshot::None;
-                    actions.extend(part(&image, wanted, ui.ctx().pixels_per_point()).map(Action::AskPicture));
+                    actions.extend(crop(&image, wanted, ui.ctx().pixels_per_point()).map(Action::AskPicture));
                 }
                 None => *before = plot,
             },
@@ -66,7 +66,7 @@ impl Screenshot {
     }
 }
 
-fn ask(ctx: &Context) -> Arc<OnceLock<Arc<ColorImage>>> {
+fn request_screenshot(ctx: &Context) -> Arc<OnceLock<Arc<ColorImage>>> {
     let place: Arc<OnceLock<Arc<ColorImage>>> = Arc::default();
     let (kept, waker) = (place.clone(), ctx.clone());
     ctx.request_screenshot(move |image| {
@@ -78,7 +78,7 @@ fn ask(ctx: &Context) -> Arc<OnceLock<Arc<ColorImage>>> {
     place
 }
 
-fn part(image: &ColorImage, wanted: Rect, pixels_per_point: f32) -> Option<Picture> {
+fn crop(image: &ColorImage, wanted: Rect, pixels_per_point: f32) -> Option<Picture> {
     let [width, height] = image.size;
     let pixel = |points: f32, most: usize| ((points * pixels_per_point).round().max(0.0) as usize).min(most);
     let (left, right) = (pixel(wanted.left(), width), pixel(wanted.right(), width));
@@ -104,11 +104,11 @@ mod tests {
         let wanted = Rect::from_min_max(pos2(2.0, 1.0), pos2(3.0, 2.0));
         let mut bytes = vec![0; 12];
         bytes[0] = 255;
-        assert_eq!(part(&image, wanted, 2.0), Picture::new(2, 2, bytes), "a point is two pixels");
-        assert_eq!(part(&image, Rect::NOTHING, 2.0), None);
+        assert_eq!(crop(&image, wanted, 2.0), Picture::new(2, 2, bytes), "a point is two pixels");
+        assert_eq!(crop(&image, Rect::NOTHING, 2.0), None);
         let beyond = Rect::from_min_max(pos2(-5.0, -5.0), pos2(99.0, 99.0));
         assert_eq!(
-            part(&image, beyond, 1.0).unwrap(),
+            crop(&image, beyond, 1.0).unwrap(),
             Picture::new(8, 6, {
                 let mut all = vec![0; 8 * 6 * 3];
                 all[(2 * 8 + 4) * 3] = 255;
@@ -126,7 +126,7 @@ mod tests {
         let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
         let mut output = ctx.run_ui(input, |ui| {
             ui.set_clip_rect(screen);
-            shot.take(ui, plot, &mut actions);
+            shot.handle_plot(ui, plot, &mut actions);
         });
         output.textures_delta.clear();
         actions

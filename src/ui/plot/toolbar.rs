@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::{Context, PlotUiState, chart, snapshot, trigger};
 use crate::app::Action as Studio;
 use crate::app::recorder::{Cursor, Recorder, RecorderAction, TriggerState};
-use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, options};
+use crate::ui::controls::{dropdown, enabled_button, icon_button, icon_menu, options};
 use crate::ui::icons;
 
 /// Selectable spans in seconds.
@@ -33,26 +33,26 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
         // The padding is smaller, so one row suffices in a panel at the side of the window.
         ui.spacing_mut().button_padding.x = 6.0;
         let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
-            icon_button(ui, enabled, icon, &theme.say(id)).clicked()
+            icon_button(ui, enabled, icon, &theme.translate(id)).clicked()
         };
         let some = !recorder.is_empty();
-        if recorder.follows() {
+        if recorder.follows_newest() {
             if tool(ui, some, icons::SNOWFLAKE, "recorder.pause") {
-                context.act(RecorderAction::Pause);
+                context.push_action(RecorderAction::Pause);
             }
         } else if tool(ui, true, icons::FAST_FORWARD, "recorder.follow") {
-            context.act(RecorderAction::Follow);
+            context.push_action(RecorderAction::Follow);
         }
         span_ui(ui, context);
         if narrow {
             more_menu_ui(ui, context, &mut view.trigger);
         } else {
             if tool(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, "recorder.fit") {
-                context.act(RecorderAction::Fit);
+                context.push_action(RecorderAction::Fit);
             }
             let cursors = has_cursors(recorder);
             if switch_ui(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
-                context.act(RecorderAction::ShowCursors(!cursors));
+                context.push_action(RecorderAction::ShowCursors(!cursors));
             }
             trigger_menu_ui(ui, context, &mut view.trigger);
         }
@@ -70,7 +70,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
 }
 
 fn switch_ui(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
-    let word = context.theme.say(id);
+    let word = context.theme.translate(id);
     let button = egui::Button::selectable(on, icon).frame_when_inactive(true).min_size(egui::vec2(28.0, 28.0));
     let response = ui.add_enabled(enabled, button);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Switch, enabled, on, &word));
@@ -80,21 +80,21 @@ fn switch_ui(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: 
 /// Draws the time span selector. It shows a preset, or the span that results from zooming.
 fn span_ui(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
-    if context.recorder.counts() {
+    if context.recorder.counts_samples() {
         // Samples without times have no seconds. The number of samples is selected by zooming.
         return;
     }
-    let (theme, span) = (context.theme, context.recorder.span());
+    let (theme, span) = (context.theme, context.recorder.window_length());
     let mut chosen = span;
     let mut options: Vec<(i64, String)> =
-        SPANS.into_iter().map(|(seconds, id)| (seconds * SECOND, theme.say(id))).collect();
+        SPANS.into_iter().map(|(seconds, id)| (seconds * SECOND, theme.translate(id))).collect();
     if options.iter().all(|(own, _)| *own != span) {
-        options.insert(0, (span, super::axes::about(span, theme.language)));
+        options.insert(0, (span, super::axes::format_short_duration(span, theme.language)));
     }
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = 48.0;
-        if choice(ui, &theme.say("recorder.span"), &mut chosen, options) {
-            context.act(RecorderAction::SetSpan(chosen));
+        if dropdown(ui, &theme.translate("recorder.span"), &mut chosen, options) {
+            context.push_action(RecorderAction::SetSpan(chosen));
         }
     });
 }
@@ -107,14 +107,14 @@ fn more_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     let (theme, recorder) = (context.theme, context.recorder);
     let some = !recorder.is_empty();
     let mut actions = Vec::new();
-    icon_menu(ui, icons::SLIDERS, &theme.say("recorder.more"), |ui| {
-        let word = theme.say("recorder.fit");
+    icon_menu(ui, icons::SLIDERS, &theme.translate("recorder.more"), |ui| {
+        let word = theme.translate("recorder.fit");
         if enabled_button(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, &word).clicked() {
             actions.push(RecorderAction::Fit);
             ui.close();
         }
         let mut cursors = has_cursors(recorder);
-        let check = egui::Checkbox::new(&mut cursors, theme.say("recorder.cursors"));
+        let check = egui::Checkbox::new(&mut cursors, theme.translate("recorder.cursors"));
         if ui.add_enabled(some, check).changed() {
             actions.push(RecorderAction::ShowCursors(cursors));
         }
@@ -123,69 +123,69 @@ fn more_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
             trigger::form_ui(ui, theme, recorder, form, &mut actions);
         }
     });
-    actions.into_iter().for_each(|action| context.act(action));
+    actions.into_iter().for_each(|action| context.push_action(action));
 }
 
 fn trigger_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
     let icon = icons::LIGHTNING;
     let lines = context.recorder.visible_series().next().is_some();
     if !lines {
-        icon_button(ui, false, icon, &context.theme.say("recorder.trigger"));
+        icon_button(ui, false, icon, &context.theme.translate("recorder.trigger"));
         return;
     }
     let theme = context.theme;
     let mut actions = Vec::new();
-    icon_menu(ui, icon, &theme.say("recorder.trigger"), |ui| {
+    icon_menu(ui, icon, &theme.translate("recorder.trigger"), |ui| {
         trigger::form_ui(ui, theme, context.recorder, form, &mut actions);
     });
-    actions.into_iter().for_each(|action| context.act(action));
+    actions.into_iter().for_each(|action| context.push_action(action));
 }
 
 fn lines_menu_ui(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let mut actions = Vec::new();
-    icon_menu(ui, icons::LIST_CHECKS, &theme.say("recorder.lines"), |ui| {
+    icon_menu(ui, icons::LIST_CHECKS, &theme.translate("recorder.lines"), |ui| {
         ui.set_width(300.0);
-        for line in recorder.lines() {
+        for line in recorder.series() {
             let mut shown = line.shown;
-            let words = theme.words(&line.name);
-            let text = RichText::new(&words).color(chart::colour(theme, line));
+            let words = theme.format_text(&line.name);
+            let text = RichText::new(&words).color(chart::series_colour(theme, line));
             if ui.checkbox(&mut shown, text).changed() {
                 actions.push(RecorderAction::Show(line.id, shown));
             }
             let mut scale = line.scale_number();
-            let units = line.scales().iter().map(|scale| theme.words(&scale.unit)).enumerate();
+            let units = line.scales().iter().map(|scale| theme.format_text(&scale.unit)).enumerate();
             if line.scales().len() > 1 && options(ui, &words, &mut scale, units) {
                 actions.push(RecorderAction::SetScale(line.id, scale));
             }
         }
         ui.separator();
         let mut one_axis = recorder.has_one_axis();
-        if ui.checkbox(&mut one_axis, theme.say("recorder.one_axis")).changed() {
+        if ui.checkbox(&mut one_axis, theme.translate("recorder.one_axis")).changed() {
             actions.push(RecorderAction::ShareAxis(one_axis));
         }
     });
-    actions.into_iter().for_each(|action| context.act(action));
+    actions.into_iter().for_each(|action| context.push_action(action));
 }
 
 fn export_menu_ui(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Screenshot) {
     let theme = context.theme;
     let (some, owner) = (!context.recorder.is_empty(), context.owner);
     let mut chosen = None;
-    icon_menu(ui, icons::DOWNLOAD_SIMPLE, &theme.say("recorder.export"), |ui| {
+    icon_menu(ui, icons::DOWNLOAD_SIMPLE, &theme.translate("recorder.export"), |ui| {
         ui.set_min_width(200.0);
         for (id, visible) in [("recorder.csv_visible", true), ("recorder.csv_all", false)] {
-            if ui.add_enabled(some, egui::Button::new(theme.say(id))).clicked() {
+            if ui.add_enabled(some, egui::Button::new(theme.translate(id))).clicked() {
                 chosen = Some(Studio::AskTable { owner, visible });
                 ui.close();
             }
         }
-        if ui.button(theme.say("recorder.png")).clicked() {
+        if ui.button(theme.translate("recorder.png")).clicked() {
             shot.request(ui.ctx());
             ui.close();
         }
         ui.separator();
-        if enabled_button(ui, some, icons::TRASH, &theme.say("live.clear")).clicked() {
+        if enabled_button(ui, some, icons::TRASH, &theme.translate("live.clear")).clicked() {
             chosen = Some(Studio::AskForget(owner));
             ui.close();
         }
@@ -205,9 +205,9 @@ fn state_ui(ui: &mut Ui, context: &mut Context<'_>) {
         };
         ui.horizontal(|ui| {
             ui.label(RichText::new(icons::LIGHTNING).color(theme.palette.accent));
-            ui.label(theme.caption(theme.say(id)));
-            if ui.small_button(theme.say("recorder.disarm")).clicked() {
-                context.act(RecorderAction::Disarm);
+            ui.label(theme.caption(theme.translate(id)));
+            if ui.small_button(theme.translate("recorder.disarm")).clicked() {
+                context.push_action(RecorderAction::Disarm);
             }
         });
     }
@@ -216,9 +216,9 @@ fn state_ui(ui: &mut Ui, context: &mut Context<'_>) {
         ui.horizontal(|ui| {
             let part = done as f32 / total.max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(80.0));
-            ui.label(theme.caption(theme.say("recorder.writing")));
-            if ui.small_button(theme.say("shell.cancel")).clicked() {
-                context.act(RecorderAction::CancelExport);
+            ui.label(theme.caption(theme.translate("recorder.writing")));
+            if ui.small_button(theme.translate("shell.cancel")).clicked() {
+                context.push_action(RecorderAction::CancelExport);
             }
         });
     }

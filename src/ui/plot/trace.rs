@@ -7,11 +7,11 @@ use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, HistoryPicture};
 
-const WIDTH: f32 = 1.5;
+const LINE_WIDTH: f32 = 1.5;
 /// Number of points up to which a line is drawn smoothly.
-const SMOOTH: usize = 1500;
+const MAX_SMOOTH_POINTS: usize = 1500;
 /// Minimum sample spacing in points at which each sample gets a dot.
-const DOTS: f32 = 8.0;
+const DOT_SPACING: f32 = 8.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimeAxis {
@@ -76,7 +76,7 @@ pub(super) struct TraceStyle {
     pub(super) warning: Color32,
 }
 
-pub(super) fn shapes(
+pub(super) fn trace_shapes(
     picture: &HistoryPicture,
     lane: Rect,
     time: &TimeAxis,
@@ -90,7 +90,7 @@ pub(super) fn shapes(
         draw_dense_trace(picture, lane, time, value, pen, out)
     }
     if pen.marks {
-        marks(picture, lane, time, pen, out);
+        add_flag_ticks(picture, lane, time, pen, out);
     }
 }
 
@@ -119,23 +119,23 @@ fn draw_dense_trace(
             (top, bottom) = (top.min(y), bottom.max(y));
             // Bridge the columns without samples in between.
             if left > x + 0.01 {
-                bar(
+                add_bar(
                     &mut mesh,
-                    Rect::from_min_max(pos2(x, y - WIDTH / 2.0), pos2(left, y + WIDTH / 2.0)),
+                    Rect::from_min_max(pos2(x, y - LINE_WIDTH / 2.0), pos2(left, y + LINE_WIDTH / 2.0)),
                     lane,
                     pen.colour,
                 );
             }
         }
         let right = left + time.pixel;
-        let thick = (WIDTH - (bottom - top)).max(0.0) / 2.0;
-        bar(&mut mesh, Rect::from_min_max(pos2(left, top - thick), pos2(right, bottom + thick)), lane, pen.colour);
+        let thick = (LINE_WIDTH - (bottom - top)).max(0.0) / 2.0;
+        add_bar(&mut mesh, Rect::from_min_max(pos2(left, top - thick), pos2(right, bottom + thick)), lane, pen.colour);
         before = Some((right, y(values.last)));
     }
     out.push(Shape::mesh(mesh));
 }
 
-fn bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
+fn add_bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
     let rect = rect.intersect(lane);
     if rect.is_positive() {
         mesh.add_colored_rect(rect, colour);
@@ -150,15 +150,15 @@ fn draw_sparse_trace(
     pen: &TraceStyle,
     out: &mut Vec<Shape>,
 ) {
-    let smooth = picture.pixels.len() <= SMOOTH;
-    let dots = picture.pixels.len() as f32 * DOTS < lane.width();
-    let around = lane.expand(WIDTH * 4.0);
+    let smooth = picture.pixels.len() <= MAX_SMOOTH_POINTS;
+    let dots = picture.pixels.len() as f32 * DOT_SPACING < lane.width();
+    let around = lane.expand(LINE_WIDTH * 4.0);
     let mut mesh = Mesh::default();
     let mut run: Vec<Pos2> = Vec::new();
     let mut before: Option<Pos2> = None;
     let end = |run: &mut Vec<Pos2>, out: &mut Vec<Shape>| {
         if run.len() > 1 {
-            out.push(Shape::line(std::mem::take(run), Stroke::new(WIDTH, pen.colour)));
+            out.push(Shape::line(std::mem::take(run), Stroke::new(LINE_WIDTH, pen.colour)));
         }
         run.clear();
     };
@@ -178,7 +178,7 @@ fn draw_sparse_trace(
                 }
                 run.push(to);
             }
-            Some((from, to)) => segment(&mut mesh, from, to, pen.colour),
+            Some((from, to)) => add_segment(&mut mesh, from, to, pen.colour),
             None => end(&mut run, out),
         }
         before = Some(here);
@@ -189,8 +189,8 @@ fn draw_sparse_trace(
     }
 }
 
-fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
-    let along = (to - from).normalized() * (WIDTH / 2.0);
+fn add_segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
+    let along = (to - from).normalized() * (LINE_WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);
     // Extend the pieces slightly, because they would leave a notch at an angle.
     let (from, to) = (from - along * 0.5, to + along * 0.5);
@@ -230,7 +230,7 @@ fn clip_segment(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
 }
 
 /// Draws ticks at the bottom of the lane for invalid samples and warnings, regardless of the zoom.
-fn marks(picture: &HistoryPicture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
+fn add_flag_ticks(picture: &HistoryPicture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
         let (colour, height) = if pixel.flags.contains(Flags::BAD) {
@@ -242,7 +242,7 @@ fn marks(picture: &HistoryPicture, lane: Rect, time: &TimeAxis, pen: &TraceStyle
         };
         let x = time.x(pixel.from);
         let tick = Rect::from_min_size(pos2(x - 1.0, lane.bottom() - height), vec2(2.0, height));
-        bar(&mut mesh, tick, lane, colour);
+        add_bar(&mut mesh, tick, lane, colour);
     }
     if !mesh.is_empty() {
         out.push(Shape::mesh(mesh));
@@ -282,7 +282,7 @@ mod tests {
         history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
         let time = TimeAxis { from: SampleTime::ORIGIN, left: 0.0, scale: 1e-3, pixel: 1.0 };
         let mut shapes = Vec::new();
-        super::shapes(&picture, LANE, &time, &ValueAxis::new(LANE, (0.0, 1.0)), &PEN, &mut shapes);
+        super::trace_shapes(&picture, LANE, &time, &ValueAxis::new(LANE, (0.0, 1.0)), &PEN, &mut shapes);
         shapes
     }
 

@@ -12,7 +12,7 @@ use egui::{Align2, Color32, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use egui_plot::{AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::ui::Theme;
-use crate::ui::widgets::series;
+use crate::ui::widgets::series_colour;
 
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
@@ -53,7 +53,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     let (x_unit, y_unit) = (chart.x_unit.to_owned(), chart.y_unit.to_owned());
     let tooltip = move |hover: &HoverPosition<'_>| match hover {
         HoverPosition::NearDataPoint { plot_name, position, .. } => {
-            let (x, y) = (figures(&own, position.x), figures(&own, position.y));
+            let (x, y) = (format_value(&own, position.x), format_value(&own, position.y));
             Some(format!("{plot_name}\n{x} {x_unit}\n{y} {y_unit}"))
         }
         HoverPosition::Elsewhere { .. } => None,
@@ -74,24 +74,24 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
             .grid_color(theme.palette.line.into())
             .set_margin_fraction(Vec2::new(0.0, if chart.marks.is_empty() { 0.08 } else { 0.16 }))
             .label_formatter(tooltip)
-            .custom_x_axes(vec![axis(AxisHints::new_x(), own, 16.0)])
-            .custom_y_axes(vec![axis(AxisHints::new_y(), own, 12.0)])
+            .custom_x_axes(vec![with_label_spacing(AxisHints::new_x(), own, 16.0)])
+            .custom_y_axes(vec![with_label_spacing(AxisHints::new_y(), own, 12.0)])
             .auto_bounds(true);
         if let Some((least, most)) = chart.x_range {
             plot = plot.include_x(least).include_x(most);
         }
         let x_step = chart.x_step;
         plot = plot
-            .x_grid_spacer(move |input| steps(input.bounds, x_step.unwrap_or_else(|| round_step(input.bounds))))
-            .y_grid_spacer(|input| steps(input.bounds, round_step(input.bounds)));
+            .x_grid_spacer(move |input| grid_marks(input.bounds, x_step.unwrap_or_else(|| round_step(input.bounds))))
+            .y_grid_spacer(|input| grid_marks(input.bounds, round_step(input.bounds)));
         if let Some(floor) = chart.y_floor {
             plot = plot.include_y(floor);
         }
         let response = plot.show(ui, |plot| {
             if chart.bars {
-                bars(plot, theme, chart.traces);
+                paint_bars(plot, theme, chart.traces);
             } else {
-                lines(plot, theme, chart.traces);
+                paint_lines(plot, theme, chart.traces);
             }
             for (x, y, words) in chart.marks {
                 let text = egui::RichText::new(words).size(theme.sizes.caption).color(theme.palette.text);
@@ -117,7 +117,7 @@ fn legend_ui(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
         for trace in traces {
             let (rect, _) = ui.allocate_exact_size(Vec2::new(18.0, 12.0), Sense::hover());
             let ends = [rect.left_center(), rect.right_center()];
-            let stroke = Stroke::new(2.0, series(theme, trace.colour));
+            let stroke = Stroke::new(2.0, series_colour(theme, trace.colour));
             if trace.dashed {
                 ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
             } else {
@@ -128,26 +128,26 @@ fn legend_ui(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
     });
 }
 
-fn lines(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
+fn paint_lines(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     for trace in traces {
         let points = trace.points.iter().map(|(x, y)| PlotPoint::new(*x, *y)).collect();
         let style = if trace.dashed { LineStyle::dashed_dense() } else { LineStyle::Solid };
         let line = Line::new(trace.name.clone(), PlotPoints::Owned(points));
-        plot.line(line.color(series(theme, trace.colour)).width(1.5).style(style));
+        plot.line(line.color(series_colour(theme, trace.colour)).width(1.5).style(style));
     }
 }
 
-fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
+fn paint_bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     let width = BARS / traces.len().max(1) as f64;
     for (number, trace) in traces.iter().enumerate() {
-        let colour = series(theme, trace.colour);
+        let colour = series_colour(theme, trace.colour);
         let fill = if trace.dashed { Color32::TRANSPARENT } else { colour };
         let off = (number as f64 + 0.5) * width - BARS / 2.0;
         let bar = |(x, y): &(f64, f64)| {
             Bar::new(x + off, *y).width(width * 0.9).fill(fill).stroke(Stroke::new(1.0, colour)).name(&trace.name)
         };
         let (own, name) = (*theme, trace.name.clone());
-        let tooltip = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
+        let tooltip = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", format_value(&own, bar.value));
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
         plot.bar_chart(chart.color(colour).element_formatter(Box::new(tooltip)));
     }
@@ -165,8 +165,8 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
 }
 
 /// Returns an axis that labels all ticks at least the given number of points apart.
-fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
-    hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
+fn with_label_spacing(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
+    hints.formatter(move |mark, _| tick_label(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
 /// Returns a step of 1, 2 or 5 times a power of ten. It divides the range into about five parts.
@@ -178,20 +178,24 @@ fn round_step((least, most): (f64, f64)) -> f64 {
 }
 
 /// Returns the ticks of a range at the given step. Their number is limited to those that can be distinguished.
-fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
-    const MOST: usize = 64;
+fn grid_marks((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
+    const MAX_TICKS: usize = 64;
     let first = (least / step).ceil();
     let value = |at: usize| (first + at as f64) * step;
-    (0..MOST).map(value).take_while(|value| *value <= most).map(|value| GridMark { value, step_size: step }).collect()
+    (0..MAX_TICKS)
+        .map(value)
+        .take_while(|value| *value <= most)
+        .map(|value| GridMark { value, step_size: step })
+        .collect()
 }
 
 /// Formats a tick label with as many decimals as the step needs.
-fn tick(theme: &Theme, mark: GridMark) -> String {
+fn tick_label(theme: &Theme, mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
-    theme.number(mark.value, decimals)
+    theme.format_number(mark.value, decimals)
 }
 
-fn figures(theme: &Theme, value: f64) -> String {
+fn format_value(theme: &Theme, value: f64) -> String {
     let decimals = (3.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
-    theme.number(value, decimals)
+    theme.format_number(value, decimals)
 }

@@ -70,17 +70,17 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     let taken: usize = sizes.iter().sum();
     let strip = Strip::new(theme, ui.available_width(), taken + map.free_blocks);
     let (outer, _) = ui.allocate_exact_size(strip.size, Sense::hover());
-    let strip = strip.at(outer.min);
+    let strip = strip.at_origin(outer.min);
     let base = ui.make_persistent_id("field_map");
     let ids: Vec<Id> = (0..=map.fields.len()).map(|place| base.with(place)).collect();
-    walk(ui, &ids, map.free_blocks > 0);
+    handle_arrow_keys(ui, &ids, map.free_blocks > 0);
 
     let mut event = None;
     let mut first = 0;
     for ((field, size), id) in map.fields.iter().zip(&sizes).zip(&ids) {
-        let runs = strip.runs(first, first + size);
+        let runs = strip.range_rects(first, first + size);
         let selected = map.selected == Some(field.number);
-        let part = announce(ui, &runs, *id, &field.label, Some(selected), &field.tooltip);
+        let part = announce_part(ui, &runs, *id, &field.label, Some(selected), &field.tooltip);
         paint::field(ui, theme, &strip, &runs, field, &paint::State { selected, ..part.state });
         if part.clicked {
             event = Some(MapEvent::Select(field.number));
@@ -88,21 +88,21 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
         first += size;
     }
     if map.free_blocks > 0 {
-        let runs = strip.runs(taken, taken + map.free_blocks);
+        let runs = strip.range_rects(taken, taken + map.free_blocks);
         let id = ids.last().copied().unwrap_or(base);
-        let part = announce(ui, &runs, id, map.free_label, None, map.free_tooltip);
-        paint::free(ui, theme, &strip, &runs, &part.state);
+        let part = announce_part(ui, &runs, id, map.free_label, None, map.free_tooltip);
+        paint::paint_free_space(ui, theme, &strip, &runs, &part.state);
         if part.clicked {
             event = Some(MapEvent::SelectFree);
         }
     }
     let last = sizes.last().copied().unwrap_or_default();
-    handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
+    paint_boundary_handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
 /// Handles the arrow keys before the parts of the map are announced. The focus then moves in memory order and not to
 /// the nearest widget.
-fn walk(ui: &Ui, ids: &[Id], has_free: bool) {
+fn handle_arrow_keys(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };
     let focused = ui.memory(egui::Memory::focused);
     let Some(at) = ids.iter().position(|id| Some(*id) == focused) else { return };
@@ -136,7 +136,7 @@ struct Part {
     state: paint::State,
 }
 
-fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
+fn announce_part(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
     let widest = strip::widest_run(runs);
     let mut part = Part { clicked: false, state: paint::State::default() };
     for (number, rect) in runs.iter().enumerate() {
@@ -176,7 +176,7 @@ fn show_tooltip(response: Response, tooltip: &str) {
     }
 }
 
-fn handle(
+fn paint_boundary_handle(
     ui: &Ui,
     theme: &Theme,
     strip: &Strip,
@@ -186,26 +186,26 @@ fn handle(
     blocks: usize,
 ) -> Option<MapEvent> {
     let sizes = map.resize.as_ref().filter(|_| blocks > 0)?;
-    let end = strip.runs(start, start + blocks).last().copied()?;
+    let end = strip.range_rects(start, start + blocks).last().copied()?;
     let width = theme.space.between;
     let rect = Rect::from_center_size(end.right_center(), Vec2::new(width + theme.space.inside, end.height()));
     let response = ui.interact(rect, base.with("handle"), Sense::DRAG);
     if response.hovered() || response.dragged() {
         ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
     }
-    paint::handle(ui, theme, end, response.hovered() || response.dragged());
+    paint::paint_handle(ui, theme, end, response.hovered() || response.dragged());
     let pos = response.interact_pointer_pos();
     let given_up = ui.input(|input| input.key_pressed(Key::Escape));
     let wanted = pos.map(|pos| {
         let room = blocks + map.free_blocks;
         let (least, most) = (*sizes.start(), (*sizes.end()).min(room));
-        strip.boundary(pos).saturating_sub(start).max(least.max(1)).min(most.max(1))
+        strip.nearest_boundary(pos).saturating_sub(start).max(least.max(1)).min(most.max(1))
     });
     if let Some(wanted) = wanted.filter(|_| response.dragged()) {
         let text = Text::new("widget.map_size").with("bytes", wanted * map.block_bytes);
-        paint::draw_drag_ghost(ui, theme, strip, &strip.runs(start, start + wanted), &theme.words(&text));
+        paint::draw_drag_ghost(ui, theme, strip, &strip.range_rects(start, start + wanted), &theme.format_text(&text));
     } else if !response.dragged() {
-        let words = theme.say("widget.map_resize");
+        let words = theme.translate("widget.map_resize");
         show_tooltip(response.clone(), &words);
     }
     let released = response.drag_stopped() && !given_up;

@@ -16,11 +16,11 @@ use egui::{Color32, FontId, Galley, Painter, Rect, Sense, Stroke, Ui, Vec2, Widg
 use std::sync::Arc;
 
 use super::bit_cell::BitCell;
-use super::series;
+use super::series_colour;
 use crate::analysis::quality::Verdict;
 use crate::ui::{Theme, controls};
 
-use place::{Placed, RequiredSpace, place};
+use place::{PlacedPiece, RequiredSpace, place_fields};
 
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
@@ -45,21 +45,22 @@ pub struct FrameStrip<'a> {
 }
 
 /// Heights of a cell, of the bar below it, and of the two text lines.
-const CELL: f32 = 24.0;
-const BAR: f32 = 2.0;
-const NAME: f32 = 15.0;
-const VALUE: f32 = 18.0;
+const CELL_HEIGHT: f32 = 24.0;
+const BAR_HEIGHT: f32 = 2.0;
+const NAME_HEIGHT: f32 = 15.0;
+const VALUE_HEIGHT: f32 = 18.0;
 
 pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
-    let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, theme, field)).collect();
+    let words: Vec<Words> = strip.fields.iter().map(|field| Words::from_field(ui, theme, field)).collect();
     let wants =
         strip.fields.iter().zip(&words).map(|(field, words)| RequiredSpace { bits: field.bits, words: words.width() });
-    let placing = place(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
+    let placing = place_fields(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
     let has_values = strip.fields.iter().any(|field| !field.value.is_empty());
-    let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + theme.space.inside;
+    let line =
+        CELL_HEIGHT + BAR_HEIGHT + NAME_HEIGHT + if has_values { VALUE_HEIGHT } else { 0.0 } + theme.space.inside;
     let height = placing.lines as f32 * line + placing.lines.saturating_sub(1) as f32 * theme.space.between;
     let (outer, response) = ui.allocate_exact_size(Vec2::new(placing.width, height), Sense::hover());
-    let values: Vec<String> = strip.fields.iter().map(StripField::words).collect();
+    let values: Vec<String> = strip.fields.iter().map(StripField::label_text).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, strip.label);
         info.current_text_value = Some(values.join(", "));
@@ -72,7 +73,7 @@ pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
         let id = response.id.with((piece.field, piece.first));
         let own = ui.interact(rect, id, Sense::hover());
         if piece.first == 0 {
-            own.widget_info(|| WidgetInfo::labeled(Role::Label, true, field.words()));
+            own.widget_info(|| WidgetInfo::labeled(Role::Label, true, field.label_text()));
         }
         if ui.is_rect_visible(rect) {
             let first = strip.fields.iter().take(piece.field).map(|field| field.bits).sum::<usize>() + piece.first;
@@ -91,14 +92,14 @@ pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
 }
 
 impl StripField {
-    fn words(&self) -> String {
+    fn label_text(&self) -> String {
         if self.value.is_empty() { self.name.clone() } else { format!("{}: {}", self.name, self.value) }
     }
 
     fn display_colour(&self, theme: &Theme) -> Color32 {
         match (self.lit, self.colour) {
-            (Some(own), _) => controls::verdict(theme, own).1.into(),
-            (None, Some(colour)) => series(theme, colour),
+            (Some(own), _) => controls::verdict_badge(theme, own).1.into(),
+            (None, Some(colour)) => series_colour(theme, colour),
             (None, None) => theme.palette.muted.into(),
         }
     }
@@ -110,9 +111,9 @@ struct Words {
 }
 
 impl Words {
-    fn of(ui: &Ui, theme: &Theme, field: &StripField) -> Self {
+    fn from_field(ui: &Ui, theme: &Theme, field: &StripField) -> Self {
         let name = match field.lit {
-            Some(own) => format!("{} {}", controls::verdict(theme, own).0, field.name),
+            Some(own) => format!("{} {}", controls::verdict_badge(theme, own).0, field.name),
             None => field.name.clone(),
         };
         let ink = if field.lit.is_some() { field.display_colour(theme) } else { theme.palette.muted.into() };
@@ -127,8 +128,8 @@ impl Words {
     }
 
     fn paint(&self, painter: &Painter, theme: &Theme, rect: Rect) {
-        let top = rect.top() + CELL + BAR + theme.space.inside;
-        for (galley, y) in [(&self.name, top), (&self.value, top + NAME)] {
+        let top = rect.top() + CELL_HEIGHT + BAR_HEIGHT + theme.space.inside;
+        for (galley, y) in [(&self.name, top), (&self.value, top + NAME_HEIGHT)] {
             painter.galley(pos2(rect.left(), y), galley.clone(), theme.palette.text.into());
         }
     }
@@ -139,18 +140,18 @@ fn paint_cells(
     painter: &Painter,
     theme: &Theme,
     rect: Rect,
-    (piece, cell): (&Placed, f32),
+    (piece, cell): (&PlacedPiece, f32),
     field: &StripField,
     bits: impl Iterator<Item = Option<bool>>,
 ) {
     let ink = field.display_colour(theme);
     for (at, bit) in bits.enumerate() {
         let left = rect.left() + piece.offset(at, field.bits, cell);
-        let own = Rect::from_min_size(pos2(left, rect.top()), Vec2::new(cell - 1.0, CELL));
+        let own = Rect::from_min_size(pos2(left, rect.top()), Vec2::new(cell - 1.0, CELL_HEIGHT));
         let alarm = matches!(field.lit, Some(Verdict::Warn | Verdict::Fault));
         BitCell { ink, bit, blank: "·", alarm }.paint(painter, theme, own);
     }
     let end = rect.left() + piece.offset(piece.bits.saturating_sub(1), field.bits, cell) + cell - 1.0;
-    let y = rect.top() + CELL + 1.0 + BAR / 2.0;
-    painter.hline(rect.left()..=end, y, Stroke::new(BAR, ink));
+    let y = rect.top() + CELL_HEIGHT + 1.0 + BAR_HEIGHT / 2.0;
+    painter.hline(rect.left()..=end, y, Stroke::new(BAR_HEIGHT, ink));
 }

@@ -81,33 +81,33 @@ impl<'a> HexModel<'a> {
         self.wanted.get(at) != self.device.get(at)
     }
 
-    fn changes(&self) -> usize {
+    fn change_count(&self) -> usize {
         (0..self.wanted.len()).filter(|at| self.is_changed(*at)).count()
     }
 }
 
 /// Heights of a line, of the area around the lines, and of the typed view below the editor.
-const LINE: f32 = 20.0;
-const AROUND: f32 = 60.0;
-const TYPED: f32 = 240.0;
+const LINE_HEIGHT: f32 = 20.0;
+const SURROUNDING_HEIGHT: f32 = 60.0;
+const TYPED_VIEW_WIDTH: f32 = 240.0;
 
 /// Returns the number of lines that an editor shows in the given height. Beside the typed view, the editor fills the
 /// height. Above the typed view, it leaves space for the view but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
-        ((height - AROUND) / LINE).clamp(4.0, 64.0) as usize
+        ((height - SURROUNDING_HEIGHT) / LINE_HEIGHT).clamp(4.0, 64.0) as usize
     } else {
-        ((height - AROUND - TYPED) / LINE).clamp(16.0, 64.0) as usize
+        ((height - SURROUNDING_HEIGHT - TYPED_VIEW_WIDTH) / LINE_HEIGHT).clamp(16.0, 64.0) as usize
     }
 }
 
 /// Draws the editor and returns the user's actions in order. The caller applies them to the bytes.
 pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
-    view.fit(model.wanted.len());
+    view.adapt_to_len(model.wanted.len());
     view.move_cursor_to_change(model.wanted);
     let edits = match ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
-        true => keys::listen(ui, model, view),
+        true => keys::handle_keys(ui, model, view),
         false => {
             view.pending = None;
             Vec::new()
@@ -137,23 +137,23 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
 fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
     let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
     paint::header(ui, theme, grid, header, model, view);
-    let shown = grid.lines().clamp(1, model.lines.max(1));
+    let shown = grid.line_count().clamp(1, model.lines.max(1));
     let height = grid.height_of(shown);
     let area = ScrollArea::vertical().id_salt(id.with("lines")).max_height(height).min_scrolled_height(height);
     let lines = area.show(ui, |ui| {
-        let size = Vec2::new(grid.width, grid.height_of(grid.lines().max(1)));
+        let size = Vec2::new(grid.width, grid.height_of(grid.line_count().max(1)));
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         let response = ui.interact(rect, id, Sense::click_and_drag());
-        point(ui, &response, grid, model, view);
+        handle_pointer(ui, &response, grid, model, view);
         if std::mem::take(&mut view.reveal) && !model.wanted.is_empty() {
-            let cell = grid.cell(rect.min, view.column, view.cursor());
+            let cell = grid.cell_rect(rect.min, view.column, view.cursor());
             ui.scroll_to_rect_animation(cell, None, egui::style::ScrollAnimation::none());
         }
         let hovered = response.hover_pos().and_then(|pos| grid.cell_under_pointer(rect.min, pos));
-        paint::lines(ui, theme, grid, rect.min, model, view, &response, hovered);
+        paint::paint_lines(ui, theme, grid, rect.min, model, view, &response, hovered);
         if let Some((column, at)) = hovered {
             // The tooltip is beside the byte.
-            let cell = grid.cell(rect.min, column, at);
+            let cell = grid.cell_rect(rect.min, column, at);
             Response { rect: cell, interact_rect: cell, ..response.clone() }
                 .on_hover_ui(|ui| tip::byte(ui, theme, model, at));
         }
@@ -163,7 +163,7 @@ fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>
     lines.inner
 }
 
-fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
+fn handle_pointer(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
     if response.gained_focus() {
         // The editor must receive the next arrow key. It moves the cursor and not the focus.
         ui.request_repaint();
@@ -187,14 +187,14 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
     if model.wanted.is_empty() {
         return;
     }
-    let (column, at) = grid.nearest(response.rect.min, pos, view.column, pressed);
+    let (column, at) = grid.nearest_byte(response.rect.min, pos, view.column, pressed);
     if pressed {
         response.request_focus();
         view.column = column;
         view.problem = None;
-        view.go(at, shift);
+        view.move_cursor(at, shift);
     } else if down && at != view.cursor() {
-        view.go(at, true);
+        view.move_cursor(at, true);
     }
     if response.double_clicked() {
         let word = at - at % 4;
@@ -228,7 +228,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
         ui.set_min_height(grid.row);
         ui.spacing_mut().item_spacing.x = theme.space.groups;
         if let Some(problem) = &view.problem {
-            let words = format!("{} {}", icons::WARNING_CIRCLE, theme.words(problem));
+            let words = format!("{} {}", icons::WARNING_CIRCLE, theme.format_text(problem));
             ui.add(egui::Label::new(caption_layout(theme, &words, theme.palette.bad.into())).wrap());
             return;
         }
@@ -242,10 +242,10 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
                 .with("last", model.address(selected.end.saturating_sub(1)))
                 .with("count", count),
         };
-        ui.label(caption_layout(theme, &theme.words(&place), theme.palette.muted.into()));
-        let changes = model.changes();
+        ui.label(caption_layout(theme, &theme.format_text(&place), theme.palette.muted.into()));
+        let changes = model.change_count();
         if changes > 0 {
-            let words = theme.words(&Text::new("widget.hex_changed").with("count", changes));
+            let words = theme.format_text(&Text::new("widget.hex_changed").with("count", changes));
             ui.label(theme.caption(format!("{} {words}", icons::PENCIL_SIMPLE)).color(theme.palette.staged));
         }
     });

@@ -54,7 +54,7 @@ struct HoldButtonFrame {
     pointer: Option<u64>,
 }
 
-const LEAST: f32 = 56.0;
+const MIN_WIDTH: f32 = 56.0;
 
 pub(in crate::ui) fn set_hold_button_context(ctx: &Context, surroundings: HoldButtonContext) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
@@ -63,17 +63,17 @@ pub(in crate::ui) fn set_hold_button_context(ctx: &Context, surroundings: HoldBu
 /// Returns whether a hold button had the keyboard focus in the previous frame and still has it. Keys then belong to the
 /// button.
 pub(in crate::ui) fn has_hold_button_focus(ctx: &Context) -> bool {
-    let drawn = drawn(ctx);
+    let drawn = hold_button_frame(ctx);
     let focused = ctx.memory(|memory| memory.focused());
     drawn.keyboard.is_some_and(|(id, pass)| focused == Some(id) && pass + 1 >= ctx.cumulative_pass_nr())
 }
 
 /// Returns whether the pointer held a hold button in the previous frame.
 pub(in crate::ui) fn is_hold_button_held(ctx: &Context) -> bool {
-    drawn(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
+    hold_button_frame(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
 
-fn drawn(ctx: &Context) -> HoldButtonFrame {
+fn hold_button_frame(ctx: &Context) -> HoldButtonFrame {
     ctx.data(|data| data.get_temp(HoldButtonFrame::id())).unwrap_or_default()
 }
 
@@ -84,7 +84,7 @@ impl HoldButtonFrame {
 }
 
 pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Vec2) -> Option<HoldEvent> {
-    let size = Vec2::new(size.x.max(LEAST), size.y.max(LEAST));
+    let size = Vec2::new(size.x.max(MIN_WIDTH), size.y.max(MIN_WIDTH));
     let around: HoldButtonContext =
         ui.data(|data| data.get_temp(Id::unique("around hold buttons"))).unwrap_or_default();
     let enabled = button.enabled && !around.covered;
@@ -137,8 +137,8 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
             drawn.pointer = Some(pass);
         }
     });
-    let hint = theme.say("hold.release_first");
-    let ended = theme.say("hold.ended");
+    let hint = theme.translate("hold.release_first");
+    let ended = theme.translate("hold.ended");
     let is_held = state.is_held() && !button.has_ended;
     let caption = match state.is_waiting_for_release() {
         true => &hint,

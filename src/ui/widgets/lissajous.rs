@@ -16,7 +16,7 @@ use egui::{
 use crate::analysis::lissajous::{PlotSquare, SampleDensity};
 use crate::app::Text;
 use crate::ui::Theme;
-use crate::ui::widgets::series;
+use crate::ui::widgets::series_colour;
 
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
@@ -52,7 +52,7 @@ struct PlotArea {
 }
 
 impl PlotArea {
-    fn at(&self, (x, y): (f64, f64)) -> Pos2 {
+    fn screen_position(&self, (x, y): (f64, f64)) -> Pos2 {
         let scale = |volts: f64| (volts / self.range_v).clamp(-4.0, 4.0) as f32 * self.rect.width() / 2.0;
         self.rect.center() + Vec2::new(scale(x), -scale(y))
     }
@@ -62,9 +62,9 @@ impl PlotArea {
         (f64::from(off.x) * self.range_v, f64::from(-off.y) * self.range_v)
     }
 
-    fn circle(&self, radius_v: f64) -> Vec<Pos2> {
+    fn circle_points(&self, radius_v: f64) -> Vec<Pos2> {
         let angle = |at: usize| at as f64 / CIRCLE as f64 * std::f64::consts::TAU;
-        (0..=CIRCLE).map(|at| self.at((radius_v * angle(at).cos(), radius_v * angle(at).sin()))).collect()
+        (0..=CIRCLE).map(|at| self.screen_position((radius_v * angle(at).cos(), radius_v * angle(at).sin()))).collect()
     }
 }
 
@@ -80,7 +80,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
     painter.rect_filled(rect, theme.radius, theme.palette.sunken);
-    let place = PlotArea { rect, range_v: range(figure) };
+    let place = PlotArea { rect, range_v: voltage_range(figure) };
     paint_grid(&painter, theme, &place);
     paint_rings(&painter, theme, &place, figure);
     paint_labels(&painter, theme, &place);
@@ -88,7 +88,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
         paint_samples(&painter, &place, own);
     }
     for own in figure.figures {
-        paint_curve(&painter, &place, own, series(theme, own.colour));
+        paint_curve(&painter, &place, own, series_colour(theme, own.colour));
     }
     if let Some(pos) = response.hover_pos() {
         paint_readout(&painter, theme, &place, pos);
@@ -99,12 +99,12 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
 /// sample stays visible.
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
-    const LEAST: f32 = 0.4;
+    const MIN_BRIGHTNESS: f32 = 0.4;
     let side = density.cells_per_side();
     let scale = f64::from(density.max_count()).ln_1p().max(f64::MIN_POSITIVE);
     let brightness = |count: u32| match count {
         0 => 0.0,
-        count => LEAST + (1.0 - LEAST) * (f64::from(count).ln_1p() / scale) as f32,
+        count => MIN_BRIGHTNESS + (1.0 - MIN_BRIGHTNESS) * (f64::from(count).ln_1p() / scale) as f32,
     };
     // Pictures begin at the top, and densities at the bottom.
     let rows = density.cell_counts().chunks(side).rev();
@@ -114,33 +114,33 @@ pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
 
 /// Returns the voltage from the centre to the edge. The range covers all samples and curves, and at least the good
 /// ring.
-fn range(figure: &Lissajous<'_>) -> f64 {
+fn voltage_range(figure: &Lissajous<'_>) -> f64 {
     let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
     let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));
     let curves = curves.filter(|volts| volts.is_finite()).map(|volts| volts * 1.05);
     curves.chain(pictures).fold(figure.ok_v.1 * 1.12, f64::max)
 }
 
-fn step(place: &PlotArea) -> f64 {
+fn scale_step(place: &PlotArea) -> f64 {
     STEPS.into_iter().find(|step| place.range_v / step < 3.0).unwrap_or(place.range_v / 2.0)
 }
 
-fn marks(place: &PlotArea) -> impl Iterator<Item = (i32, f64)> {
-    let step = step(place);
+fn scale_marks(place: &PlotArea) -> impl Iterator<Item = (i32, f64)> {
+    let step = scale_step(place);
     let count = (place.range_v / step).floor().min(4.0) as i32;
     (-count..=count).map(move |number| (number, f64::from(number) * step))
 }
 
 fn paint_grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let line = Stroke::new(1.0, theme.palette.line);
-    for (_, volts) in marks(place) {
-        painter.vline(place.at((volts, 0.0)).x, place.rect.y_range(), line);
-        painter.hline(place.rect.x_range(), place.at((0.0, volts)).y, line);
+    for (_, volts) in scale_marks(place) {
+        painter.vline(place.screen_position((volts, 0.0)).x, place.rect.y_range(), line);
+        painter.hline(place.rect.x_range(), place.screen_position((0.0, volts)).y, line);
     }
 }
 
 fn paint_labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
-    let step = step(place);
+    let step = scale_step(place);
     let font = FontId::proportional(theme.sizes.caption);
     let muted = Color32::from(theme.palette.muted);
     let (rect, inside) = (place.rect, theme.space.inside);
@@ -150,15 +150,15 @@ fn paint_labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
         painter.rect_filled(own.expand(1.0), 2.0, Color32::from(theme.palette.sunken).gamma_multiply(0.85));
         painter.galley(own.min, galley, muted);
     };
-    for (_, volts) in marks(place).filter(|(number, _)| *number != 0) {
-        let (x, y) = (place.at((volts, 0.0)).x, place.at((0.0, volts)).y);
+    for (_, volts) in scale_marks(place).filter(|(number, _)| *number != 0) {
+        let (x, y) = (place.screen_position((volts, 0.0)).x, place.screen_position((0.0, volts)).y);
         let decimals = if step < 0.1 { 2 } else { usize::from(step < 1.0) + usize::from(step == 0.25) };
-        let words = theme.number(volts, decimals);
+        let words = theme.format_number(volts, decimals);
         text(Pos2::new(x + 2.0, rect.bottom() - inside), Align2::LEFT_BOTTOM, words.clone());
         text(Pos2::new(rect.left() + inside, y - 2.0), Align2::LEFT_BOTTOM, words);
     }
-    let sine = format!("{} / V", theme.say("signals.sine"));
-    let cosine = format!("{} / V", theme.say("signals.cosine"));
+    let sine = format!("{} / V", theme.translate("signals.sine"));
+    let cosine = format!("{} / V", theme.translate("signals.cosine"));
     // Each label is at the end of its axis.
     let (top, right) = (Pos2::new(rect.center().x + inside, rect.top() + inside), rect.right_center());
     text(top, Align2::LEFT_TOP, sine);
@@ -167,7 +167,7 @@ fn paint_labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
 
 fn paint_rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Lissajous<'_>) {
     let good = Color32::from(theme.palette.good);
-    let (inner, outer) = (place.circle(figure.ok_v.0), place.circle(figure.ok_v.1));
+    let (inner, outer) = (place.circle_points(figure.ok_v.0), place.circle_points(figure.ok_v.1));
     let mut band = Mesh::default();
     for (at, (inner, outer)) in (0_u32..).zip(inner.iter().zip(&outer)) {
         band.colored_vertex(*inner, good.gamma_multiply(0.10));
@@ -183,7 +183,7 @@ fn paint_rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Liss
     }
     let bad = Stroke::new(1.0, Color32::from(theme.palette.bad).gamma_multiply(0.8));
     for radius in [figure.fault_v.0, figure.fault_v.1] {
-        painter.extend(Shape::dashed_line(&place.circle(radius), bad, 4.0, 4.0));
+        painter.extend(Shape::dashed_line(&place.circle_points(radius), bad, 4.0, 4.0));
     }
 }
 
@@ -191,13 +191,13 @@ fn paint_samples(painter: &Painter, place: &PlotArea, figure: &LissajousFigure) 
     let Some((texture, square)) = figure.picture else { return };
     let PlotSquare { cosine_v, sine_v, half_v } = square;
     let corners = [(cosine_v - half_v, sine_v + half_v), (cosine_v + half_v, sine_v - half_v)];
-    let rect = Rect::from_two_pos(place.at(corners[0]), place.at(corners[1]));
+    let rect = Rect::from_two_pos(place.screen_position(corners[0]), place.screen_position(corners[1]));
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
     painter.image(texture, rect, whole, Color32::WHITE);
 }
 
 fn paint_curve(painter: &Painter, place: &PlotArea, figure: &LissajousFigure, colour: Color32) {
-    let points: Vec<Pos2> = figure.curve.iter().map(|point| place.at(*point)).collect();
+    let points: Vec<Pos2> = figure.curve.iter().map(|point| place.screen_position(*point)).collect();
     if figure.dashed {
         painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, colour), 7.0, 4.0));
     } else {
@@ -216,7 +216,7 @@ fn paint_readout(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) 
         .with_number("length", x.hypot(y), 3)
         .with_number("angle", y.atan2(x).to_degrees().rem_euclid(360.0), 1);
     let font = FontId::monospace(theme.sizes.caption);
-    let words = painter.layout(theme.words(&text), font, theme.palette.text.into(), f32::INFINITY);
+    let words = painter.layout(theme.format_text(&text), font, theme.palette.text.into(), f32::INFINITY);
     let inside = theme.space.inside;
     let at = Pos2::new(place.rect.right() - words.size().x - inside, place.rect.top() + inside);
     painter.rect_filled(Rect::from_min_size(at, words.size()).expand(2.0), 2.0, theme.palette.raised);

@@ -52,7 +52,7 @@ pub(crate) fn draw_hatching(painter: &Painter, theme: &Theme, rect: Rect, colour
 }
 
 /// Returns the colour of a series. Colours repeat after the eighth series.
-pub(crate) fn series(theme: &Theme, number: usize) -> Color32 {
+pub(crate) fn series_colour(theme: &Theme, number: usize) -> Color32 {
     let colours = &theme.palette.series;
     colours.iter().cycle().nth(number % colours.len()).copied().map_or(theme.palette.muted.into(), Color32::from)
 }

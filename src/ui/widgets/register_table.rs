@@ -120,7 +120,7 @@ pub struct RegisterTableOutput {
     pub is_narrow: bool,
 }
 
-const LINE: f32 = 16.0;
+const LINE_HEIGHT: f32 = 16.0;
 /// Margin in points between the edge of the table and its lines.
 const MARGIN: i8 = 4;
 /// Number of characters reserved for the longest number. −2³¹ takes eleven.
@@ -137,11 +137,11 @@ fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
 }
 
 impl RegisterRow {
-    fn words(&self, theme: &Theme) -> String {
+    fn value_text(&self, theme: &Theme) -> String {
         let mut parts = vec![self.value.clone(), self.decimal.clone(), self.meaning.clone()];
-        parts.extend(self.differs.then(|| theme.say("widget.register_differs")));
-        parts.extend(self.changed.then(|| theme.say("widget.register_changed")));
-        parts.extend(self.edited.then(|| theme.say("widget.register_edited")));
+        parts.extend(self.differs.then(|| theme.translate("widget.register_differs")));
+        parts.extend(self.changed.then(|| theme.translate("widget.register_changed")));
+        parts.extend(self.edited.then(|| theme.translate("widget.register_edited")));
         parts.retain(|part| !part.is_empty());
         parts.join(", ")
     }
@@ -166,25 +166,25 @@ pub fn register_table(
     let mut lines = Lines::new(table, view);
     keys::restore_deferred_keys(ui, view, id);
     if ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
-        output.event = keys::listen(ui, table, &lines, view);
+        output.event = keys::handle_keys(ui, table, &lines, view);
         lines = Lines::new(table, view);
     }
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let frame = theme.sunken_frame().inner_margin(MARGIN).show(ui, |ui| {
-            controls::fill(ui);
+            controls::fill_width(ui);
             // The lines are beside the scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
             output.is_narrow = columns.is_narrow();
             paint::header(ui, theme, table.kind, &columns);
-            let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
-            body(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)
+            let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER_HEIGHT).max(LINE_HEIGHT * 3.0);
+            body_ui(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)
         });
         let response = frame.inner;
         if response.has_focus() {
-            keys::hold(ui, id);
+            keys::reserve_keys(ui, id);
             focus_ring(ui.painter(), theme, frame.response.rect, theme.radius);
         }
         set_widget_info(&response, theme, table, view);
@@ -193,7 +193,7 @@ pub fn register_table(
 }
 
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
-fn body(
+fn body_ui(
     ui: &mut Ui,
     theme: &Theme,
     id: Id,
@@ -205,33 +205,33 @@ fn body(
     take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
     output: &mut RegisterTableOutput,
 ) -> Response {
-    view.page = ((height / LINE) as usize).saturating_sub(1);
+    view.page = ((height / LINE_HEIGHT) as usize).saturating_sub(1);
     let area = ScrollArea::vertical().id_salt(id.with("lines")).auto_shrink(false).max_height(height);
     let shown = area.min_scrolled_height(height).show_viewport(ui, |ui, viewport| {
-        let size = Vec2::new(columns.width(), lines.total() as f32 * LINE);
+        let size = Vec2::new(columns.width(), lines.total() as f32 * LINE_HEIGHT);
         let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
         // The clip rectangle is wider than the table and includes its neighbours.
         let body = Rect::from_x_y_ranges(whole.x_range(), ui.clip_rect().y_range());
         let response = ui.interact(body, id, Sense::click());
         let at = |line: usize| {
-            let top = whole.top() + line as f32 * LINE;
-            Rect::from_min_size(pos2(whole.left(), top), Vec2::new(columns.width(), LINE))
+            let top = whole.top() + line as f32 * LINE_HEIGHT;
+            Rect::from_min_size(pos2(whole.left(), top), Vec2::new(columns.width(), LINE_HEIGHT))
         };
         if std::mem::take(&mut view.reveal)
             && let Some(line) = view.selected.and_then(|own| lines.line_index(own))
         {
             ui.scroll_to_rect_animation(at(line), None, egui::style::ScrollAnimation::none());
         }
-        let first = (viewport.top() / LINE).floor().max(0.0) as usize;
-        let behind = ((viewport.bottom() / LINE).ceil().max(0.0) as usize).min(lines.total());
+        let first = (viewport.top() / LINE_HEIGHT).floor().max(0.0) as usize;
+        let behind = ((viewport.bottom() / LINE_HEIGHT).ceil().max(0.0) as usize).min(lines.total());
         let groups = lines.group_at(first).zip(lines.group_at(behind.saturating_sub(1)));
         output.groups = groups.map_or(0..0, |(first, last)| first..last + 1);
         let was_refused = view.is_refused();
         for line in first..behind {
-            let Some(kind) = lines.at(line) else { continue };
+            let Some(kind) = lines.kind_of(line) else { continue };
             let rect = at(line);
             match kind {
-                LineKind::Group(group) => heading(ui, theme, id, rect, table, group, view),
+                LineKind::Group(group) => paint_heading(ui, theme, id, rect, table, group, view),
                 LineKind::Row(place) => row(ui, theme, id, rect, columns, table, place, view),
                 LineKind::Bits(place, number) => {
                     if let Some(bits) = (table.row)(place).fields.get(number) {
@@ -245,7 +245,7 @@ fn body(
         }
         if let Some(edit) = &view.edit
             && let Some(line) = lines.line_index(SelectedRow::Row(edit.place))
-            && let Some(range) = columns.range(columns::Column::Value)
+            && let Some(range) = columns.column_range(columns::Column::Value)
         {
             let own = at(line);
             let cell = Rect::from_x_y_ranges(own.left() + range.min..=own.left() + range.max, own.y_range());
@@ -265,7 +265,7 @@ fn body(
     shown.inner
 }
 
-fn heading(
+fn paint_heading(
     ui: &Ui,
     theme: &Theme,
     id: Id,
@@ -284,12 +284,12 @@ fn heading(
     });
     if response.clicked() {
         let folded = view.is_folded(group);
-        view.fold(group, !folded);
+        view.set_folded(group, !folded);
         view.selected = Some(SelectedRow::Group(group));
         view.refused = None;
         ui.memory_mut(|memory| memory.request_focus(id));
     }
-    paint::heading(ui, theme, rect, own, view.is_folded(group), paint::State::of(selected, &response));
+    paint::paint_heading(ui, theme, rect, own, view.is_folded(group), paint::State::from_response(selected, &response));
 }
 
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
@@ -306,15 +306,14 @@ fn row(
     let row = (table.row)(place);
     let response = ui.interact(rect, id.with(place), Sense::CLICK);
     let selected = view.selected == Some(SelectedRow::Row(place));
-    response.widget_info(|| value_info(Role::Row, &row.label(), &row.words(theme)));
+    response.widget_info(|| value_info(Role::Row, &row.label(), &row.value_text(theme)));
     ui.accesskit_node_builder(response.id, |node| node.set_selected(selected));
     let open = view.open.contains(&place);
     if response.clicked() {
-        let marks = columns.range(columns::Column::Marks);
-        let on_caret = response
-            .interact_pointer_pos()
-            .zip(marks)
-            .is_some_and(|(pos, marks)| pos.x - rect.left() < marks.min + paint::CARET && !row.fields.is_empty());
+        let marks = columns.column_range(columns::Column::Marks);
+        let on_caret = response.interact_pointer_pos().zip(marks).is_some_and(|(pos, marks)| {
+            pos.x - rect.left() < marks.min + paint::CARET_OFFSET && !row.fields.is_empty()
+        });
         if on_caret {
             view.set_expanded(place, !open);
         }
@@ -323,7 +322,7 @@ fn row(
         ui.memory_mut(|memory| memory.request_focus(id));
     }
     let boxed = (table.kind == RegisterKind::Numbers && row.read_only.is_none())
-        .then(|| columns.range(columns::Column::Value).map(|value| paint::value_edit_rect(theme, rect, value)))
+        .then(|| columns.column_range(columns::Column::Value).map(|value| paint::value_edit_rect(theme, rect, value)))
         .flatten();
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));
@@ -332,7 +331,15 @@ fn row(
         view.wanted = Some(place);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
-    paint::row(ui, theme, rect, (table.kind, columns), &row, (open, typing), paint::State::of(selected, &response));
+    paint::row(
+        ui,
+        theme,
+        rect,
+        (table.kind, columns),
+        &row,
+        (open, typing),
+        paint::State::from_response(selected, &response),
+    );
     if response.hovered() && !typing {
         response.on_hover_ui(|ui| paint::show_tooltip(ui, theme, (table.kind, columns), &row));
     }
@@ -349,7 +356,7 @@ fn set_widget_info(response: &Response, theme: &Theme, table: &RegisterTable<'_>
     let value = match view.selected {
         Some(SelectedRow::Row(place)) => {
             let row = (table.row)(place);
-            format!("{}: {}", row.label(), row.words(theme))
+            format!("{}: {}", row.label(), row.value_text(theme))
         }
         Some(SelectedRow::Group(group)) => table.groups.get(group).map(|own| own.title.clone()).unwrap_or_default(),
         None => String::new(),

@@ -12,7 +12,7 @@ use egui::epaint::PathStroke;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
 
 use crate::ui::Theme;
-use crate::ui::widgets::series;
+use crate::ui::widgets::series_colour;
 
 #[derive(Clone, Copy, Debug)]
 pub struct StepRing<'a> {
@@ -29,7 +29,7 @@ pub struct StepRing<'a> {
 
 const STEPS: u8 = 32;
 /// Width of the ring, as a share of the radius.
-const WIDTH: f32 = 0.14;
+const RING_WIDTH: f32 = 0.14;
 /// Share of a step left empty at each end of its segment.
 const GAP: f64 = 0.08;
 
@@ -41,15 +41,15 @@ struct Dial {
 }
 
 impl Dial {
-    fn at(self, periods: f64, radius: f32) -> Pos2 {
+    fn point_at(self, periods: f64, radius: f32) -> Pos2 {
         let angle = (periods * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius * self.radius
     }
 
-    fn arc(self, from: f64, to: f64, radius: f32) -> Vec<Pos2> {
+    fn arc_points(self, from: f64, to: f64, radius: f32) -> Vec<Pos2> {
         let points = (((to - from).abs() * 96.0).ceil() as usize).clamp(2, 128);
         let place = |at: usize| from + (to - from) * at as f64 / points as f64;
-        (0..=points).map(|at| self.at(place(at), radius)).collect()
+        (0..=points).map(|at| self.point_at(place(at), radius)).collect()
     }
 }
 
@@ -69,20 +69,20 @@ pub fn step_ring(ui: &mut Ui, theme: &Theme, ring: &StepRing<'_>, side: f32) {
     paint_segments(painter, theme, dial, ring.step);
     paint_quarters(painter, theme, dial);
     if let Some(apart) = ring.apart {
-        let arc = dial.arc(ring.phase, ring.phase + apart, 1.0 - 1.7 * WIDTH);
+        let arc = dial.arc_points(ring.phase, ring.phase + apart, 1.0 - 1.7 * RING_WIDTH);
         painter.add(Shape::line(arc, PathStroke::new(3.0, ring.colour)));
     }
-    let hand = Stroke::new(2.0, series(theme, 1));
-    painter.line_segment([dial.at(ring.phase, 0.18), dial.at(ring.phase, 1.0 - WIDTH)], hand);
-    painter.circle_filled(dial.at(ring.phase, 1.0 - WIDTH), 3.5, hand.color);
+    let hand = Stroke::new(2.0, series_colour(theme, 1));
+    painter.line_segment([dial.point_at(ring.phase, 0.18), dial.point_at(ring.phase, 1.0 - RING_WIDTH)], hand);
+    painter.circle_filled(dial.point_at(ring.phase, 1.0 - RING_WIDTH), 3.5, hand.color);
 }
 
 fn paint_segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
-    let width = WIDTH * dial.radius;
+    let width = RING_WIDTH * dial.radius;
     for step in 0..STEPS {
         let (from, to) = (f64::from(step) + GAP, f64::from(step) + 1.0 - GAP);
-        let arc = dial.arc(from / f64::from(STEPS), to / f64::from(STEPS), 1.0 - WIDTH / 2.0);
-        let colour = if u64::from(step) == own { series(theme, 0) } else { theme.palette.line.into() };
+        let arc = dial.arc_points(from / f64::from(STEPS), to / f64::from(STEPS), 1.0 - RING_WIDTH / 2.0);
+        let colour = if u64::from(step) == own { series_colour(theme, 0) } else { theme.palette.line.into() };
         painter.add(Shape::line(arc, PathStroke::new(width, colour)));
     }
 }
@@ -93,7 +93,7 @@ fn paint_quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     for (step, align) in
         [(0, Align2::CENTER_BOTTOM), (8, Align2::LEFT_CENTER), (16, Align2::CENTER_TOP), (24, Align2::RIGHT_CENTER)]
     {
-        let place = dial.at(f64::from(step) / f64::from(STEPS), 1.02);
+        let place = dial.point_at(f64::from(step) / f64::from(STEPS), 1.02);
         painter.text(place, align, step.to_string(), font.clone(), theme.palette.muted.into());
     }
 }

@@ -17,7 +17,7 @@ use egui::accesskit::Role;
 use egui::{Align, Align2, FontId, Layout, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
 
 use crate::app::Rgb;
-use crate::ui::controls::{enabled_button, fill, paragraph, primary_button};
+use crate::ui::controls::{enabled_button, fill_width, paragraph, primary_button};
 use crate::ui::{Theme, icons};
 
 #[derive(Clone, Debug, Default)]
@@ -74,22 +74,22 @@ pub enum StepsEvent {
 }
 
 impl Gauge {
-    pub fn fits(&self) -> bool {
+    pub fn is_in_range(&self) -> bool {
         self.value.is_some_and(|value| self.allowed.contains(&value))
     }
 
     /// Returns whether the value lies in both the allowed and the best range.
     pub fn is_in_best_range(&self) -> bool {
-        self.fits() && self.value.zip(self.best.as_ref()).is_none_or(|(value, best)| best.contains(&value))
+        self.is_in_range() && self.value.zip(self.best.as_ref()).is_none_or(|(value, best)| best.contains(&value))
     }
 }
 
 impl StepState {
-    const fn counts(self) -> bool {
+    const fn is_complete(self) -> bool {
         matches!(self, StepState::Waiting | StepState::Running)
     }
 
-    fn mark(self, theme: &Theme) -> (&'static str, Rgb) {
+    fn icon(self, theme: &Theme) -> (&'static str, Rgb) {
         let palette = theme.palette;
         match self {
             StepState::ToCome => ("", palette.muted),
@@ -103,8 +103,8 @@ impl StepState {
 }
 
 /// Radius of a step's dot, and width of the rail.
-const DOT: f32 = 9.0;
-const RAIL: f32 = 32.0;
+const DOT_RADIUS: f32 = 9.0;
+const RAIL_WIDTH: f32 = 32.0;
 
 pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
@@ -115,11 +115,11 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         for (number, step) in (1_usize..).zip(model.steps) {
             let left = ui.cursor().left();
-            let mut middle = pos2(left + DOT + 1.0, 0.0);
+            let mut middle = pos2(left + DOT_RADIUS + 1.0, 0.0);
             let drawn = ui.horizontal_top(|ui| {
-                ui.add_space(RAIL);
+                ui.add_space(RAIL_WIDTH);
                 ui.vertical(|ui| {
-                    fill(ui);
+                    fill_width(ui);
                     middle.y = title_ui(ui, theme, step);
                     event = event.or(content_ui(ui, theme, model, step));
                 });
@@ -127,7 +127,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
             // Scroll again when the step grows: its gauges and buttons must be visible.
             let height = drawn.response.rect.height();
             let before: Option<(usize, f32)> = ui.data(|data| data.get_temp(at));
-            if step.state.counts() && before.is_none_or(|(own, seen)| own != number || height > seen + 1.0) {
+            if step.state.is_complete() && before.is_none_or(|(own, seen)| own != number || height > seen + 1.0) {
                 ui.data_mut(|data| data.insert_temp(at, (number, height)));
                 drawn.response.scroll_to_me(None);
             }
@@ -137,7 +137,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
         }
     });
     for (upper, lower) in dots.iter().zip(dots.iter().skip(1)) {
-        let (from, to) = (upper.y + DOT + theme.space.inside, lower.y - DOT - theme.space.inside);
+        let (from, to) = (upper.y + DOT_RADIUS + theme.space.inside, lower.y - DOT_RADIUS - theme.space.inside);
         ui.painter().vline(upper.x, from..=to, Stroke::new(1.0, theme.palette.line));
     }
     event
@@ -151,8 +151,11 @@ fn title_ui(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
         StepState::Failed => palette.bad,
         StepState::Waiting | StepState::Running | StepState::Done => palette.text,
     };
-    let font =
-        if step.state.counts() { theme.bold_font(theme.sizes.section) } else { FontId::proportional(theme.sizes.body) };
+    let font = if step.state.is_complete() {
+        theme.bold_font(theme.sizes.section)
+    } else {
+        FontId::proportional(theme.sizes.body)
+    };
     let half = ui.fonts_mut(|fonts| fonts.row_height(&font)) / 2.0;
     let response = ui.add(egui::Label::new(RichText::new(&step.title).font(font).color(ink)).wrap());
     let words = format!("{}: {}", step.title, step.word);
@@ -170,7 +173,7 @@ fn content_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> 
         };
         paragraph(ui, RichText::new(&step.note).color(ink));
     }
-    if !step.state.counts() {
+    if !step.state.is_complete() {
         return None;
     }
     gauge::gauges_ui(ui, theme, &step.gauges);
@@ -232,19 +235,19 @@ fn progress_ui(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
 
 fn paint_dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
     let palette = theme.palette;
-    let (icon, colour) = step.state.mark(theme);
+    let (icon, colour) = step.state.icon(theme);
     let (font, ink) = match step.state {
         StepState::Done | StepState::Failed => {
-            painter.circle_filled(middle, DOT, egui::Color32::from(colour).gamma_multiply(0.22));
+            painter.circle_filled(middle, DOT_RADIUS, egui::Color32::from(colour).gamma_multiply(0.22));
             (theme.sizes.body, colour)
         }
         StepState::Waiting | StepState::Running => {
-            painter.circle_filled(middle, DOT, egui::Color32::from(colour).gamma_multiply(0.22));
-            painter.circle_stroke(middle, DOT, Stroke::new(2.0, colour));
+            painter.circle_filled(middle, DOT_RADIUS, egui::Color32::from(colour).gamma_multiply(0.22));
+            painter.circle_stroke(middle, DOT_RADIUS, Stroke::new(2.0, colour));
             (theme.sizes.caption, palette.text)
         }
         StepState::ToCome | StepState::Skipped => {
-            painter.circle_stroke(middle, DOT, Stroke::new(1.0, colour));
+            painter.circle_stroke(middle, DOT_RADIUS, Stroke::new(1.0, colour));
             (theme.sizes.caption, palette.muted)
         }
     };

@@ -14,7 +14,7 @@ use crate::bits::{self, TypedKind, TypedRow};
 use crate::ui::{Theme, icons};
 
 /// Time in seconds for which a value stays marked after being copied.
-const COPIED: f64 = 1.2;
+const COPIED_MARK_S: f64 = 1.2;
 
 struct Columns {
     name: f32,
@@ -44,9 +44,9 @@ fn header_ui(ui: &mut Ui, theme: &Theme, columns: &Columns) {
     let y = rect.top() + columns.row / 2.0;
     let inside = theme.space.between;
     for (at, words) in [
-        (rect.left(), theme.say("widget.typed_type")),
-        (rect.left() + columns.name + inside, theme.say("widget.typed_little")),
-        (rect.left() + columns.name + columns.value + inside, theme.say("widget.typed_big")),
+        (rect.left(), theme.translate("widget.typed_type")),
+        (rect.left() + columns.name + inside, theme.translate("widget.typed_little")),
+        (rect.left() + columns.name + columns.value + inside, theme.translate("widget.typed_big")),
     ] {
         let colour = theme.palette.muted.into();
         ui.painter().text(egui::pos2(at, y), Align2::LEFT_CENTER, words, font.clone(), colour);
@@ -65,7 +65,7 @@ fn line_ui(ui: &mut Ui, theme: &Theme, columns: &Columns, row: &TypedRow) {
     let cell = |left: f32, width: f32| Rect::from_min_size(rect.min + Vec2::new(left, 0.0), Vec2::new(width, size.y));
     let id = ui.make_persistent_id(("typed_view", row.kind));
     if row.kind.has_byte_order() {
-        let (little, big) = (theme.say("widget.typed_little"), theme.say("widget.typed_big"));
+        let (little, big) = (theme.translate("widget.typed_little"), theme.translate("widget.typed_big"));
         let first = cell(columns.name, columns.value);
         value(ui, theme, first, id.with("little"), &format!("{name} {little}"), row.little.as_deref());
         let second = cell(columns.name + columns.value, columns.value);
@@ -121,14 +121,14 @@ fn show_tooltip(theme: &Theme, response: Response, shown: &str, cut: bool, copie
         if cut {
             ui.label(theme.monospace(shown));
         }
-        let words = if copied { theme.say("widget.typed_copied") } else { theme.say("widget.typed_copy") };
+        let words = if copied { theme.translate("widget.typed_copied") } else { theme.translate("widget.typed_copy") };
         ui.label(theme.caption(words));
     });
 }
 
 fn is_copied(ui: &Ui, id: Id) -> bool {
     let Some(then) = ui.data(|data| data.get_temp::<f64>(id)) else { return false };
-    let left = then + COPIED - ui.input(|input| input.time);
+    let left = then + COPIED_MARK_S - ui.input(|input| input.time);
     if left > 0.0 {
         ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
     }
@@ -144,8 +144,8 @@ fn name(theme: &Theme, kind: TypedKind) -> String {
         TypedKind::U32 => "u32",
         TypedKind::I32 => "i32",
         TypedKind::F32 => "f32",
-        TypedKind::Binary => return theme.say("widget.typed_binary"),
-        TypedKind::Text => return theme.say("widget.typed_text"),
+        TypedKind::Binary => return theme.translate("widget.typed_binary"),
+        TypedKind::Text => return theme.translate("widget.typed_text"),
     };
     name.to_owned()
 }

@@ -1,6 +1,6 @@
 //! The kind's part of the command line.
 
-use encoder_studio::app::Given;
+use encoder_studio::app::TypeMap;
 use encoder_studio::cli::{
     Command, CommonArgs, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs,
     SaveArgs, SimulateArgs, Simulated, UnrestoredItems, check_wear, confirm_plan, plan, profile_to_restore, readings,
@@ -22,7 +22,7 @@ impl Runs for Novo {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &NovoCommands;
 
-    fn begin(_: &mut Session<Self>, _: &Given) {}
+    fn begin(_: &mut Session<Self>, _: &TypeMap) {}
 
     fn step(item: &usize) -> String {
         name_of(*item).to_owned()

@@ -29,18 +29,18 @@ impl Kind for Novo {
         match job {
             Job::Survey => Text::new("job.survey"),
             Job::Position => Text::new("job.position"),
-            Job::Prepare(change) => Text::new("job.prepare").with_text("change", Self::change(change)),
+            Job::Prepare(change) => Text::new("job.prepare").with_text("change", Self::change_title(change)),
             Job::Commit(_) => Text::new("job.write"),
         }
     }
-    fn writes(job: &Job) -> bool {
+    fn writes_memory(job: &Job) -> bool {
         matches!(job, Job::Commit(_))
     }
-    fn survey() -> Job {
+    fn survey_job() -> Job {
         Job::Survey
     }
     fn step_text(item: &usize) -> Text {
-        explain::plain(name_of(*item))
+        explain::literal_text(name_of(*item))
     }
     fn result_texts(output: &Output) -> Option<(Severity, Vec<Text>)> {
         let Output::Committed(committed) = output else { return None };
@@ -51,13 +51,13 @@ impl Kind for Novo {
             (JobError::NotStarted(why), _) => explain::not_started_text(why),
             (_, Some(Error::Cancelled)) => Text::new("encoder.cancelled"),
             (_, Some(Error::Silent)) => TEXTS.text("novo.silent"),
-            (_, Some(Error::Link(error))) => explain::link(error),
-            _ => explain::plain(error),
+            (_, Some(Error::Link(error))) => explain::link_error_text(error),
+            _ => explain::literal_text(error),
         }]
     }
     fn connection_error(error: &JobError) -> Option<Text> {
         let Some(Error::Link(error)) = error.device() else { return None };
-        Some(explain::link(error))
+        Some(explain::link_error_text(error))
     }
 }
 
@@ -67,15 +67,15 @@ impl DeviceType for Encoder {
     type Form = NovoForm;
     type Tables = ();
 
-    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         jobs::check(url)
     }
     fn secret_parameters() -> Vec<&'static str> {
         Virtual::SECRETS.to_vec()
     }
-    fn tables(_: &Store) {}
+    fn load_tables(_: &Store) {}
 
-    fn begin(session: Session<Novo>, profile: Option<(&NovoProfile, ())>, _: &mut Services) -> Self {
+    fn create(session: Session<Novo>, profile: Option<(&NovoProfile, ())>, _: &mut Services) -> Self {
         let mut own = Encoder::with(session);
         profile.into_iter().for_each(|(profile, ())| own.take(profile.clone()));
         own
@@ -91,7 +91,7 @@ pub(crate) struct NovoForm {
 impl FormModel for NovoForm {
     type Finder = NoFinder<Self>;
 
-    fn usual() -> LinkUrl {
+    fn default_link() -> LinkUrl {
         LinkUrl::sim()
     }
     fn from_url(url: &LinkUrl) -> Self {
@@ -102,7 +102,7 @@ impl FormModel for NovoForm {
         jobs::check(&url).map_err(|error| explain::open(&error))?;
         Ok(url)
     }
-    fn example(&self) -> &'static str {
+    fn example_link(&self) -> &'static str {
         "tcp:192.168.0.7:4001"
     }
 }

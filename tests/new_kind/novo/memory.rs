@@ -17,43 +17,47 @@ impl Reviewable for Novo {
     type Prepared = Prepared;
     type Written = WrittenChanges;
 
-    fn change(change: &Change) -> Text {
+    fn change_title(change: &Change) -> Text {
         match change.restored {
             Some(serial) => TEXTS.text("novo.restore").with("serial", serial),
             None => TEXTS.text("novo.write"),
         }
     }
-    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+    fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         change.restored?;
-        permit.option(&mut change.options)
+        permit.restore_option(&mut change.options)
     }
-    fn op(_: &Prepared, op: &Op) -> OperationTexts {
-        OperationTexts::one(explain::plain(op.name()), explain::plain(op.from), explain::plain(op.to))
+    fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
+        OperationTexts::single(
+            explain::literal_text(op.name()),
+            explain::literal_text(op.from),
+            explain::literal_text(op.to),
+        )
     }
-    fn cost(prepared: &Prepared) -> Text {
+    fn cost_text(prepared: &Prepared) -> Text {
         TEXTS.text("novo.cost").with("cycles", prepared.plan.write_cycles())
     }
-    fn written(written: &WrittenChanges) -> Text {
+    fn written_text(written: &WrittenChanges) -> Text {
         TEXTS.text("novo.written").with("count", written.verified)
     }
 }
 
 impl HasDraft for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
+    fn device_key(&self) -> Option<DeviceKey> {
         self.read().map(|own| device_key(own.serial, self.session.is_virtual()))
     }
-    fn edited(&self) -> Vec<(usize, u16)> {
+    fn current_edits(&self) -> Vec<(usize, u16)> {
         self.staged.iter().collect()
     }
     fn take_edits(&mut self, edits: Vec<(usize, u16)>) {
-        self.staged.set(edits);
+        self.staged.edit_values(edits);
     }
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<NovoProfile>().cloned() else { return };
         self.take(profile);
         self.session.apply_document(file, document);
     }
-    fn pending(&self) -> &dyn PendingEdits {
+    fn pending_edits(&self) -> &dyn PendingEdits {
         &self.staged
     }
     fn pending_mut(&mut self) -> &mut dyn PendingEdits {
@@ -69,15 +73,15 @@ impl HasMemory for Encoder {
     fn is_for_other_device(&self, change: &Change) -> bool {
         change.restored.zip(self.read()).is_some_and(|(of, own)| of != own.serial)
     }
-    fn prepare(change: Change) -> Job {
+    fn prepare_job(change: Change) -> Job {
         Job::Prepare(change)
     }
-    fn commit(&mut self, agreed: ApprovedPlanOf<Novo>) -> Job {
+    fn commit_job(&mut self, agreed: ApprovedPlanOf<Novo>) -> Job {
         Job::Commit(Box::new(agreed))
     }
     fn discard_device_data(&mut self) {
         self.staged.clear();
-        self.track.forget();
+        self.track.clear_unless_long();
     }
 }
 

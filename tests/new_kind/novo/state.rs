@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use encoder_studio::app::session::{EarlyEnd, HasDraft, HasMemory, HasProfile, HasSession, Session, SessionEvents};
-use encoder_studio::app::track::{DeviceRecorder, Meaning, PositionSample};
+use encoder_studio::app::track::{DeviceRecorder, PositionSample, PositionScales};
 use encoder_studio::app::{
     ActionContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobState, OpenedConnection,
     PendingEdits, Recording, Services, Tab, Text,
@@ -38,7 +38,7 @@ impl DeviceAction for Action {}
 pub(crate) struct Own(Option<NovoProfile>);
 
 impl EditBase for Own {
-    type Place = usize;
+    type Location = usize;
     type Value = u16;
 
     fn is_edit(&self, item: usize, value: u16) -> bool {
@@ -69,7 +69,7 @@ impl Encoder {
         self.staged.base().0.as_ref()
     }
     pub(super) fn take(&mut self, read: NovoProfile) {
-        self.staged.reread(|own| own.0 = Some(read));
+        self.staged.update_base(|own| own.0 = Some(read));
     }
     fn see(&mut self, samples: &[Sample], dropped: u64) {
         let sighting = |(at, position): &Sample| PositionSample {
@@ -79,9 +79,9 @@ impl Encoder {
             is_warned: false,
         };
         self.track.record_dropped(dropped);
-        self.track.add(
+        self.track.add_positions(
             &samples.iter().map(sighting).collect::<Vec<_>>(),
-            &Meaning::for_steps_per_turn(Some(65536), TURN.into()),
+            &PositionScales::for_steps_per_turn(Some(65536), TURN.into()),
         );
         self.last = samples.last().copied().or(self.last);
     }
@@ -122,11 +122,11 @@ impl SessionEvents for Encoder {
     fn message_received(&mut self, remark: Infallible, _: &mut Services) {
         match remark {}
     }
-    fn finished(&mut self, output: Output, services: &mut Services) {
+    fn handle_finished_job(&mut self, output: Output, services: &mut Services) {
         match output {
             Output::Surveyed(read) => self.surveyed(read, services),
             Output::Position(sample) => self.see(&[sample], 0),
-            Output::Prepared(prepared) => self.planned(prepared, services),
+            Output::Prepared(prepared) => self.adopt_plan(prepared, services),
             Output::Committed(committed) => self.handle_commit_end(*committed, services),
         }
     }
@@ -144,24 +144,24 @@ impl SessionEvents for Encoder {
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Novo");
     type Action = Action;
-    type Done = Infallible;
+    type TaskResult = Infallible;
 
     fn connect(&mut self, opened: OpenedConnection<Novo>, services: &mut Services) {
-        self.let_go(JobState::Cancelled, services);
-        self.track.begin(&opened.began);
+        self.release_thread(JobState::Cancelled, services);
+        self.track.begin_session(&opened.began);
         self.session.attach_connection(opened, services);
         self.submit(Job::Survey, services);
     }
-    fn act(&mut self, Action::Set(item, value): Action, _: &mut ActionContext<'_>) {
-        self.staged.set([(item, value)]);
+    fn handle_action(&mut self, Action::Set(item, value): Action, _: &mut ActionContext<'_>) {
+        self.staged.edit_values([(item, value)]);
     }
-    fn done(&mut self, done: Infallible, _: &mut Services) {
+    fn handle_result(&mut self, done: Infallible, _: &mut Services) {
         match done {}
     }
     fn position_job(&self) -> Job {
         Job::Position
     }
-    fn record(&self) -> &dyn Recording {
+    fn recording(&self) -> &dyn Recording {
         &self.track
     }
     fn record_mut(&mut self) -> &mut dyn Recording {

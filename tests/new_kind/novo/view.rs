@@ -48,7 +48,7 @@ impl TypedDeviceView for NovoView {
         (page, typed): (Page, &mut Typed),
         actions: &mut Vec<StudioAction>,
     ) {
-        page::scrollable_page(ui, theme, (device.id(), page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (device.id(), page.index()), |ui| match page {
             Page::Backups => backups::page_ui(ui, theme, device, actions),
             Page::Values => {
                 card(ui, theme, TEXTS.text("novo.values"), |ui| {
@@ -56,7 +56,7 @@ impl TypedDeviceView for NovoView {
                         let shown = encoder.wanted().map_or(String::new(), |values| values[item].to_string());
                         entry(ui, theme, name, |ui| {
                             committed_entry(ui, typed, &shown, 96.0, name, |text| {
-                                let value = text.parse().map_err(|_| explain::plain(text))?;
+                                let value = text.parse().map_err(|_| explain::literal_text(text))?;
                                 actions.push(StudioAction::device(device.id(), Action::Set(item, value)));
                                 Ok(())
                             })
@@ -87,7 +87,7 @@ impl TypedConnectForm for NovoConnectForm {
         _: (&mut (), &mut bool),
         _: &mut Vec<StudioAction>,
     ) {
-        let word = theme.words(&TEXTS.text("novo.link"));
+        let word = theme.format_text(&TEXTS.text("novo.link"));
         entry(ui, theme, &word, |ui| text_entry(ui, &mut form.link, 300.0, &word, "sim:"));
     }
 }

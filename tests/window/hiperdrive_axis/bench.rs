@@ -80,10 +80,12 @@ pub(super) fn new_form(link: &str) -> Desk {
 #[track_caller]
 pub(super) fn consent(desk: &mut Desk) {
     desk.until("the plan is there", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     until_ready(desk);
-    let Stage::Ready(plan) = desk.studio.selected_device().unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    let Stage::Ready(plan) = desk.studio.selected_device().unwrap().review_sheet().unwrap().stage else {
+        panic!("no plan")
+    };
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
@@ -93,7 +95,7 @@ pub(super) fn consent(desk: &mut Desk) {
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
     desk.until("it is written", |studio| {
-        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+        studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
     });
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Close));
@@ -168,7 +170,11 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         run(desk, Run::Press(AxisButton::Do));
         consent(desk);
         desk.until("it has failed", |studio| {
-            studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
+            studio
+                .selected_device()
+                .unwrap()
+                .review_sheet()
+                .is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
         });
         target.with(|station| station.set_write_fault(None));
         let id = unit(desk).session.id;

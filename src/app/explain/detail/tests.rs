@@ -7,9 +7,9 @@ use crate::link::{LinkUrl, read_trace};
 /// Checks that English equals the message of the lower layer, and German does not.
 #[track_caller]
 pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
-    assert_eq!(text.words(English), error.to_string());
+    assert_eq!(text.to_string_in(English), error.to_string());
     assert_eq!(text.terminal_text(), error.to_string());
-    let german = text.words(German);
+    let german = text.to_string_in(German);
     assert_ne!(german, error.to_string());
     for english in [" is ", " must ", " from ", " to ", " the ", " or ", " and ", " of ", " a "] {
         assert!(!format!(" {german} ").contains(english), "{german}");
@@ -23,8 +23,8 @@ fn link_errors_are_explained_in_both_languages() {
         check(&url(&error), &error);
     }
     let error = UrlError::Device { scheme: "bridge", known: "sim:, serial:, tcp:, replay:" };
-    assert_eq!(url(&error).words(English), error.to_string());
-    assert_ne!(url(&error).words(German), error.to_string());
+    assert_eq!(url(&error).to_string_in(English), error.to_string());
+    assert_ne!(url(&error).to_string_in(German), error.to_string());
     let known = "baud, parity".to_owned();
     let error = UrlError::Unknown { name: "bad".to_owned(), scheme: "serial", known };
     check(&url(&error), &error);
@@ -34,7 +34,7 @@ fn link_errors_are_explained_in_both_languages() {
 fn recording_and_logbook_errors_are_explained_in_both_languages() {
     for text in ["", "# encoder-studio trace 1\n0.1 = 40", "# encoder-studio trace 1\n1 > 4G"] {
         let error = read_trace(text).unwrap_err();
-        check(&recording(&error), &error);
+        check(&trace_error_text(&error), &error);
     }
     let problems = [
         LogbookErrorKind::NoAccess,

@@ -84,7 +84,7 @@ mod tests {
         let words = |code: u8, language| {
             let text = "streaming".to_owned();
             let code = ErrorCode::new(code);
-            adapter(&AdapterError::Refused { operation: Operation::BissConfig, code, text }).words(language)
+            adapter(&AdapterError::Refused { operation: Operation::BissConfig, code, text }).to_string_in(language)
         };
         let mut said: Vec<String> = (0..=7).map(|code| words(code, English)).collect();
         assert!(said.iter().all(|words| words.contains("0x20") && words.contains("streaming")), "{said:?}");
@@ -112,7 +112,7 @@ mod tests {
             (AdapterError::Other { requested: Operation::Hello, got: Operation::Supply }, "0x02"),
         ];
         for (error, fact) in cases {
-            let (english, german) = (adapter(&error).words(English), adapter(&error).words(German));
+            let (english, german) = (adapter(&error).to_string_in(English), adapter(&error).to_string_in(German));
             assert!(english.contains(fact) && german.contains(fact), "{english} {german}");
             assert_ne!(english, german);
         }

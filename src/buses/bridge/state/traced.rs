@@ -1,6 +1,6 @@
 //! Descriptions of the packets to and from an adapter, for any bus behind it.
 
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
@@ -13,14 +13,14 @@ pub fn packet(bytes: &[u8]) -> Option<Packet> {
 
 /// Explains a received packet if it is damaged or a refusal. For other packets, the result is `None`.
 pub fn received(bytes: &[u8]) -> Option<FrameExplanation> {
-    let Some(packet) = packet(bytes) else { return Some(FrameExplanation::broken(TEXTS.text("trace.no_packet"))) };
+    let Some(packet) = packet(bytes) else { return Some(FrameExplanation::from_error(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
         Ok(Message::Error { .. }) => {
             let meaning: Vec<Text> = message_text(&packet).into_iter().collect();
             Some(FrameExplanation { fault: Some(TraceFault::Reported), ..meaning.into() })
         }
         Ok(_) => None,
-        Err(error) => Some(FrameExplanation::broken(plain(error))),
+        Err(error) => Some(FrameExplanation::from_error(literal_text(error))),
     }
 }
 
@@ -35,11 +35,11 @@ pub fn request_text(request: &Request) -> Text {
 /// Describes a packet of an adapter, or returns `None` if it is not a valid message.
 pub fn message_text(packet: &Packet) -> Option<Text> {
     Some(match Message::parse(packet).ok()? {
-        Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => plain(format!("0x{raw:X}")),
+        Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => literal_text(format!("0x{raw:X}")),
         Message::Reply(Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value }) => {
-            plain(format!("0x{value:02X}"))
+            literal_text(format!("0x{value:02X}"))
         }
-        Message::Reply(Reply::Hello(hello)) => plain(format!("{} {}", hello.name, hello.firmware)),
+        Message::Reply(Reply::Hello(hello)) => literal_text(format!("{} {}", hello.name, hello.firmware)),
         Message::Reply(_) => Text::new("trace.taken"),
         Message::Error { text, .. } => TEXTS.text("trace.adapter_refuses").with("why", text),
         Message::Data(_) => TEXTS.text("trace.stream"),

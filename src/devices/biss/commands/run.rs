@@ -1,7 +1,7 @@
 //! Running jobs on a BiSS encoder, with their messages.
 
 use super::BissCommands;
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected_output};
@@ -20,7 +20,7 @@ impl Runs for Biss {
     type Context = Transport;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &Given) -> Transport {
+    fn begin(session: &mut Session<Self>, _given: &TypeMap) -> Transport {
         session.station().transport
     }
 

@@ -25,7 +25,7 @@ impl Encoder {
         let services = &mut *context.services;
         match action {
             BissAction::PlanMounting { mut run, motor, data } => {
-                let profile = data.map_or(Ok(None), |id| context.profile_of(id));
+                let profile = data.map_or(Ok(None), |id| context.edited_profile_of(id));
                 match profile {
                     Ok(profile) => {
                         run.data = profile.and_then(|body| body.into_profile().ok()).map(Box::new);
@@ -74,7 +74,7 @@ impl Encoder {
     pub(super) fn update_watches(&mut self) {
         let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
         if let Some(line) = &self.session.line {
-            line.watch(ranges.map(|range| (range, WATCHED_EVERY)).collect());
+            line.watch_values(ranges.map(|range| (range, WATCHED_EVERY)).collect());
         }
     }
 
@@ -117,11 +117,11 @@ impl Encoder {
 
     fn put(&mut self, start: RegisterAddress, bytes: &[u8], services: &mut Services) {
         if self.session.is_writing() {
-            return self.session.refuse(Text::new("session.busy"), services);
+            return self.session.report_rejection(Text::new("session.busy"), services);
         }
         let Some(description) = self.description.clone() else { return };
         if let Err(error) = self.memory.put(&description, start, bytes) {
-            self.session.refuse(words::edit_error_text(error), services);
+            self.session.report_rejection(words::edit_error_text(error), services);
         }
     }
 

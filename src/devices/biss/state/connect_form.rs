@@ -2,9 +2,9 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
+use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
 use crate::app::connect::target::{
-    checked, entered, for_adapter, host_and_port, network_address_of_adapter, split_target,
+    for_adapter, host_and_port, network_address_of_adapter, required_entry, split_target, validated_link,
 };
 use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::SupplyAfterSession;
@@ -49,7 +49,7 @@ pub struct BissForm {
     /// Whether the adapter leaves the encoder's supply on after disconnecting.
     pub leave_supply: bool,
     /// Values typed for the other parameters.
-    pub typed: Typed,
+    pub typed: EnteredValues,
     /// Link parameters that have no form field.
     pub rest: Vec<(String, String)>,
 }
@@ -72,7 +72,7 @@ impl Default for BissForm {
             order: None,
             echo: Echo::Unknown,
             leave_supply: false,
-            typed: Typed::default(),
+            typed: EnteredValues::default(),
             rest: Vec::new(),
         }
     }
@@ -82,7 +82,7 @@ impl FormModel for BissForm {
     type Finder = NoFinder<Self>;
 
     // The first choice in the window is a virtual encoder behind an adapter, so that every feature is visible.
-    fn usual() -> LinkUrl {
+    fn default_link() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set(BRIDGE.0, BRIDGE.1);
         url
@@ -115,14 +115,14 @@ impl FormModel for BissForm {
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check)
     }
 
     fn set_file(&mut self, file: String) {
         self.file = file;
     }
 
-    fn example(&self) -> &'static str {
+    fn example_link(&self) -> &'static str {
         if self.uses_bus() { PORT_EXAMPLE.bridge } else { PORT_EXAMPLE.serial }
     }
 }
@@ -140,7 +140,7 @@ impl BissForm {
                 self.behind_adapter
             }
             "parity" | "order" | "echo" => self.set_choice(name, value),
-            _ => self.typed.take(&self.entries(), name, value),
+            _ => self.typed.fill_entry(&self.entries(), name, value),
         }
     }
 
@@ -186,14 +186,14 @@ impl BissForm {
     }
 
     fn target(&self) -> Result<(LinkScheme, String), Text> {
-        let port = || entered(&self.port, "form.port_missing");
+        let port = || required_entry(&self.port, "form.port_missing");
         Ok(match self.kind {
             BissLinkKind::Virtual => (LinkScheme::Sim, String::new()),
             BissLinkKind::Pin if self.network => (LinkScheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
             BissLinkKind::Pin => (LinkScheme::Serial, port()?),
             BissLinkKind::Bus if self.network => (LinkScheme::Bridge, for_adapter(&self.host, &self.tcp_port)?),
             BissLinkKind::Bus => (LinkScheme::Bridge, port()?),
-            BissLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
+            BissLinkKind::Replay => (LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?),
         })
     }
 
@@ -203,15 +203,15 @@ impl BissForm {
             parameters.set(BRIDGE.0, BRIDGE.1);
         }
         if self.kind == BissLinkKind::Virtual {
-            parameters.typed(&Self::virtual_device_entries(), &self.typed);
+            parameters.add_entered(&Self::virtual_device_entries(), &self.typed);
         }
         if self.uses_bus() {
-            parameters.typed(&Self::bus_entries(), &self.typed);
+            parameters.add_entered(&Self::bus_entries(), &self.typed);
             if self.leave_supply {
                 parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
             }
         } else {
-            parameters.typed(&PinParameters::entries(), &self.typed);
+            parameters.add_entered(&PinParameters::entries(), &self.typed);
             if self.parity != FORMAT.parity {
                 parameters.set("parity", self.parity.word());
             }
@@ -223,8 +223,8 @@ impl BissForm {
             }
         }
         let (frame, line) = Self::common_entries();
-        parameters.typed(&[frame, line].concat(), &self.typed);
-        parameters.rest(&self.rest, |name| self.has_parameter(name));
+        parameters.add_entered(&[frame, line].concat(), &self.typed);
+        parameters.add_others(&self.rest, |name| self.has_parameter(name));
         parameters
     }
 
@@ -273,8 +273,8 @@ mod tests {
             let url: LinkUrl = link.parse().unwrap();
             assert_eq!(BissForm::from_url(&url).url().unwrap().to_string(), link);
         }
-        assert_eq!(BissForm::usual().to_string(), "sim:?bridge=on");
-        assert_eq!(BissForm::default().url().unwrap(), BissForm::usual());
+        assert_eq!(BissForm::default_link().to_string(), "sim:?bridge=on");
+        assert_eq!(BissForm::default().url().unwrap(), BissForm::default_link());
     }
 
     #[test]

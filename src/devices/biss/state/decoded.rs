@@ -5,8 +5,8 @@ use super::encoder::Encoder;
 use super::table::RegisterEntry;
 use super::words;
 use crate::app::Text;
-use crate::app::explain::plain;
-use crate::app::number::decimals;
+use crate::app::explain::literal_text;
+use crate::app::number::decimal_places;
 use crate::devices::biss::protocol::{Decoded, Eds, EdsBank, ProfileId, Register, RegisterAddress, Role};
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
@@ -26,13 +26,14 @@ impl Encoder {
             Decoded::Number(_) | Decoded::Hex(_) => return self.data_sheet_meaning(register, bytes),
             Decoded::Bits(set) if set.is_empty() => TEXTS.text("registers.no_bit"),
             Decoded::Bits(set) => {
-                let named =
-                    |(bit, name): (u8, Option<_>)| name.map_or_else(|| plain(format!("b{bit}")), explained::name);
+                let named = |(bit, name): (u8, Option<_>)| {
+                    name.map_or_else(|| literal_text(format!("b{bit}")), explained::name)
+                };
                 Text::new("plain.words").with_list("words", set.into_iter().map(named))
             }
             Decoded::Choice(_, Some(name)) => explained::name(name),
             Decoded::Choice(_, None) => TEXTS.text("registers.unknown_value"),
-            Decoded::Text(text) => plain(text),
+            Decoded::Text(text) => literal_text(text),
         })
     }
 
@@ -53,7 +54,7 @@ impl Encoder {
             }
             (Role::DeviceId, bytes) => {
                 let is_own = description.identity()?.device_id == bytes;
-                Some(if is_own { plain(description.name()) } else { TEXTS.text("registers.other_device") })
+                Some(if is_own { literal_text(description.name()) } else { TEXTS.text("registers.other_device") })
             }
             _ => None,
         }
@@ -84,7 +85,7 @@ impl Encoder {
 /// Formats a quantity with its unit and at most three decimals.
 fn quantity(value: f64, unit: &str) -> Text {
     let value = (value * 1000.0).round() / 1000.0;
-    TEXTS.text("registers.quantity").with_number("value", value, decimals(value)).with("unit", unit)
+    TEXTS.text("registers.quantity").with_number("value", value, decimal_places(value)).with("unit", unit)
 }
 
 #[cfg(test)]
@@ -103,7 +104,7 @@ mod tests {
         let group = &encoder.table.groups()[encoder.table.position(at.bank()).unwrap()];
         let row = group.rows().iter().position(|row| row.register.address == at).unwrap();
         let shown = group.entry(row, &encoder.memory).unwrap();
-        encoder.meaning(&shown).map(|text| text.words(language)).unwrap_or_default()
+        encoder.meaning(&shown).map(|text| text.to_string_in(language)).unwrap_or_default()
     }
 
     /// Covers every register in reference 4 whose raw number does not explain itself.

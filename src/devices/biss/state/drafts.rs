@@ -26,11 +26,11 @@ impl HasSession for Encoder {
 }
 
 impl HasDraft for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
+    fn device_key(&self) -> Option<DeviceKey> {
         self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 
-    fn edited(&self) -> Edits {
+    fn current_edits(&self) -> Edits {
         self.memory.edits()
     }
 
@@ -38,7 +38,7 @@ impl HasDraft for Encoder {
         self.memory.take_draft(edits);
     }
 
-    fn pending(&self) -> &dyn PendingEdits {
+    fn pending_edits(&self) -> &dyn PendingEdits {
         &self.memory
     }
 

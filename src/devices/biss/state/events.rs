@@ -36,11 +36,11 @@ impl Kind for Biss {
         words::job(job)
     }
 
-    fn writes(job: &BissJob) -> bool {
+    fn writes_memory(job: &BissJob) -> bool {
         matches!(job, BissJob::Commit(_) | BissJob::LeadBack)
     }
 
-    fn survey() -> BissJob {
+    fn survey_job() -> BissJob {
         BissJob::Survey
     }
 
@@ -76,7 +76,7 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
+    fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.meaning.of(frame)
     }
 
@@ -94,7 +94,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    fn finished(&mut self, output: BissOutput, services: &mut Services) {
+    fn handle_finished_job(&mut self, output: BissOutput, services: &mut Services) {
         match output {
             BissOutput::Surveyed(survey) => {
                 self.apply_survey(*survey, services);
@@ -122,7 +122,7 @@ impl SessionEvents for Encoder {
                 }
             }
             BissOutput::Saved(profile) => self.saved(*profile, services),
-            BissOutput::Prepared(prepared) => self.planned(prepared, services),
+            BissOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             BissOutput::Committed(committed) => {
                 self.log_outcomes(&committed.written.outcomes, services);
                 self.handle_commit_end(*committed, services);
@@ -171,9 +171,9 @@ impl SessionEvents for Encoder {
         self.session.submit(job, services)
     }
 
-    fn let_go(&mut self, end: JobState, services: &mut Services) {
+    fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.motor = None;
         self.discard_requests();
-        self.session.let_go(end, services);
+        self.session.release_thread(end, services);
     }
 }

@@ -22,7 +22,7 @@ pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
 
 use crate::app::Text;
-use crate::app::explain::{self as general, link, not_started_text, syntax};
+use crate::app::explain::{self as general, link_error_text, not_started_text, syntax_error_text};
 use crate::buses::bridge::state::adapter;
 use crate::devices::biss::jobs::{DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Error, RequestedItem};
@@ -49,7 +49,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// Returns the reason for a lost connection, or `None` if further requests are possible.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
-    lost(error.device()?).map(link)
+    lost(error.device()?).map(link_error_text)
 }
 
 fn lost(error: &Error) -> Option<&LinkError> {
@@ -62,7 +62,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
 
 pub fn encoder(error: &Error) -> Text {
     match error {
-        Error::Link(error) => link(error),
+        Error::Link(error) => link_error_text(error),
         Error::Adapter(error) => adapter(error),
         Error::NoReply { requested, tries, echo_heard } => {
             let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
@@ -200,13 +200,13 @@ pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
 
 /// Returns the message for a user-supplied description that cannot be read or used.
 fn description(error: &StoreError) -> Text {
-    let StoreError::Refused(cause) = error else { return general::store(error) };
+    let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<DescriptionError>() {
         Some(DescriptionError { file, line, column, problem: what }) => TEXTS
             .text("store.description")
             .with("path", file)
-            .with_text("why", syntax(*line, *column, flaw::description_problem_text(what))),
-        None => general::store(error),
+            .with_text("why", syntax_error_text(*line, *column, flaw::description_problem_text(what))),
+        None => general::store_error_text(error),
     }
 }
 
@@ -265,12 +265,12 @@ mod tests {
         ];
         for (error, facts) in cases {
             for language in [English, German] {
-                let words = encoder(&error).words(language);
+                let words = encoder(&error).to_string_in(language);
                 assert!(facts.iter().all(|fact| words.contains(fact)), "{words}");
                 assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
                 assert!(!words.contains('{') && words.ends_with('.'), "{words}");
             }
-            assert_ne!(encoder(&error).words(English), encoder(&error).words(German));
+            assert_ne!(encoder(&error).to_string_in(English), encoder(&error).to_string_in(German));
         }
     }
 

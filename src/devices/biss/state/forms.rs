@@ -1,7 +1,7 @@
 //! Form fields of the procedures and the conversion of their values.
 
 use crate::app::Text;
-use crate::app::number::{whole, within};
+use crate::app::number::{parse_in_range, parse_integer};
 use crate::devices::biss::protocol::{Layout, PresetValue};
 use crate::devices::biss::state::TEXTS;
 
@@ -30,7 +30,7 @@ impl PresetForm {
     /// # Errors
     /// Returns a message with the valid range if the entry is invalid.
     pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
-        let degrees = within(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
+        let degrees = parse_in_range(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
         // The result is less than the step count and fits into 32 bits.
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
@@ -42,7 +42,7 @@ impl PresetForm {
     /// Returns a message with the valid range if the entry is invalid.
     pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
-        whole(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
+        parse_integer(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
     /// Returns the preset value that both fields define.

@@ -24,19 +24,19 @@ impl DeviceType for Encoder {
     type Form = BissForm;
     type Tables = Descriptions;
 
-    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
     }
 
-    fn explain(cause: &Cause) -> Option<Text> {
+    fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
 
-    fn tables(store: &Store) -> Self::Tables {
+    fn load_tables(store: &Store) -> Self::Tables {
         load_descriptions(store).0
     }
 
-    fn begin(session: Session<Biss>, profile: Option<(&BissProfile, Descriptions)>, _: &mut Services) -> Self {
+    fn create(session: Session<Biss>, profile: Option<(&BissProfile, Descriptions)>, _: &mut Services) -> Self {
         let mut encoder = Encoder::with(session);
         if let Some((profile, tables)) = profile {
             let described = tables.named(&profile.identity.description).or_else(|| tables.iter().last()).cloned();

@@ -25,7 +25,7 @@ impl Encoder {
         let operations = prepared.plan.ops.iter().flat_map(|op| match op {
             // A run of consecutive registers is represented by the first one only.
             Op::StoreData { .. } => {
-                op.changed_items(&identity.description).iter().map(explain::plain).collect::<Vec<_>>()
+                op.changed_items(&identity.description).iter().map(explain::literal_text).collect::<Vec<_>>()
             }
             op => {
                 let OperationTexts { item, changes } = words::op(op, &identity.layout);
@@ -33,12 +33,12 @@ impl Encoder {
             }
         });
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
-        services.note(Severity::Note, vec![text], Some(&self.session.name()));
+        services.log_only(Severity::Note, vec![text], Some(&self.session.name()));
     }
 
     pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
         for outcome in outcomes {
-            services.note(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
+            services.log_only(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
         }
     }
 }
@@ -65,7 +65,7 @@ fn transport_text(identity: &Identity) -> Text {
 }
 
 fn identity_text(identity: &Identity) -> Text {
-    let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
+    let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::literal_text);
     TEXTS
         .text("log.identity")
         .with("profile", identity.kind.profile)

@@ -1,7 +1,7 @@
 //! The meaning of frames in the trace. To decode a reply, the preceding request must be known. To decode a register
 //! access over the bus, the selected bank must be known.
 
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol as bridge;
@@ -26,7 +26,9 @@ pub(super) struct Meaning {
 
 impl Meaning {
     pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
-        let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
+        let Some(bytes) = entry.bytes.to_bytes() else {
+            return FrameExplanation::from_error(Text::new("trace.hidden"));
+        };
         let meaning = match entry.direction {
             Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
             Direction::Sent => {
@@ -57,7 +59,7 @@ impl Meaning {
     /// Decodes bytes received over the configuration pin after a request. After a damaged part, the reply may still
     /// follow.
     fn reply(&mut self, bytes: &[u8]) -> FrameExplanation {
-        let broken = |damage| FrameExplanation::broken(words::damage_text(&damage));
+        let broken = |damage| FrameExplanation::from_error(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
         let Some(requested) = self.requested else { return FrameExplanation::default() };
         let reply = match Reply::parse(&frame, requested.command()) {
@@ -66,7 +68,7 @@ impl Meaning {
         };
         self.requested = None;
         let text = match reply {
-            Reply::Value(value) => plain(format!("0x{value:02X}")),
+            Reply::Value(value) => literal_text(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
             Reply::Written(Written::Refused) => {
                 return FrameExplanation {
@@ -74,8 +76,8 @@ impl Meaning {
                     ..vec![TEXTS.text("trace.refused")].into()
                 };
             }
-            Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
-            Reply::Position(word) => plain(format!("0x{:X}", word.word())),
+            Reply::Written(Written::Unknown(code)) => literal_text(format!("0x{code:02X}")),
+            Reply::Position(word) => literal_text(format!("0x{:X}", word.word())),
         };
         vec![text].into()
     }
@@ -127,7 +129,7 @@ mod tests {
     fn decode(meaning: &mut Meaning, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
         let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
         let said = meaning.of(&TraceEntry { at: Moment::START, direction, bytes });
-        let words: Vec<String> = said.meaning.iter().map(|text| text.words(Language::English)).collect();
+        let words: Vec<String> = said.meaning.iter().map(|text| text.to_string_in(Language::English)).collect();
         (said.fault, words.join(" "))
     }
 

@@ -17,7 +17,7 @@ pub struct Registers {
 }
 
 impl EditBase for Registers {
-    type Place = RegisterAddress;
+    type Location = RegisterAddress;
     type Value = u8;
 
     fn is_edit(&self, at: RegisterAddress, byte: u8) -> bool {
@@ -43,7 +43,7 @@ pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 impl Memory {
     /// Stores bytes read from `start` onward. Edits are kept unless they equal the encoder's current values.
     pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
-        self.reread(|own| {
+        self.update_base(|own| {
             for (at, byte) in (start.global()..).zip(bytes) {
                 let Some(at) = RegisterAddress::from_global(at) else { break };
                 match own.read.insert(at, *byte) {
@@ -125,7 +125,7 @@ impl Memory {
             self.read(at).ok_or(MemoryError::NotRead(at))?;
             wanted.push((at, *byte));
         }
-        self.set(wanted);
+        self.edit_values(wanted);
         Ok(())
     }
 
@@ -160,7 +160,7 @@ impl Memory {
     /// Restores edits from a draft. Once the encoder's values have been read, edits that equal them are dropped.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
-        self.set(places);
+        self.edit_values(places);
     }
 }
 

@@ -12,10 +12,10 @@ use crate::devices::biss::jobs::{Biss, BissJob};
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Biss");
     type Action = BissAction;
-    type Done = Infallible;
+    type TaskResult = Infallible;
 
     fn connect(&mut self, opened: OpenedConnection<Biss>, services: &mut Services) {
-        self.let_go(JobState::Cancelled, services);
+        self.release_thread(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.session.attach_connection(opened, services);
@@ -23,11 +23,11 @@ impl DeviceModel for Encoder {
         self.submit(BissJob::Survey, services);
     }
 
-    fn act(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
+    fn handle_action(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context);
     }
 
-    fn done(&mut self, done: Infallible, _services: &mut Services) {
+    fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
     }
 
@@ -35,7 +35,7 @@ impl DeviceModel for Encoder {
         BissJob::Position
     }
 
-    fn record(&self) -> &dyn Recording {
+    fn recording(&self) -> &dyn Recording {
         &self.record
     }
 

@@ -7,9 +7,9 @@ use crate::devices::biss::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::recorder::{GroupId, Recorder, Scale, Series};
-use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, PositionSample, PositionScales, Watchable, WatchedValue};
 use crate::app::{Recording, Text};
 use crate::devices::biss::procedures::{ConsecutiveFrames, Error, PositionReading, Sample, WatchedReading};
 use crate::devices::biss::protocol::{Decoded, Register, ValueDecoding};
@@ -65,13 +65,13 @@ impl Streamed {
 impl Record {
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.crc_errors, self.stream) = (None, 0, None);
-        self.track.begin(began);
+        self.track.begin_session(began);
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
         match self.stream {
             // In a stream, dropped frames are counted by their sequence numbers.
-            Some(_) if dropped > 0 => self.track.gap(),
+            Some(_) if dropped > 0 => self.track.mark_gap(),
             _ => self.track.record_dropped(dropped),
         }
         // Thousands of positions per second with equal widths are recorded in batches.
@@ -116,7 +116,7 @@ impl Record {
         let missing = before.unwrap_or(run.lost);
         if run.is_stream_start() || missing > 0 {
             self.append(batch);
-            self.track.gap();
+            self.track.mark_gap();
         }
         self.lost += missing;
         let ConsecutiveFrames { period_ns, clock_hz, is_limited, .. } = *run;
@@ -146,9 +146,9 @@ impl Record {
         }
         let before = self.last.as_ref().map(Widths::from);
         // If nothing has been read in this session, the meaning from the previous session is kept.
-        let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::for_steps(None));
+        let unknown = || self.track.scales().cloned().unwrap_or_else(|| PositionScales::for_steps(None));
         let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
-        self.track.add(&batch.sightings, &meaning);
+        self.track.add_positions(&batch.sightings, &meaning);
         *batch = Batch::default();
     }
 
@@ -157,7 +157,7 @@ impl Record {
     }
 
     fn add_watched(&mut self, reading: &WatchedReading) {
-        let watched = self.track.watched().into_iter().find(|own| own.address == reading.range.start());
+        let watched = self.track.watched_values().into_iter().find(|own| own.address == reading.range.start());
         let Some(register) = watched else { return };
         let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
         let never = match &reading.value {
@@ -171,11 +171,11 @@ impl Record {
 
     /// Sets the registers to record along with the position, replacing the previous selection.
     pub(super) fn watch(&mut self, watched: &[Register]) {
-        self.track.watch(watched);
+        self.track.set_watched(watched);
     }
 
     pub fn watched(&self) -> Vec<Register> {
-        self.track.watched()
+        self.track.watched_values()
     }
 
     pub fn last(&self) -> Option<&PositionReading> {
@@ -193,11 +193,11 @@ impl Record {
     }
 
     pub fn positions(&self) -> u64 {
-        self.track.positions()
+        self.track.position_count()
     }
 
     pub(super) fn forget(&mut self) {
-        self.track.forget();
+        self.track.clear_unless_long();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
     }
 }
@@ -234,12 +234,12 @@ fn position_sample(reading: &PositionReading) -> PositionSample {
 }
 
 /// Returns the meaning of positions with the given multiturn and singleturn widths.
-fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning {
+fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> PositionScales {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {
-        return Meaning::for_steps(range);
+        return PositionScales::for_steps(range);
     }
-    Meaning::for_steps_per_turn(range, f64::from(singleturn).exp2())
+    PositionScales::for_steps_per_turn(range, f64::from(singleturn).exp2())
 }
 
 fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
@@ -254,12 +254,12 @@ impl Watchable for Register {
         !matches!(self.decoding, ValueDecoding::Scaled { .. })
     }
 
-    fn line(&self, group: GroupId) -> Series {
-        let name = if self.name.is_empty() { plain(self.address) } else { words::name(&self.name) };
-        let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { plain(&self.unit) };
+    fn create_series(&self, group: GroupId) -> Series {
+        let name = if self.name.is_empty() { literal_text(self.address) } else { words::name(&self.name) };
+        let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { literal_text(&self.unit) };
         let decimals = if self.is_whole() { 0 } else { 1 };
         let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();
-        Series::of(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
+        Series::new(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
     }
 }
 
@@ -315,7 +315,7 @@ mod tests {
     fn positions_with_unknown_split_are_recorded_in_steps() {
         let mut record = Record::default();
         let units = |record: &Record| -> Vec<String> {
-            let lines = record.recorder().lines();
+            let lines = record.recorder().series();
             lines.iter().flat_map(|line| line.scales().iter().map(|scale| scale.unit.id().to_owned())).collect()
         };
         record.add(vec![Sample::Frames(ConsecutiveFrames { is_split_known: false, ..run(0, 10, 0) })], 0);
@@ -341,7 +341,7 @@ mod tests {
         ] {
             let reading = WatchedReading { at: Moment::START, range: what, value: Err(error) };
             record.add(vec![Sample::Watched(reading)], 0);
-            let line = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
+            let line = record.recorder().series().iter().find(|line| line.heading.contains("temperature"));
             assert_eq!(line.unwrap().remark, said.map(|id| TEXTS.text(id)));
         }
     }

@@ -1,6 +1,6 @@
 //! Review of a write to a BiSS encoder: permissions, warnings and costs of the plan.
 
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
@@ -22,16 +22,16 @@ impl Reviewable for Biss {
     type Prepared = Prepared;
     type Written = Written;
 
-    fn change(change: &Change) -> Text {
+    fn change_title(change: &Change) -> Text {
         words::change(change)
     }
 
-    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+    fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
-        permit.option(options)
+        permit.restore_option(options)
     }
 
-    fn op(prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
         words::op(op, &prepared.identity.layout)
     }
 
@@ -40,7 +40,7 @@ impl Reviewable for Biss {
     }
 
     fn redo(prepared: &Prepared) -> Vec<Text> {
-        prepared.mounting_written.iter().map(explain::plain).collect()
+        prepared.mounting_written.iter().map(explain::literal_text).collect()
     }
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
@@ -54,10 +54,10 @@ impl Reviewable for Biss {
             warnings.push(Text::new("review.commutation"));
         }
         warnings.extend(prepared.unsaved.map(words::unsaved_profile_text_for_mode));
-        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        let mounting = prepared.mounting_left.iter().map(explain::literal_text).collect();
         warnings.extend(review::skipped_texts(
             TEXTS.text("biss_review.missing"),
-            prepared.missing.iter().map(plain).collect(),
+            prepared.missing.iter().map(literal_text).collect(),
             mounting,
         ));
         warnings
@@ -82,7 +82,7 @@ impl Reviewable for Biss {
         needs
     }
 
-    fn cost(prepared: &Prepared) -> Text {
+    fn cost_text(prepared: &Prepared) -> Text {
         let cycles = prepared.plan.write_cycles();
         if cycles == 0 {
             return TEXTS.text("biss_review.cost_nothing");
@@ -94,7 +94,7 @@ impl Reviewable for Biss {
         .with("limit", WEAR_LIMIT)
     }
 
-    fn written(written: &Written) -> Text {
+    fn written_text(written: &Written) -> Text {
         words::written(written)
     }
 

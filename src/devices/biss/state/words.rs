@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::memory::MemoryError;
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::biss::jobs::BissJob;
 use crate::devices::biss::protocol::{
     Description, Descriptions, EdsBank, EdsError, EdsField, EdsValue, PositionFilter, RegisterAddress, StatusBitMeaning,
@@ -51,7 +51,7 @@ pub fn sheet(error: &EdsError) -> Text {
             .text("sheet_card.bad_sum")
             .with("expected", format!("0x{expected:02X}"))
             .with("got", format!("0x{got:02X}")),
-        other => plain(other),
+        other => literal_text(other),
     }
 }
 
@@ -62,17 +62,17 @@ pub fn eds_value_text(value: EdsValue) -> Text {
         EdsValue::Number(1, "slave addresses") => text("eds.one_address"),
         EdsValue::Number(number, "banks") => text("eds.banks").with("count", number),
         EdsValue::Number(number, "slave addresses") => text("eds.addresses").with("count", number),
-        EdsValue::Number(number, "") => plain(number),
-        EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
-        EdsValue::Bank(bank) => plain(format!("0x{bank:02X}")),
+        EdsValue::Number(number, "") => literal_text(number),
+        EdsValue::Number(number, unit) => literal_text(format!("{number} {unit}")),
+        EdsValue::Bank(bank) => literal_text(format!("0x{bank:02X}")),
         EdsValue::NotAvailable => text("eds.none"),
         EdsValue::Ticks(ticks) => text("eds.ticks").with("ticks", ticks),
         EdsValue::Adaptive => text("eds.adaptive"),
         EdsValue::NoLimit => text("eds.no_limit"),
-        EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
+        EdsValue::Kelvin(kelvin) => literal_text(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
         EdsValue::Polynomial(0) => text("eds.no_crc"),
-        EdsValue::Polynomial(polynomial) => plain(format!("0x{polynomial:X}")),
-        EdsValue::Profile(profile) => plain(profile),
+        EdsValue::Polynomial(polynomial) => literal_text(format!("0x{polynomial:X}")),
+        EdsValue::Profile(profile) => literal_text(profile),
         EdsValue::Feedback(StatusBitMeaning::None) => text("eds.no_bit"),
         EdsValue::Feedback(StatusBitMeaning::Error) => text("eds.error_bit"),
         EdsValue::Feedback(StatusBitMeaning::Warning) => text("eds.warning_bit"),
@@ -81,7 +81,7 @@ pub fn eds_value_text(value: EdsValue) -> Text {
         }
         EdsValue::EncoderType(0) => text("eds.rotary"),
         EdsValue::EncoderType(code) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
-        EdsValue::Code(code) => plain(format!("0x{code:X}")),
+        EdsValue::Code(code) => literal_text(format!("0x{code:X}")),
     }
 }
 
@@ -98,7 +98,7 @@ pub(super) fn explained_value_text(value: EdsValue) -> Option<Text> {
 pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::in_bank(bank.number(), field.offset);
     let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
-    described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
+    described.map_or_else(|| literal_text(field.name), |register| words::name(&register.name))
 }
 
 /// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages, and these

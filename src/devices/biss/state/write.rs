@@ -96,22 +96,22 @@ impl HasMemory for Encoder {
         other_type(&profile.identity, &own.profile()).is_some()
     }
 
-    fn prepare(change: Change) -> BissJob {
+    fn prepare_job(change: Change) -> BissJob {
         BissJob::Prepare(change)
     }
 
-    fn commit(&mut self, agreed: ApprovedPlanOf<Biss>) -> BissJob {
+    fn commit_job(&mut self, agreed: ApprovedPlanOf<Biss>) -> BissJob {
         commit(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
     /// Starts a write. If the write needs an operator at the motor, it is displayed step by step.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
-        let Some(agreed) = self.agree(shown) else { return };
+        let Some(agreed) = self.approve_plan(shown) else { return };
         let ops = &agreed.prepared.plan.ops;
         let guide = ops.iter().any(is_guided).then(|| Guide::new(ops.clone()));
         let job = match &guide {
             Some(guide) => commit(agreed, OperatorPresence::Attended(guide.seat.clone())),
-            None => self.commit(agreed),
+            None => self.commit_job(agreed),
         };
         if self.begin_write(job, services) && guide.is_some() {
             (self.guide, self.session.review) = (guide, None);
@@ -128,7 +128,7 @@ impl HasMemory for Encoder {
         self.read_after.extend(banks);
     }
 
-    fn carried_out(&mut self, committed: &Committed, _: &mut Services) {
+    fn handle_executed_plan(&mut self, committed: &Committed, _: &mut Services) {
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
             guide.end = Some(End::Done(committed.written.outcomes.clone()));
         }

@@ -8,10 +8,11 @@ use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissLinkKind};
 use crate::devices::biss::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, paragraph};
+use crate::ui::controls::{dropdown, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    echo, entry_row, expandable_ui, field, leave_supply, network, parity, recording, segmented_control, serial, typed,
+    echo_ui, entries_ui, entry_row, expandable_ui, field, network, parity, recording_file_ui, segmented_control,
+    serial_port_ui, supply_choice_ui,
 };
 
 pub(crate) struct BissConnectForm;
@@ -51,16 +52,16 @@ impl TypedConnectForm for BissConnectForm {
                 if form.network {
                     network(ui, theme, &mut form.host, &mut form.tcp_port);
                 } else {
-                    serial(ui, theme, dialog, &mut form.port, actions);
+                    serial_port_ui(ui, theme, dialog, &mut form.port, actions);
                 }
             }
             BissLinkKind::Replay => {
-                recording(ui, theme, &mut form.file, actions);
+                recording_file_ui(ui, theme, &mut form.file, actions);
                 connection_point_ui(ui, theme, form);
             }
         }
         if form.uses_bus() {
-            typed(ui, theme, say, BissForm::bus_entries(), &mut form.typed);
+            entries_ui(ui, theme, say, BissForm::bus_entries(), &mut form.typed);
         }
         if form.kind != BissLinkKind::Replay && expandable_ui(ui, theme, more) {
             if !form.uses_bus() {
@@ -72,7 +73,7 @@ impl TypedConnectForm for BissConnectForm {
                         parity(ui, theme, &mut form.parity);
                     });
                 }
-                typed(ui, theme, say, others, &mut form.typed);
+                entries_ui(ui, theme, say, others, &mut form.typed);
                 let word = say(theme, "connect.biss_order");
                 entry(ui, theme, &word, |ui| {
                     let orders = [
@@ -80,9 +81,9 @@ impl TypedConnectForm for BissConnectForm {
                         (Some(ByteOrder::LowFirst), "connect.biss_order_low"),
                         (Some(ByteOrder::HighFirst), "connect.biss_order_high"),
                     ];
-                    choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, say(theme, id))));
+                    dropdown(ui, &word, &mut form.order, orders.map(|(order, id)| (order, say(theme, id))));
                 });
-                echo(ui, theme, &mut form.echo);
+                echo_ui(ui, theme, &mut form.echo);
             }
             let (frame, line) = BissForm::common_entries();
             entry(ui, theme, &say(theme, "connect.biss_frame"), |ui| {
@@ -90,9 +91,9 @@ impl TypedConnectForm for BissConnectForm {
             });
             paragraph(ui, theme.caption(say(theme, "connect.biss_frame_words")));
             if form.uses_bus() {
-                leave_supply(ui, theme, &mut form.leave_supply);
+                supply_choice_ui(ui, theme, &mut form.leave_supply);
             }
-            typed(ui, theme, say, line, &mut form.typed);
+            entries_ui(ui, theme, say, line, &mut form.typed);
         }
     }
 }
@@ -101,11 +102,11 @@ fn connection_point_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
-        choice(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, say(theme, id))));
+        dropdown(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, say(theme, id))));
     });
 }
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     connection_point_ui(ui, theme, form);
-    typed(ui, theme, say, BissForm::virtual_device_entries(), &mut form.typed);
+    entries_ui(ui, theme, say, BissForm::virtual_device_entries(), &mut form.typed);
 }

@@ -38,7 +38,7 @@ pub(super) fn page_ui(
     let shown = encoder.visible_area_part(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
-            let word = theme.words(&words::name(&own.name));
+            let word = theme.format_text(&words::name(&own.name));
             let response = ui.add(egui::Button::selectable(own == area, &word));
             if name(response, true, &word).clicked() && at != view.area {
                 *view = DataUiState { area: at, ..DataUiState::default() };
@@ -56,7 +56,7 @@ pub(super) fn page_ui(
             .with("first", format!("0x{:02X}", shown.first))
             .with("last", format!("0x{:02X}", shown.last))
             .with("bytes", shown.size());
-        ui.label(theme.caption(theme.words(&text)));
+        ui.label(theme.caption(theme.format_text(&text)));
     });
     ui.add_space(theme.space.inside);
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
@@ -86,7 +86,7 @@ fn area_bytes_ui(
     if let Some(why) = &read_only {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
-            paragraph(ui, theme.words(why));
+            paragraph(ui, theme.format_text(why));
         });
     }
     let beside = ui.available_width() >= 820.0;
@@ -94,7 +94,7 @@ fn area_bytes_ui(
     let addresses = HexAddresses::Banked { first: area.first.into(), size: RegisterAddress::BANK_SIZE.into() };
     let model = HexModel { read_only: read_only.as_ref(), lines, addresses, ..HexModel::new(read, wanted) };
     let mut edits = Vec::new();
-    let label = theme.words(&words::name(&area.name));
+    let label = theme.format_text(&words::name(&area.name));
     if beside {
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| edits = hex_editor(ui, theme, &label, &model, &mut view.hex));
@@ -113,7 +113,7 @@ fn area_bytes_ui(
     }
     // Undo with the buttons of the edit bar behaves like undo with the keyboard.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
-        view.hex.follow(wanted);
+        view.hex.move_to_change(wanted);
     }
     let start = |offset: usize| -> Option<RegisterAddress> { places(area).nth(offset) };
     for edit in edits {

@@ -26,20 +26,20 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             |ui, actions| {
                 status_ui(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
-                    theme.gap(ui);
+                    theme.add_gap(ui);
                     motor::card_ui(ui, theme, encoder, motor, actions);
                 }
             },
         ),
     );
-    theme.gap(ui);
+    theme.add_gap(ui);
     if encoder.identity().is_some() {
         frame::card_ui(ui, theme, encoder, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
     }
     if !is_profile {
         wiring::card_ui(ui, theme);
-        theme.gap(ui);
+        theme.add_gap(ui);
     }
     sheet::cards_ui(ui, theme, encoder);
 }
@@ -47,7 +47,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
 fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_readable();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("encoder_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.translate("encoder_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
@@ -61,17 +61,17 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             ui.add_space(theme.space.inside);
             profile_identity_ui(ui, theme, encoder, identity);
         } else {
-            empty_placeholder(ui, theme, &theme.say("encoder_card.nothing"), None);
+            empty_placeholder(ui, theme, &theme.translate("encoder_card.nothing"), None);
         }
     });
 }
 
 fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
-    let or_none = |text: String| if text.is_empty() { theme.say("encoder_card.not_told") } else { text };
+    let or_none = |text: String| if text.is_empty() { theme.translate("encoder_card.not_told") } else { text };
     let serial = format!("{}  {}", identity.serial_number, crate::bits::hex(&identity.serial_bytes));
-    row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(serial.trim().to_owned())));
+    row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(or_none(serial.trim().to_owned())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
-    row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(or_none(firmware)));
+    row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware)));
     row(ui, theme, &say(theme, "biss_card.profile"), theme.monospace(identity.kind.profile.to_string()));
     row(ui, theme, &say(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.kind.device_id)));
     manufacturer_ui(ui, theme, identity.kind.manufacturer);
@@ -81,7 +81,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
         .with("multiturn", layout.multiturn_bits())
         .with("singleturn", layout.singleturn_bits())
         .with("bits", layout.bits());
-    row(ui, theme, &say(theme, "biss_card.frame"), theme.words(&widths));
+    row(ui, theme, &say(theme, "biss_card.frame"), theme.format_text(&widths));
     let source = match identity.source {
         FrameSource::DataSheet => "biss_card.from_sheet",
         FrameSource::Description => "biss_card.from_description",
@@ -99,15 +99,15 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     }
     if let Some(mismatch) = &identity.mismatch {
         let text = explained::mismatch(mismatch);
-        paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
+        paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
     }
 }
 
 fn profile_identity_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
     let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
-    row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(identity.serial_number.clone())));
+    row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
-    row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(or_none(firmware)));
+    row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware)));
     row(ui, theme, &say(theme, "biss_card.profile"), theme.monospace(identity.profile_id.to_string()));
     row(ui, theme, &say(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.device_id)));
     manufacturer_ui(ui, theme, identity.manufacturer);
@@ -116,11 +116,11 @@ fn profile_identity_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: 
             .text("biss_card.position_widths")
             .with("multiturn", identity.multiturn_bits.unwrap_or_default())
             .with("singleturn", singleturn);
-        row(ui, theme, &say(theme, "biss_card.frame"), theme.words(&widths));
+        row(ui, theme, &say(theme, "biss_card.frame"), theme.format_text(&widths));
     }
     let Some(profile) = encoder.profile() else { return };
     if let Some(filter) = profile.filter {
-        row(ui, theme, &say(theme, "biss_status.filter"), theme.words(&words::filter(filter)));
+        row(ui, theme, &say(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
     }
 }
 
@@ -132,7 +132,7 @@ fn manufacturer_ui(ui: &mut Ui, theme: &Theme, code: [u8; 2]) {
 fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("status_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.translate("status_card.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::ReadStatus));
         }
     };
@@ -152,18 +152,18 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
         bits(ui, theme, status.errors.as_ref(), icons::X_CIRCLE, palette.bad);
         bits(ui, theme, status.warnings.as_ref(), icons::WARNING, palette.warn);
         if let Some(celsius) = status.celsius {
-            let words = format!("{} °C", theme.number(celsius, 0));
+            let words = format!("{} °C", theme.format_number(celsius, 0));
             row(ui, theme, &say(theme, "biss_status.temperature"), theme.monospace(words));
         }
         if let Some(mode) = status.mode {
-            row(ui, theme, &say(theme, "biss_status.mode"), theme.words(&explained::mode(mode)));
+            row(ui, theme, &say(theme, "biss_status.mode"), theme.format_text(&explained::mode(mode)));
         }
         if let Some(filter) = status.filter {
-            row(ui, theme, &say(theme, "biss_status.filter"), theme.words(&words::filter(filter)));
+            row(ui, theme, &say(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
-            let words = theme.words(&explained::preset(value, layout.singleturn_bits()));
+            let words = theme.format_text(&explained::preset(value, layout.singleturn_bits()));
             row(ui, theme, &say(theme, "biss_status.preset"), theme.monospace(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {
@@ -175,7 +175,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
 fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.translate("check_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::Check));
         }
     };
@@ -191,7 +191,7 @@ fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&FlagRegister>, icon: &str, col
             ui.label(theme.monospace(format!("b{bit}")));
             let name = name
                 .as_ref()
-                .map_or_else(|| say(theme, "biss_status.unknown_bit"), |own| theme.words(&explained::name(own)));
+                .map_or_else(|| say(theme, "biss_status.unknown_bit"), |own| theme.format_text(&explained::name(own)));
             paragraph(ui, name);
         });
     }

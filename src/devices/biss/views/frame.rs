@@ -26,9 +26,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         let label = say(theme, "frame_card.title");
         frame_strip(ui, theme, &FrameStrip { label: &label, fields: &fields, bits: &bits });
         if let Some(reading) = reading {
-            row(ui, theme, &theme.say("live.raw"), theme.monospace(theme.word(reading.raw())));
+            row(ui, theme, &theme.translate("live.raw"), theme.monospace(theme.format_word(reading.raw())));
             if let Some(frame) = reading.frame {
-                row(ui, theme, &say(theme, "frame_card.frame"), theme.monospace(theme.word(frame)));
+                row(ui, theme, &say(theme, "frame_card.frame"), theme.monospace(theme.format_word(frame)));
             }
         }
         if reading.is_some_and(|reading| reading.frame.is_none()) {
@@ -37,7 +37,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         let errors = encoder.record.crc_errors();
         if errors > 0 {
             let text = TEXTS.text("frame_card.crc_errors").with("count", errors);
-            paragraph(ui, egui::RichText::new(theme.words(&text)).color(theme.palette.warn));
+            paragraph(ui, egui::RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         }
     });
 }
@@ -75,12 +75,12 @@ fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (
         add(StripField { value, ..field("MT + ST", bits, 0) }, position);
     }
     if is_split_known && layout.multiturn_bits() > 0 {
-        let value = format!("{} {}", theme.say("live.turns"), number(turns));
+        let value = format!("{} {}", theme.translate("live.turns"), number(turns));
         add(StripField { value, ..field("MT", layout.multiturn_bits(), 0) }, turns);
     }
     if is_split_known && layout.singleturn_bits() > 0 {
         let steps = reading.map(|own| u64::from(own.steps));
-        let value = reading.map(|own| format!("{} °", theme.number(own.degrees(), 3))).unwrap_or_default();
+        let value = reading.map(|own| format!("{} °", theme.format_number(own.degrees(), 3))).unwrap_or_default();
         add(StripField { value, ..field("ST", layout.singleturn_bits(), 1) }, steps);
     }
     if reading.is_some_and(|own| own.frame.is_none()) {

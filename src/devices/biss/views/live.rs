@@ -9,19 +9,19 @@ use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Mark, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
-use crate::ui::panels::live::{LOW, mark as mark_ui, raw_row, unknown_rows};
+use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui as mark_ui, unknown_rows};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let reading = encoder.record.last();
-    let raw = |own: &PositionReading| theme.word(own.raw());
-    let main = reading.map(|own| own.angle().map_or_else(|| raw(own), |angle| theme.number(angle, 3)));
+    let raw = |own: &PositionReading| theme.format_word(own.raw());
+    let main = reading.map(|own| own.angle().map_or_else(|| raw(own), |angle| theme.format_number(angle, 3)));
     let main = main.unwrap_or_else(|| "–".to_owned());
     let is_angle = reading.is_none_or(|own| own.is_split_known);
     let palette = theme.palette;
     ui.horizontal(|ui| {
         ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
-        ui.label(theme.label(if is_angle { "°".to_owned() } else { theme.say("live.raw") }));
+        ui.label(theme.label(if is_angle { "°".to_owned() } else { theme.translate("live.raw") }));
         if let Some(mark) = encoder.mark() {
             let (word, ink) = match mark {
                 Mark::Invalid => ("live.invalid", palette.bad),
@@ -32,34 +32,34 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     });
     let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     if !is_angle {
-        row(ui, theme, &theme.say("unit.steps"), theme.monospace(reading.position().to_string()));
-    } else if ui.available_height() < LOW {
+        row(ui, theme, &theme.translate("unit.steps"), theme.monospace(reading.position().to_string()));
+    } else if ui.available_height() < LOW_PANEL_HEIGHT {
         // In a window of small height, the plot needs the space.
-        let (turns, steps) = (theme.say("live.turns"), theme.say("live.step"));
+        let (turns, steps) = (theme.translate("live.turns"), theme.translate("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
-        row(ui, theme, &theme.say("live.turns"), theme.monospace(reading.turns.to_string()));
-        row(ui, theme, &theme.say("live.step"), theme.monospace(reading.steps.to_string()));
-        raw_row(ui, theme, theme.word(reading.raw()));
+        row(ui, theme, &theme.translate("live.turns"), theme.monospace(reading.turns.to_string()));
+        row(ui, theme, &theme.translate("live.step"), theme.monospace(reading.steps.to_string()));
+        raw_row(ui, theme, theme.format_word(reading.raw()));
     }
     if let Some(stream) = encoder.streamed() {
         let id = if stream.is_limited { "live.streamed_all" } else { "live.streamed" };
         let text = TEXTS.text(id).with_number("count", stream.frame_rate_hz(), 0);
-        let words = theme.words(&text.with_number("clock", f64::from(stream.clock_hz) / 1e6, 1));
-        ui.add(egui::Label::new(theme.caption(words)).wrap()).on_hover_text(theme.say("live.streamed_hint"));
+        let words = theme.format_text(&text.with_number("clock", f64::from(stream.clock_hz) / 1e6, 1));
+        ui.add(egui::Label::new(theme.caption(words)).wrap()).on_hover_text(theme.translate("live.streamed_hint"));
     }
     let errors = encoder.record.crc_errors();
     if errors > 0 {
         let text = TEXTS.text("frame_card.crc_errors").with("count", errors);
-        ui.label(RichText::new(theme.words(&text)).size(theme.sizes.caption).color(palette.warn));
+        ui.label(RichText::new(theme.format_text(&text)).size(theme.sizes.caption).color(palette.warn));
     }
 }
 
 /// Draws the menu of values to read along with the position. It offers common registers, and all others can be selected
 /// in the register table.
 pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let word = theme.say("live.watch");
+    let word = theme.translate("live.watch");
     let Some(description) = &encoder.description else { return };
     let watched = encoder.record.watched();
     icon_menu(ui, icons::EYE, &word, |ui| {
@@ -75,7 +75,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions:
             let name = if register.name.is_empty() {
                 register.address.to_string()
             } else {
-                theme.words(&words::name(&register.name))
+                theme.format_text(&words::name(&register.name))
             };
             if ui.checkbox(&mut on, name).changed() {
                 actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(register), on)));

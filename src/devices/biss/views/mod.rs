@@ -67,7 +67,7 @@ fn read_refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {
         ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
-        paragraph(ui, theme.words(why));
+        paragraph(ui, theme.format_text(why));
     });
     motor::motor_running_note_ui(ui, theme, encoder, actions);
 }
@@ -76,7 +76,7 @@ fn unsaved_warning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
     let Some(why) = encoder.unsaved() else { return };
     ui.horizontal_top(|ui| {
         ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
-        paragraph(ui, theme.words(&why));
+        paragraph(ui, theme.format_text(&why));
     });
     if encoder.profile().is_none() {
         return_to_operation_ui(ui, theme, encoder, actions);
@@ -85,7 +85,7 @@ fn unsaved_warning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
 }
 
 fn return_to_operation_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let word = theme.say("lead_back_card.button");
+    let word = theme.translate("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
         actions.push(Action::device(encoder.session.id, Biss::LeadBack));
     }
@@ -133,7 +133,7 @@ impl TypedDeviceView for BissView {
             });
             return;
         }
-        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.index()), |ui| match page {
             Page::Backups => backups::page_ui(ui, theme, device, actions),
             Page::Procedures => procedures::page_ui(ui, theme, studio, encoder, &mut view.procedures, actions),
             _ => encoder::page_ui(ui, theme, encoder, actions),
@@ -165,5 +165,5 @@ impl TypedDeviceView for BissView {
 
 /// Returns a label from the BiSS or common catalogue, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
-    theme.words(&TEXTS.text(id))
+    theme.format_text(&TEXTS.text(id))
 }

@@ -14,10 +14,10 @@ const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
     folding_card(ui, theme, "motor_card.title", |ui| {
-        paragraph(ui, theme.caption(theme.say("motor_card.words")));
+        paragraph(ui, theme.caption(theme.translate("motor_card.words")));
         ui.horizontal_wrapped(|ui| {
             for rpm in SPEEDS {
-                let word = if rpm == 0.0 { theme.say("motor_card.rest") } else { format!("{rpm:+.0}") };
+                let word = if rpm == 0.0 { theme.translate("motor_card.rest") } else { format!("{rpm:+.0}") };
                 if ui.add(egui::Button::selectable(motor.rpm() == rpm, word)).clicked() {
                     actions.push(Action::device(encoder.session.id, Biss::Turn(rpm)));
                 }
@@ -37,7 +37,7 @@ pub(super) fn motor_running_note_ui(ui: &mut Ui, theme: &Theme, encoder: &Encode
         let id = if motor.rpm() > 0.0 { "motor_card.turns_cw" } else { "motor_card.turns_ccw" };
         let text = TEXTS.text(id).with_number("rpm", motor.rpm().abs(), 0);
         ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-        ui.label(theme.words(&text));
+        ui.label(theme.format_text(&text));
         if enabled_button(ui, true, icons::STOP, &say(theme, "motor_card.stop")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::Turn(0.0)));
         }

@@ -69,10 +69,10 @@ pub(super) fn page_ui(
         },
         |ui, (actions, mounting)| {
             preset_ui(ui, theme, encoder, mounting.form, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             if let Some(motor) = &encoder.motor {
                 motor::card_ui(ui, theme, encoder, motor, actions);
-                theme.gap(ui);
+                theme.add_gap(ui);
             }
             filter_ui(ui, theme, encoder, actions);
         },
@@ -104,10 +104,10 @@ fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Ve
     card(ui, theme, TEXTS.text("lead_back_card.title"), |ui| {
         let mode = explained::mode(status.mode.unwrap_or_default());
         let text = TEXTS.text("lead_back_card.words").with_text("mode", mode);
-        paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
+        paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         super::return_to_operation_ui(ui, theme, encoder, actions);
     });
-    theme.gap(ui);
+    theme.add_gap(ui);
 }
 
 fn mounting_ui(
@@ -143,7 +143,7 @@ fn mounting_ui(
         procedure_checkbox_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_requirements_text());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
-                theme.gap(ui);
+                theme.add_gap(ui);
                 ui.checkbox(own.save_result, say(theme, "mounting_card.save"));
             });
         });
@@ -166,8 +166,8 @@ fn mounting_ui(
 fn procedure_checkbox_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {
-        theme.gap(ui);
-        paragraph(ui, theme.caption(theme.words(words)));
+        theme.add_gap(ui);
+        paragraph(ui, theme.caption(theme.format_text(words)));
     });
 }
 
@@ -211,7 +211,7 @@ fn data_profile_choice_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mu
     for profile in profiles {
         let mut on = *data == Some(profile.id());
         let text = TEXTS.text("mounting_card.data_of").with("name", profile.name());
-        if ui.checkbox(&mut on, theme.words(&text)).changed() {
+        if ui.checkbox(&mut on, theme.format_text(&text)).changed() {
             *data = on.then(|| profile.id());
         }
     }
@@ -240,7 +240,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         });
         ui.add_space(theme.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
-            let words = theme.words(&explained::preset(stored, layout.singleturn_bits()));
+            let words = theme.format_text(&explained::preset(stored, layout.singleturn_bits()));
             row(ui, theme, &say(theme, "preset_card.stored"), theme.monospace(words));
         }
         let fire_words = if is_saved { "preset_card.fire_words" } else { "preset_card.save_first" };
@@ -271,7 +271,7 @@ fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             [(PositionFilter::Balanced, "filter_card.balanced"), (PositionFilter::Dynamic, "filter_card.dynamic")]
         {
             ui.horizontal_wrapped(|ui| {
-                let word = theme.words(&words::filter(filter));
+                let word = theme.format_text(&words::filter(filter));
                 let is_own = own == Some(filter);
                 let ready = encoder.session.is_ready() && !is_own;
                 if is_own {

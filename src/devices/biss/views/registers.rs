@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::{Access, Name, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Group, RegisterEntry, TEXTS};
 use crate::devices::biss::views::say;
-use crate::ui::controls::{choice, empty_placeholder, enabled_button, icon_menu};
+use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_menu};
 use crate::ui::widgets::{
     RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable,
     RegisterView, register_table,
@@ -32,7 +32,7 @@ pub(super) fn page_ui(
     actions: &mut Vec<Action>,
 ) {
     if encoder.description.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, theme.say("memory.read"), encoder.session.is_readable());
+        let read = (icons::ARROW_CLOCKWISE, theme.translate("memory.read"), encoder.session.is_readable());
         if empty_placeholder(ui, theme, &say(theme, "registers.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
@@ -41,7 +41,7 @@ pub(super) fn page_ui(
     let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
         // Users look at one bank at a time, and most often at the direct registers.
-        (1..groups.len()).for_each(|at| view.table.fold(at, true));
+        (1..groups.len()).for_each(|at| view.table.set_folded(at, true));
     }
     let beside = ui.available_width() >= BESIDE;
     super::messages_ui(ui, theme, encoder, actions);
@@ -69,16 +69,16 @@ fn header_ui(
     view: &mut RegistersUiState,
     actions: &mut Vec<Action>,
 ) {
-    let mut at = view.table.group().unwrap_or_default();
+    let mut at = view.table.selected_group().unwrap_or_default();
     ui.horizontal(|ui| {
         if !beside {
             let label = say(theme, "registers.bank");
-            if choice(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
+            if dropdown(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
                 view.table.select(RegisterLocation { group: at, row: 0 });
             }
         }
         if let Some(own) = encoder.table.groups().get(at) {
-            let word = theme.words(&read_button_label(own.bank));
+            let word = theme.format_text(&read_button_label(own.bank));
             if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, Biss::ReadBank(own.bank)));
             }
@@ -116,19 +116,19 @@ fn watch_selection_ui(
     if let Some(row) = row {
         let on = watched.iter().any(|own| own.address == row.register.address);
         let word = TEXTS.text(if on { "registers.unwatch" } else { "registers.watch" });
-        let word = theme.words(&word.with("address", row.register.address));
+        let word = theme.format_text(&word.with("address", row.register.address));
         let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
-        if button.on_hover_text(theme.words(&words::name(&row.register.name))).clicked() {
+        if button.on_hover_text(theme.format_text(&words::name(&row.register.name))).clicked() {
             let register = Box::new(row.register.clone());
             actions.push(Action::device(encoder.session.id, Biss::Watch(register, !on)));
         }
     }
     if !watched.is_empty() {
-        let word = theme.words(&TEXTS.text("registers.watched").with("count", watched.len()));
+        let word = theme.format_text(&TEXTS.text("registers.watched").with("count", watched.len()));
         icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
             ui.label(theme.heading(&word));
             for own in watched {
-                let name = format!("{}  {}", own.address, theme.words(&words::name(&own.name)));
+                let name = format!("{}  {}", own.address, theme.format_text(&words::name(&own.name)));
                 if ui.button(format!("{}  {name}", icons::X)).clicked() {
                     actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(own), false)));
                 }
@@ -138,7 +138,7 @@ fn watch_selection_ui(
 }
 
 fn bank_list_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[RegisterGroup], view: &mut RegistersUiState) {
-    let selected = view.table.group();
+    let selected = view.table.selected_group();
     ScrollArea::vertical().id_salt("banks").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (at, own) in encoder.table.groups().iter().enumerate() {
@@ -168,7 +168,7 @@ fn table(
         let shown = encoder.table.groups().get(place.group).and_then(|own| own.entry(place.row, &encoder.memory));
         shown.map(|own| register_row(theme, encoder, &own, &none)).unwrap_or_default()
     };
-    let label = theme.say("page.registers");
+    let label = theme.translate("page.registers");
     let widest = encoder.description.iter().flat_map(|own| own.registers()).map(|own| usize::from(own.width)).max();
     let kind = RegisterKind::Bytes { widest: widest.unwrap_or(1) };
     let table = RegisterTable { label: &label, groups, row: &row, kind };
@@ -202,7 +202,7 @@ fn group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
         (None, _) => say(theme, "registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
-        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", theme.words(&words::name(name))),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", theme.format_text(&words::name(name))),
     };
     let note = if own.is_read(&encoder.memory) { String::new() } else { say(theme, "registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
@@ -210,8 +210,11 @@ fn group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGroup {
 
 fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
-    let name =
-        if register.name.is_empty() { say(theme, "registers.byte") } else { theme.words(&words::name(&register.name)) };
+    let name = if register.name.is_empty() {
+        say(theme, "registers.byte")
+    } else {
+        theme.format_text(&words::name(&register.name))
+    };
     // A code is not a physical quantity.
     let is_quantity = matches!(register.decoding, ValueDecoding::Number | ValueDecoding::Scaled { .. });
     RegisterRow {
@@ -219,7 +222,7 @@ fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, els
         name,
         value: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
         decimal: shown.number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
-        meaning: encoder.meaning(shown).map(|own| theme.words(&own)).unwrap_or_default(),
+        meaning: encoder.meaning(shown).map(|own| theme.format_text(&own)).unwrap_or_default(),
         access: match register.access {
             Access::R => "R",
             Access::W => "W",
@@ -244,7 +247,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
         let is_set = number.map(|number| number >> bit & 1 == 1);
         RegisterBits {
             bits: format!("b{bit}"),
-            name: theme.words(&words::name(name)),
+            name: theme.format_text(&words::name(name)),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
                 .map(|set| say(theme, if set { "registers.set" } else { "registers.clear" }))

@@ -9,7 +9,7 @@ use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, StepStatus, TEXTS};
 use crate::devices::biss::views::say;
-use crate::ui::controls::{button, card, paragraph, severity};
+use crate::ui::controls::{card, labelled_button, paragraph, severity};
 use crate::ui::widgets::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 use crate::ui::{Theme, icons};
 
@@ -24,17 +24,17 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
     ui.data_mut(|data| data.insert_temp(seen, is_over));
     if let Some(end) = &guide.end {
         end_ui(ui, theme, encoder, guide.ops(), end, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
     }
     if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
         motor::card_ui(ui, theme, encoder, motor, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
     }
     card(ui, theme, TEXTS.text("guide.title"), |ui| {
         let list: Vec<StepRow> =
             guide.steps().iter().map(|own| step(theme, guide, own.op, own.is_first, own.step, own.reached)).collect();
         let demand = guide.operator_prompt();
-        let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.words(&says::blocker_text(*own)));
+        let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.format_text(&says::blocker_text(*own)));
         let word = say(
             theme,
             match demand.map(|own| own.task) {
@@ -67,8 +67,8 @@ fn step(
     own: crate::devices::biss::procedures::procedure::ProcedureStep,
     reached: StepStatus,
 ) -> StepRow {
-    let what = theme.words(&says::step(own));
-    let title = if is_first { format!("{} · {what}", theme.words(&says::procedure(op))) } else { what };
+    let what = theme.format_text(&says::step(own));
+    let title = if is_first { format!("{} · {what}", theme.format_text(&says::procedure(op))) } else { what };
     let (state, word) = match reached {
         StepStatus::Done => (StepState::Done, "guide.done"),
         StepStatus::Waits => (StepState::Waiting, "guide.waits"),
@@ -83,7 +83,7 @@ fn step(
         (StepStatus::Waits, Some(StepDetail::Demand(demand))) => {
             // The recommended speed is marked on the gauges, which stay in place.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
-            let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice_text(*own))).collect();
+            let notes: Vec<String> = lasting.map(|own| theme.format_text(&says::advice_text(*own))).collect();
             step.note = notes.join("\n");
             step.gauges = speed_gauges(theme, demand);
         }
@@ -93,7 +93,7 @@ fn step(
         }
         (StepStatus::Runs, Some(StepDetail::Lasts { elapsed, expected })) => {
             step.progress = expected.map(|expected| (elapsed.as_secs_f32() / expected.as_secs_f32().max(0.1)).min(1.0));
-            step.note = format!("{} s", theme.number(elapsed.as_secs_f64(), 0));
+            step.note = format!("{} s", theme.format_number(elapsed.as_secs_f64(), 0));
         }
         _ => {}
     }
@@ -105,17 +105,17 @@ fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
     if let Some(fluctuation) = run.max_fluctuation() {
-        let unit = theme.say("unit.revolutions_per_minute");
+        let unit = theme.translate("unit.revolutions_per_minute");
         let spread = demand.motion.map(|own| own.spread);
         let accepted =
             run.accepted_fluctuation(demand.motion.map_or(run.recommended_range().midpoint(), |own| own.rpm));
         gauges.push(Gauge {
             name: say(theme, "guide.fluctuation"),
             value: spread,
-            shown: spread.map(|spread| format!("±{} {unit}", theme.number(spread, 1))).unwrap_or_default(),
+            shown: spread.map(|spread| format!("±{} {unit}", theme.format_number(spread, 1))).unwrap_or_default(),
             allowed: 0.0..=accepted,
             best: Some(0.0..=fluctuation),
-            limits: format!("±{} {unit}", theme.number(fluctuation, 0)),
+            limits: format!("±{} {unit}", theme.format_number(fluctuation, 0)),
             scale: 0.0..=accepted * 2.0,
         });
     }
@@ -125,7 +125,7 @@ fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
         gauges.push(Gauge {
             name: say(theme, "biss_status.temperature"),
             value: celsius,
-            shown: celsius.map(|celsius| format!("{} °C", theme.number(celsius, 0))).unwrap_or_default(),
+            shown: celsius.map(|celsius| format!("{} °C", theme.format_number(celsius, 0))).unwrap_or_default(),
             allowed: f64::from(coldest)..=f64::from(warmest),
             best: None,
             limits: format!("{coldest}…{warmest} °C"),
@@ -146,14 +146,14 @@ fn speed(theme: &Theme, run: Run, demand: &OperatorPrompt) -> Gauge {
         .with_number("least", allowed.least, 0)
         .with_number("greatest", allowed.greatest, 0)
         .with_number("best", best.midpoint(), 0);
-    let unit = theme.say("unit.revolutions_per_minute");
+    let unit = theme.translate("unit.revolutions_per_minute");
     Gauge {
         name: say(theme, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
         value: rpm,
-        shown: rpm.map(|rpm| format!("{} {unit}", theme.number(rpm, 1))).unwrap_or_default(),
+        shown: rpm.map(|rpm| format!("{} {unit}", theme.format_number(rpm, 1))).unwrap_or_default(),
         allowed: accepted.least..=accepted.greatest,
         best: is_best.then_some(best.least..=best.greatest),
-        limits: theme.words(&limits),
+        limits: theme.format_text(&limits),
         scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
     }
 }
@@ -170,13 +170,13 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
             End::Failed { before, .. } => before,
         };
         if let End::Failed { texts, .. } = end {
-            texts.iter().for_each(|text| line_ui(ui, theme, says::weight(text), &theme.words(text)));
+            texts.iter().for_each(|text| line_ui(ui, theme, says::weight(text), &theme.format_text(text)));
         }
         let lines: Vec<(Severity, String)> = ops
             .iter()
             .zip(outcomes)
             .flat_map(|(op, own)| says::report(op, own))
-            .map(|(severity, text)| (severity, theme.words(&text)))
+            .map(|(severity, text)| (severity, theme.format_text(&text)))
             .collect();
         lines.iter().for_each(|(severity, words)| line_ui(ui, theme, *severity, words));
         if encoder.motor.is_some() {
@@ -189,12 +189,12 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
             if let End::Failed { may_lead_back: true, .. } = end {
                 super::return_to_operation_ui(ui, theme, encoder, actions);
             }
-            if !lines.is_empty() && button(ui, icons::COPY, &say(theme, "guide.copy_report")).clicked() {
+            if !lines.is_empty() && labelled_button(ui, icons::COPY, &say(theme, "guide.copy_report")).clicked() {
                 let head = format!("{}\n{}\n", encoder.session.name(), say(theme, "guide.report"));
                 let lines: Vec<&str> = lines.iter().map(|(_, words)| words.as_str()).collect();
                 ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
             }
-            if button(ui, icons::CHECK, &say(theme, "guide.close")).clicked() {
+            if labelled_button(ui, icons::CHECK, &say(theme, "guide.close")).clicked() {
                 actions.push(Action::device(id, Biss::CloseGuide));
             }
         });

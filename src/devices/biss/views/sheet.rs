@@ -31,7 +31,7 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
     let eds = match sheet {
         Ok(eds) => eds,
         Err(why) => {
-            paragraph(ui, RichText::new(theme.words(&words::sheet(why))).color(theme.palette.bad));
+            paragraph(ui, RichText::new(theme.format_text(&words::sheet(why))).color(theme.palette.bad));
             return;
         }
     };
@@ -44,9 +44,9 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
             let room = (ui.available_width() * 0.58).floor();
             ui.allocate_ui_with_layout(egui::vec2(room, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_min_width(room);
-                paragraph(ui, theme.label(theme.words(&words::eds_field_name(bank, field))));
+                paragraph(ui, theme.label(theme.format_text(&words::eds_field_name(bank, field))));
             });
-            paragraph(ui, theme.words(&words::eds_value_text(value)));
+            paragraph(ui, theme.format_text(&words::eds_value_text(value)));
         });
     }
     ui.horizontal(|ui| {

@@ -22,7 +22,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
         None => UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone()),
         Some(url) => UdpBroadcast::to(addresses(url)?, clock.clone()),
     };
-    let mut shout = shout.map_err(|error| failed(&explain::link(&error)))?;
+    let mut shout = shout.map_err(|error| failed(&explain::link_error_text(&error)))?;
     let found =
         discover(&mut shout, &*clock, &CancelToken::default()).map_err(|error| failed(&words::device(&error)))?;
     let (drives, others): (Vec<DiscoveredDevice>, Vec<DiscoveredDevice>) =

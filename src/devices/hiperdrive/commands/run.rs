@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::HiperdriveCommands;
 use super::args::DriveOption;
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
@@ -32,7 +32,7 @@ impl Runs for Hiperdrive {
     type Context = Motion;
     const COMMANDS: &'static dyn DeviceCommands = &HiperdriveCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &Given) -> Motion {
+    fn begin(session: &mut Session<Self>, _given: &TypeMap) -> Motion {
         session.motion()
     }
 

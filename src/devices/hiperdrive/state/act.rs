@@ -77,7 +77,7 @@ impl Unit {
         let wished = self.watched_temperatures();
         self.record.watch_temperatures(&wished);
         if let Some(line) = &self.session.line {
-            line.watch(wished.into_iter().map(|what| (what, WATCHED_EVERY)).collect());
+            line.watch_values(wished.into_iter().map(|what| (what, WATCHED_EVERY)).collect());
         }
     }
 
@@ -120,7 +120,7 @@ impl Unit {
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
         for ended in explain::MOTION_ENDS {
-            services.log.settle(ended, Some(&self.session.name()));
+            services.log.remove_from_window(ended, Some(&self.session.name()));
         }
         match request {
             MotionRequest::Jog { .. } => self.moves.press_jog(drive, request),

@@ -3,8 +3,8 @@
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
-use crate::app::connect::target::{checked, entered, host_and_default_port, split_host_default_port};
+use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
+use crate::app::connect::target::{host_and_default_port, required_entry, split_host_default_port, validated_link};
 use crate::devices::hiperdrive::jobs::check;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
@@ -39,7 +39,7 @@ pub struct HiperdriveForm {
     pub file: String,
     /// Whether process data have the high byte first.
     pub big_endian: bool,
-    pub typed: Typed,
+    pub typed: EnteredValues,
     /// Link parameters that have no entry in the form.
     pub rest: Vec<(String, String)>,
 }
@@ -66,7 +66,7 @@ impl FormModel for HiperdriveForm {
     type Finder = DiscoveryFinder;
 
     // The window initially offers a virtual adapter.
-    fn usual() -> LinkUrl {
+    fn default_link() -> LinkUrl {
         LinkUrl::sim()
     }
 
@@ -89,14 +89,14 @@ impl FormModel for HiperdriveForm {
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check)
     }
 
     fn set_file(&mut self, file: String) {
         self.file = file;
     }
 
-    fn example(&self) -> &'static str {
+    fn example_link(&self) -> &'static str {
         "enip:192.168.1.10"
     }
 }
@@ -129,7 +129,7 @@ impl HiperdriveForm {
         }
         let is_big_endian = (name, value) == BIG_ENDIAN;
         self.big_endian |= is_big_endian;
-        is_big_endian || self.typed.take(&self.entries(), name, value)
+        is_big_endian || self.typed.fill_entry(&self.entries(), name, value)
     }
 
     fn target(&self) -> Result<(LinkScheme, String), Text> {
@@ -138,7 +138,7 @@ impl HiperdriveForm {
             HiperdriveLinkKind::Network => {
                 (LinkScheme::Enip, host_and_default_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
             }
-            HiperdriveLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
+            HiperdriveLinkKind::Replay => (LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?),
         })
     }
 
@@ -148,7 +148,7 @@ impl HiperdriveForm {
         if is_virtual {
             parameters.entry("hub", self.hub.word().unwrap_or_default());
         }
-        parameters.typed(&self.entries(), &self.typed);
+        parameters.add_entered(&self.entries(), &self.typed);
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::connect_form::{HiperdriveForm, HiperdriveLinkKind};
 use super::unit::Unit;
-use crate::app::action::{Action, Done};
+use crate::app::action::{Action, TaskResult};
 use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
 use crate::app::services::Services;
@@ -105,9 +105,9 @@ pub struct DiscoveryReplies {
 impl Finder for DiscoveryFinder {
     type Form = HiperdriveForm;
     type Action = DiscoveryAction;
-    type Done = DiscoveryReplies;
+    type TaskResult = DiscoveryReplies;
 
-    fn act(&mut self, action: DiscoveryAction, form: &mut HiperdriveForm, context: &mut FinderContext<'_>) {
+    fn handle_action(&mut self, action: DiscoveryAction, form: &mut HiperdriveForm, context: &mut FinderContext<'_>) {
         match action {
             DiscoveryAction::Discover => {
                 let number = context.next_number();
@@ -118,7 +118,10 @@ impl Finder for DiscoveryFinder {
                     let found = given.map_or_else(broadcast_discovery, |discover| (discover.0)());
                     let found = found.map(|found| found.iter().map(FoundDevice::of).collect());
                     let found = found.map_err(|error| words::device(&error));
-                    Action::Done(Done::finder::<DiscoveryFinder>(Unit::TAB, DiscoveryReplies { number, found }))
+                    Action::Done(TaskResult::from_finder::<DiscoveryFinder>(
+                        Unit::TAB,
+                        DiscoveryReplies { number, found },
+                    ))
                 });
             }
             DiscoveryAction::Choose(at) => {
@@ -132,7 +135,7 @@ impl Finder for DiscoveryFinder {
     }
 
     /// Handles the discovery replies. HIPERDRIVE devices come first.
-    fn done(finder: Option<&mut Self>, done: DiscoveryReplies, _services: &mut Services) {
+    fn handle_result(finder: Option<&mut Self>, done: DiscoveryReplies, _services: &mut Services) {
         let DiscoveryReplies { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());
         let Some(discovery) = discovery.filter(|own| own.number == number) else { return };

@@ -25,11 +25,11 @@ impl HasSession for Unit {
 }
 
 impl HasDraft for Unit {
-    fn key(&self) -> Option<DeviceKey> {
+    fn device_key(&self) -> Option<DeviceKey> {
         self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 
-    fn edited(&self) -> Edits {
+    fn current_edits(&self) -> Edits {
         self.staged.saved_edits()
     }
 
@@ -37,7 +37,7 @@ impl HasDraft for Unit {
         self.staged.take_draft(edits);
     }
 
-    fn pending(&self) -> &dyn PendingEdits {
+    fn pending_edits(&self) -> &dyn PendingEdits {
         &self.staged
     }
 

@@ -58,11 +58,11 @@ impl Kind for Hiperdrive {
         job::words(job)
     }
 
-    fn writes(job: &HiperdriveJob) -> bool {
+    fn writes_memory(job: &HiperdriveJob) -> bool {
         matches!(job, HiperdriveJob::Commit(_))
     }
 
-    fn survey() -> HiperdriveJob {
+    fn survey_job() -> HiperdriveJob {
         HiperdriveJob::Survey
     }
 
@@ -115,7 +115,7 @@ impl Unit {
         self.fetch_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
-        services.log.settle(RULES, Some(&self.session.name()));
+        services.log.remove_from_window(RULES, Some(&self.session.name()));
         let text = words::lost(self.moves.snapshot().lost.as_ref());
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
@@ -125,7 +125,7 @@ impl Unit {
         let fails =
             |drive: &DriveNumber| self.moves.actual_values(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
-            services.log.settle("hd_end.fault", Some(&self.session.name()));
+            services.log.remove_from_window("hd_end.fault", Some(&self.session.name()));
         }
     }
 
@@ -150,7 +150,7 @@ impl Unit {
 
     /// Polls the position of the selected drive, unless the user has chosen another interval.
     fn poll(&mut self) {
-        let Some(line) = self.session.line.as_mut().filter(|line| line.polling().is_none()) else { return };
+        let Some(line) = self.session.line.as_mut().filter(|line| line.polling_interval().is_none()) else { return };
         line.poll(Some(PACE));
         self.record.track.poll(Some(PACE), true);
     }
@@ -169,12 +169,12 @@ impl SessionEvents for Unit {
         }
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
+    fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.decoder.explain(frame)
     }
 
     /// Processes the session events since the last call and refreshes the actions that the window must keep alive.
-    fn pump(&mut self, services: &mut Services) {
+    fn process_events(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.set_remote(services.is_remote());
         self.moves.send_heartbeat();
@@ -202,11 +202,11 @@ impl SessionEvents for Unit {
                 let texts = vec![TEXTS.text(RULES), words::device(&why)];
                 services.notify(Severity::Error, texts, Some(&self.session.name()));
             }
-            DeviceMessage::RulesRead => services.log.settle(RULES, Some(&self.session.name())),
+            DeviceMessage::RulesRead => services.log.remove_from_window(RULES, Some(&self.session.name())),
         }
     }
 
-    fn finished(&mut self, output: HiperdriveOutput, services: &mut Services) {
+    fn handle_finished_job(&mut self, output: HiperdriveOutput, services: &mut Services) {
         match output {
             HiperdriveOutput::Hello(identity) => {
                 self.session.just_connected = false;
@@ -240,13 +240,13 @@ impl SessionEvents for Unit {
                 }
             }
             HiperdriveOutput::Saved(profile) => self.saved(*profile, services),
-            HiperdriveOutput::Prepared(prepared) => self.planned(prepared, services),
+            HiperdriveOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             HiperdriveOutput::Committed(committed) => self.handle_commit_end(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.send_heartbeat();
                 self.handle_limit_change();
                 for lost in words::LOST.into_iter().chain([RULES]) {
-                    services.log.settle(lost, Some(&self.session.name()));
+                    services.log.remove_from_window(lost, Some(&self.session.name()));
                 }
                 self.poll();
                 // Another master may have changed limits and scaling since they were read, so no motion uses the old
@@ -256,7 +256,7 @@ impl SessionEvents for Unit {
             HiperdriveOutput::Given => {
                 self.moves.send_heartbeat();
                 // The limits are no longer read.
-                services.log.settle(RULES, Some(&self.session.name()));
+                services.log.remove_from_window(RULES, Some(&self.session.name()));
                 // Values that were not read while another master was in control are read now.
                 self.looks_at_all |= self.is_stale;
             }
@@ -284,7 +284,8 @@ impl SessionEvents for Unit {
             EarlyEnd::Lost => {}
         }
         let is_told = self.handle_interrupted_write(how, texts);
-        let begun = matches!(self.review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
+        let begun =
+            matches!(self.open_review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
         self.unsaved.ended(begun);
         is_told
     }

@@ -20,7 +20,7 @@ pub use names::{ErrorExplanation, control_bit, error, parameter, state, status_b
 pub use write::{change, item, op, other_type, plan, service, warning, written};
 
 use crate::app::Text;
-use crate::app::explain::{link, plain};
+use crate::app::explain::{link_error_text, literal_text};
 use crate::devices::hiperdrive::jobs::{JobError, JobStep};
 use crate::devices::hiperdrive::procedures::Error;
 
@@ -40,7 +40,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 /// Returns why the connection failed, or `None` if further requests are possible over it.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
-        Error::Link(error) => Some(link(error)),
+        Error::Link(error) => Some(link_error_text(error)),
         _ => None,
     }
 }
@@ -54,6 +54,6 @@ pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
         JobStep::Parameter(number) => parameter(*number),
         JobStep::Step(own) => check::step(*own),
-        JobStep::Operation(item) => plain(item),
+        JobStep::Operation(item) => literal_text(item),
     }
 }

@@ -4,7 +4,7 @@ use super::rows::Row;
 use super::ruler::{PositionRangeError, PositionUnit};
 use super::staged::Edit;
 use super::unit::Unit;
-use crate::app::{Text, number};
+use crate::app::{Text, parse_decimal};
 use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -46,7 +46,7 @@ pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text
     if text.trim().is_empty() {
         return Err(TEXTS.text("hd_entry.empty"));
     }
-    let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
+    let value = parse_decimal(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == PositionUnit::Steps && value.fract() != 0.0 {
         return Err(TEXTS.text("hd_entry.whole_steps").with("entry", text.trim()));
     }
@@ -94,7 +94,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
 /// # Errors
 /// Returns the reason if the entry is invalid.
 pub fn length(text: &str) -> Result<Length, Text> {
-    let millimetres = number(text).filter(|own| *own > 0.0 && *own <= 1e6);
+    let millimetres = parse_decimal(text).filter(|own| *own > 0.0 && *own <= 1e6);
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
     nanometres
         .map(|nanometres| Length { nanometres })

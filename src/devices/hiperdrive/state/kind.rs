@@ -23,17 +23,17 @@ impl DeviceType for Unit {
     type Form = HiperdriveForm;
     type Tables = ();
 
-    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
     }
 
-    fn explain(cause: &Cause) -> Option<Text> {
+    fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
 
-    fn tables(_store: &Store) -> Self::Tables {}
+    fn load_tables(_store: &Store) -> Self::Tables {}
 
-    fn begin(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
+    fn create(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
         let mut unit = Unit::with(session);
         if let Some((profile, ())) = profile {
             unit.staged = StagedEdits::for_profile(profile.image.clone());

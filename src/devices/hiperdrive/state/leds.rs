@@ -210,10 +210,10 @@ mod tests {
     /// Checks that a sentence in the window is the phrase of the table with a capital letter and a full stop.
     #[track_caller]
     fn same(said: &Text, phrase: &str) {
-        let words = said.words(Language::English);
+        let words = said.to_string_in(Language::English);
         assert_eq!(words.trim_end_matches('.').to_lowercase(), phrase.to_lowercase(), "{}", said.id());
         assert!(words.ends_with('.') && words.starts_with(|c: char| c.is_uppercase()), "{words}");
-        assert_ne!(words, said.words(Language::German));
+        assert_ne!(words, said.to_string_in(Language::German));
     }
 
     #[test]

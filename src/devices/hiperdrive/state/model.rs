@@ -17,10 +17,10 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 impl DeviceModel for Unit {
     const TAB: Tab = Tab::named("Hiperdrive");
     type Action = HiperdriveAction;
-    type Done = Infallible;
+    type TaskResult = Infallible;
 
     fn connect(&mut self, opened: OpenedConnection<Hiperdrive>, services: &mut Services) {
-        SessionEvents::let_go(self, JobState::Cancelled, services);
+        SessionEvents::release_thread(self, JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.records.values_mut().for_each(|record| record.begin(&opened.began));
         self.began = Some(opened.began.clone());
@@ -31,18 +31,18 @@ impl DeviceModel for Unit {
         let motion = opened.aside.motion.clone();
         self.session.attach_connection(opened, services);
         self.request_temperatures();
-        if let Some(line) = self.session.line() {
+        if let Some(line) = self.session.live_session() {
             services.brakes.add(Box::new(motion), line.stop_handle());
         }
         // The identity is read first, then everything else. Nothing is set, and nothing moves.
         self.submit(HiperdriveJob::Hello, services);
     }
 
-    fn act(&mut self, action: HiperdriveAction, context: &mut ActionContext<'_>) {
+    fn handle_action(&mut self, action: HiperdriveAction, context: &mut ActionContext<'_>) {
         Unit::act(self, action, context.services);
     }
 
-    fn done(&mut self, done: Infallible, _services: &mut Services) {
+    fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
     }
 
@@ -50,7 +50,7 @@ impl DeviceModel for Unit {
         HiperdriveJob::Position(self.drive())
     }
 
-    fn record(&self) -> &dyn Recording {
+    fn recording(&self) -> &dyn Recording {
         &self.record.track
     }
 
@@ -58,7 +58,7 @@ impl DeviceModel for Unit {
         &mut self.record.track
     }
 
-    fn step(&mut self, step: EditStep) {
+    fn apply_edit_step(&mut self, step: EditStep) {
         step(&mut self.staged);
         self.refusal = None;
     }
@@ -85,7 +85,7 @@ impl DeviceModel for Unit {
 
     fn stop(&mut self, services: &mut Services) {
         self.moves.stop();
-        let pace = self.session.line.as_ref().and_then(LiveSession::polling);
+        let pace = self.session.line.as_ref().and_then(LiveSession::polling_interval);
         self.session.stop(services);
         // STOP applies to motion and jobs; the drives remain visible.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
@@ -111,7 +111,7 @@ impl MotionControl for Unit {
         self.moves.stop();
     }
 
-    fn let_go(&mut self) {
+    fn release_motion(&mut self) {
         self.moves.release_held();
     }
 

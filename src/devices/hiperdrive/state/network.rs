@@ -296,7 +296,7 @@ mod tests {
             let texts = consequence_texts(AddressSwitch::parse(digits), &now, wanted, host);
             for (_, text) in &texts {
                 for language in [Language::English, Language::German] {
-                    let words = text.words(language);
+                    let words = text.to_string_in(language);
                     assert!(words != text.id() && !words.contains('{'), "{words}");
                 }
             }

@@ -7,7 +7,7 @@ use jiff::Zoned;
 use super::ruler::{PositionUnit, Ruler};
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, PositionSample, PositionScales, Watchable, WatchedValue};
 use crate::devices::hiperdrive::procedures::{DriveReading, Temperature, TemperatureReading};
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
@@ -30,7 +30,7 @@ pub struct Record {
 impl Record {
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
-        self.track.begin(began);
+        self.track.begin_session(began);
     }
 
     pub(super) fn lose(&mut self, dropped: u64) {
@@ -47,14 +47,14 @@ impl Record {
             is_bad: !status.is_present(),
             is_warned: status.is_set(crate::devices::hiperdrive::protocol::StatusBit::Warning),
         };
-        self.track.add(&[sighting], &meaning(ruler));
+        self.track.add_positions(&[sighting], &meaning(ruler));
         // Without control, a target recorded earlier stays among the watched values.
         let has_target =
-            target.is_some() || self.track.watched().iter().any(|own| matches!(own, RecordedValue::Target(_)));
+            target.is_some() || self.track.watched_values().iter().any(|own| matches!(own, RecordedValue::Target(_)));
         let mut beside = vec![RecordedValue::Speed];
         beside.extend(has_target.then_some(RecordedValue::Target(ruler)));
         beside.extend(self.temperatures.iter().copied().map(RecordedValue::Temperature));
-        self.track.watch(&beside);
+        self.track.set_watched(&beside);
         let watching = |value| WatchedValue { at, value: Some(value), is_warned: false, never: None };
         self.track.add_watched(&RecordedValue::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
         if let Some(target) = target {
@@ -66,9 +66,10 @@ impl Record {
     /// Starts recording the given temperatures. Existing recordings of other temperatures are kept.
     pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
         self.temperatures = wished.to_vec();
-        let others = self.track.watched().into_iter().filter(|own| !matches!(own, RecordedValue::Temperature(_)));
+        let others =
+            self.track.watched_values().into_iter().filter(|own| !matches!(own, RecordedValue::Temperature(_)));
         let wished = wished.iter().copied().map(RecordedValue::Temperature);
-        self.track.watch(&others.chain(wished).collect::<Vec<_>>());
+        self.track.set_watched(&others.chain(wished).collect::<Vec<_>>());
     }
 
     /// Records a temperature. A temperature that is not being recorded is ignored, since it belongs to another drive.
@@ -86,20 +87,20 @@ impl Record {
     /// Marks a gap before the next samples because another drive was selected.
     pub(super) fn gap(&mut self) {
         self.last = None;
-        self.track.gap();
+        self.track.mark_gap();
     }
 
     pub(super) fn forget(&mut self) {
-        self.track.forget();
+        self.track.clear_unless_long();
         self.last = None;
     }
 }
 
 /// Returns the meaning of recorded positions, with millimetres first if the drive turns a spindle.
-fn meaning(ruler: Ruler) -> Meaning {
-    let mut meaning = Meaning::for_steps_per_turn(None, ruler.scale.steps_per_turn());
+fn meaning(ruler: Ruler) -> PositionScales {
+    let mut meaning = PositionScales::for_steps_per_turn(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.of(1, PositionUnit::Millimetres) {
-        let linear = Meaning::for_millimetres(millimetres).scales;
+        let linear = PositionScales::for_millimetres(millimetres).scales;
         for (own, linear) in meaning.scales.iter_mut().zip(linear) {
             let in_millimetres = linear.into_iter().filter(|scale| !scale.unit.id().starts_with("unit.steps"));
             own.splice(0..0, in_millimetres);
@@ -122,15 +123,15 @@ impl Watchable for RecordedValue {
         }
     }
 
-    fn line(&self, group: GroupId) -> Series {
+    fn create_series(&self, group: GroupId) -> Series {
         match self {
             RecordedValue::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 1)];
-                Series::of(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
+                Series::new(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
             }
             RecordedValue::Target(ruler) => {
                 let [scales, ..] = meaning(*ruler).scales;
-                Series::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
+                Series::new(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
             }
             RecordedValue::Temperature(what) => {
                 let (name, heading) = match what {
@@ -138,7 +139,7 @@ impl Watchable for RecordedValue {
                     Temperature::Drive(_) => ("hd_parameter.119", "drive temperature"),
                 };
                 let scales = vec![Scale::new("unit.celsius", 1.0, 0)];
-                Series::of(group, 0, TEXTS.text(name), heading.to_owned(), scales)
+                Series::new(group, 0, TEXTS.text(name), heading.to_owned(), scales)
             }
         }
     }

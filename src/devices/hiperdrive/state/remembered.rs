@@ -34,18 +34,18 @@ impl StoredDriveData for Unit {
         let mut next = kept.clone();
         let now = self.remembered_values();
         let (pitches, measure, unsaved) = (before.pitches, before.measure, before.unsaved);
-        let known = RememberedDrives::confirmed(pitches, measure, unsaved);
+        let known = RememberedDrives::without_limits(pitches, measure, unsaved);
         let (pitches, measure, unsaved) = (now.pitches.clone(), now.measure, now.unsaved.clone());
-        let ours = RememberedDrives::confirmed(pitches, measure, unsaved);
+        let ours = RememberedDrives::without_limits(pitches, measure, unsaved);
         next = next.with_changes(&known, &ours);
         let scaled_anew =
             |drive: &DriveNumber| before.scales.get(drive).is_some_and(|scale| now.scales.get(drive) != Some(scale));
         for drive in now.unconfirmed.iter().filter(|own| !before.unconfirmed.contains(own) || scaled_anew(own)) {
-            next.mark(drive.get(), 1);
+            next.set_control_count(drive.get(), 1);
         }
         for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
             // Limits that were marked again elsewhere are not the ones confirmed here.
-            if kept.marks(drive) == before.kept.marks(drive) {
+            if kept.control_count(drive) == before.kept.control_count(drive) {
                 next.set_unconfirmed(drive, false);
             }
         }
@@ -64,7 +64,7 @@ impl StoredDriveData for Unit {
         }
     }
 
-    fn marks(&self) -> SettingsReadState {
+    fn read_state(&self) -> SettingsReadState {
         self.marks
     }
 

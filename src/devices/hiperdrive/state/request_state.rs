@@ -42,7 +42,7 @@ impl Unit {
     /// Returns the reason if the connection cannot be closed.
     pub fn check_can_release_control(&self) -> Result<(), Text> {
         // Control can be released even while the device does not answer.
-        match self.session.line() {
+        match self.session.live_session() {
             _ if !self.moves.is_open() => Err(TEXTS.text("hd_refused.not_taken")),
             None => Err(Text::new("session.not_connected")),
             Some(_) if self.session.is_busy() => Err(Text::new("session.busy")),

@@ -4,7 +4,7 @@ use super::axis::words::millimetres;
 use super::network::PowerUpAddress;
 use super::ruler::{PositionUnit, Ruler};
 use super::words;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::number::decimals_of;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
@@ -25,16 +25,16 @@ impl Reviewable for Hiperdrive {
     type Prepared = Prepared;
     type Written = WrittenChanges;
 
-    fn change(change: &Change) -> Text {
+    fn change_title(change: &Change) -> Text {
         explained::change(change)
     }
 
-    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+    fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
-        permit.option(options)
+        permit.restore_option(options)
     }
 
-    fn op(prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
         operation_texts(prepared, op, |_| None)
     }
 
@@ -43,7 +43,7 @@ impl Reviewable for Hiperdrive {
     }
 
     fn redo(prepared: &Prepared) -> Vec<Text> {
-        prepared.mounting_written.iter().map(explain::plain).collect()
+        prepared.mounting_written.iter().map(explain::literal_text).collect()
     }
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
@@ -54,10 +54,10 @@ impl Reviewable for Hiperdrive {
             texts.push(TEXTS.text("hd_review.factory_all"));
         }
         texts.extend(power_up(&prepared.plan));
-        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        let mounting = prepared.mounting_left.iter().map(explain::literal_text).collect();
         texts.extend(review::skipped_texts(
             TEXTS.text("hd_review.missing"),
-            prepared.missing.iter().map(plain).collect(),
+            prepared.missing.iter().map(literal_text).collect(),
             mounting,
         ));
         texts
@@ -77,7 +77,7 @@ impl Reviewable for Hiperdrive {
         needs
     }
 
-    fn cost(prepared: &Prepared) -> Text {
+    fn cost_text(prepared: &Prepared) -> Text {
         let saves = prepared.plan.write_cycles();
         if saves == 0 {
             let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == REFERENCE);
@@ -90,7 +90,7 @@ impl Reviewable for Hiperdrive {
         }
     }
 
-    fn written(written: &WrittenChanges) -> Text {
+    fn written_text(written: &WrittenChanges) -> Text {
         explained::written(written)
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::axis::{Axis, AxisAction, AxisButton, AxisStep, Device, DriveFacts, DriveRequest, report};
 use super::review::ReviewState;
 use super::unit::Unit;
-use crate::app::action::{Action as StudioAction, Done};
+use crate::app::action::{Action as StudioAction, TaskResult};
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, Phase, Source};
 use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
@@ -59,7 +59,7 @@ impl Unit {
         let errors = self.drive_status(drive).filter(|own| own.faults > 0);
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
         DriveFacts {
-            connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
+            connected: self.session.phase == Phase::Connected && self.session.live_session().is_some(),
             busy: self.session.is_busy() || self.session.review.is_some(),
             stale: self.is_stale,
             is_virtual: self.target.is_some(),
@@ -107,7 +107,7 @@ impl Unit {
         if action == AxisAction::Begin {
             return self.begin_axis(drive, services);
         }
-        let when = services.now().strftime("%Y-%m-%d %H:%M").to_string();
+        let when = services.current_time().strftime("%Y-%m-%d %H:%M").to_string();
         let Some(axis) = self.axes.get_mut(&drive) else { return };
         match action {
             AxisAction::Begin => {}
@@ -147,7 +147,7 @@ impl Unit {
                 let Some(text) = self.axis_report(language) else { return };
                 services.tasks.run("report", move || {
                     let result = write_atomically(&path, text.as_bytes());
-                    StudioAction::Done(Done::FileSaved { message: Text::new("report.saved"), path, result })
+                    StudioAction::Done(TaskResult::FileSaved { message: Text::new("report.saved"), path, result })
                 });
             }
         }
@@ -244,7 +244,7 @@ impl Unit {
         }
         // `None` means that the review is closed. After the review has ended, the value tells whether it was carried
         // out.
-        let write = self.review().map(|review| match &review.state {
+        let write = self.open_review().map(|review| match &review.state {
             ReviewState::Done(..) => Some(Ok(())),
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),
             _ => None,

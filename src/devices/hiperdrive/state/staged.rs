@@ -94,7 +94,7 @@ impl StagedEdits {
         }
         let edits = self.saved_edits();
         self.waiting.clear();
-        self.history.forget();
+        self.history.clear_steps();
         (self.base, self.wanted) = (Some(image.clone()), Some(image));
         self.take_draft(edits);
     }
@@ -102,7 +102,7 @@ impl StagedEdits {
     /// Adopts a full reading of the device. Edits and their undo history are kept.
     pub fn refresh(&mut self, now: Image) {
         match (&self.base, &mut self.wanted) {
-            (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| rebase(own, before, &now)),
+            (Some(before), Some(wanted)) => self.history.update_all_states(wanted, |own| rebase(own, before, &now)),
             _ => self.wanted = Some(now.clone()),
         }
         self.earlier = self.base.replace(now);
@@ -185,7 +185,7 @@ impl StagedEdits {
     }
 
     fn step(&mut self, after: Image) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
+        self.wanted.as_mut().is_some_and(|wanted| self.history.apply_step(wanted, after))
     }
 
     /// Returns the edits for a draft on disk, including those of parameters that have not been read yet.
@@ -238,7 +238,7 @@ impl SnapshotEdits for StagedEdits {
         &self.history
     }
 
-    fn parts(&mut self) -> Option<EditHistoryParts<'_, Image>> {
+    fn history_parts(&mut self) -> Option<EditHistoryParts<'_, Image>> {
         Some((self.base.as_ref()?, self.wanted.as_mut()?, &mut self.history))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::buses::ethernet_ip::protocol::{
     Command, EncapsulationStatus, Frame, GeneralStatus, LogicalKind, Reply, Request, Service,
@@ -25,16 +25,18 @@ impl FrameDecoder {
     const REMEMBERED: usize = 8;
 
     pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
-        let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
-        let broken = |error| FrameExplanation::broken(explained::damage_text(&Damage::Packet(error)));
+        let Some(bytes) = entry.bytes.to_bytes() else {
+            return FrameExplanation::from_error(Text::new("trace.hidden"));
+        };
+        let broken = |error| FrameExplanation::from_error(explained::damage_text(&Damage::Packet(error)));
         let frame = match Frame::parse(&bytes) {
             Ok(frame) => frame,
             Err(error) => return broken(error),
         };
-        let name: Vec<Text> = frame.command.name().map(plain).into_iter().collect();
+        let name: Vec<Text> = frame.command.name().map(literal_text).into_iter().collect();
         let is_reply = entry.direction == Direction::Received;
         if is_reply && frame.status != EncapsulationStatus::OK {
-            return reported_fault(plain(frame.status));
+            return reported_fault(literal_text(frame.status));
         }
         if frame.command != Command::SEND_RR_DATA {
             return name.into();
@@ -46,7 +48,7 @@ impl FrameDecoder {
         };
         let Some(message) = body.message() else {
             return if is_reply {
-                FrameExplanation::broken(explained::damage_text(&Damage::Empty))
+                FrameExplanation::from_error(explained::damage_text(&Damage::Empty))
             } else {
                 name.into()
             };
@@ -80,12 +82,12 @@ impl FrameDecoder {
 
 fn reply_meaning(reply: &Reply, request: Option<&Request>) -> FrameExplanation {
     if reply.status != GeneralStatus::OK {
-        return reported_fault(plain(reply.status));
+        return reported_fault(literal_text(reply.status));
     }
     let read = request.filter(|request| request.service == Service::GET && reply.service == Service::GET);
     match read.and_then(parameter_of).and_then(|number| value_texts(number, &reply.data)) {
         Some(Ok(texts)) => texts.into(),
-        Some(Err(error)) => FrameExplanation::broken(explained::damage_text(&Damage::Value(error))),
+        Some(Err(error)) => FrameExplanation::from_error(explained::damage_text(&Damage::Value(error))),
         None => vec![TEXTS.text("hd_trace.done")].into(),
     }
 }
@@ -100,7 +102,7 @@ fn parameter_of(request: &Request) -> Option<ParameterNumber> {
 
 fn request_texts(request: &Request) -> Vec<Text> {
     let Some(number) = parameter_of(request) else {
-        return vec![plain(request.service.name(request.class()).unwrap_or_default())];
+        return vec![literal_text(request.service.name(request.class()).unwrap_or_default())];
     };
     let is_set = request.service == Service::SET;
     let id = if is_set { "hd_asked.set" } else { "hd_asked.parameter" };
@@ -130,7 +132,7 @@ fn value_texts(number: ParameterNumber, data: &[u8]) -> Option<Result<Vec<Text>,
     let shown = words::value_text(number, &value);
     let shown = match words::unit(row) {
         Some(unit) => TEXTS.text("hd_entry.place").with("value", shown).with_text("unit", unit),
-        None => plain(shown),
+        None => literal_text(shown),
     };
     Some(Ok([shown].into_iter().chain(meaning).collect()))
 }
@@ -174,7 +176,7 @@ mod tests {
     }
 
     fn english_texts(explained: &FrameExplanation) -> Vec<String> {
-        explained.meaning.iter().map(|text| text.words(Language::English)).collect()
+        explained.meaning.iter().map(|text| text.to_string_in(Language::English)).collect()
     }
 
     /// A frame with this context around a message (reference 7 and 9).

@@ -157,7 +157,7 @@ impl Unit {
             let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
             self.records.insert(before, std::mem::replace(&mut self.record, next));
             self.record.gap();
-            self.record.track.poll(self.session.line.as_ref().and_then(LiveSession::polling), false);
+            self.record.track.poll(self.session.line.as_ref().and_then(LiveSession::polling_interval), false);
             self.request_temperatures();
         }
     }

@@ -2,7 +2,7 @@
 
 use super::staged::{EditError, Mark};
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     CONTROL, MAXIMUM_SPEED, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, REQUESTED, SERVICE, STATUS, TIMEOUT, VARIANT,
 };
@@ -31,7 +31,7 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
         "0.1 rpm" => Some(TEXTS.text("hd_unit.tenth_rpm")),
         "0.1 V" => Some(TEXTS.text("hd_unit.tenth_volt")),
         "0.1 s" => Some(TEXTS.text("hd_unit.tenth_second")),
-        own => Some(plain(own)),
+        own => Some(literal_text(own)),
     }
 }
 
@@ -39,7 +39,7 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
 pub fn nominal_value(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
     let (value, decimals) = protocol::nominal_value(text)?;
-    Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", plain(unit)))
+    Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", literal_text(unit)))
 }
 
 /// Describes the meaning of a number, or returns `None` if the number is self-explanatory.

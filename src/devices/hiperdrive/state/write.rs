@@ -25,7 +25,7 @@ impl Unit {
 }
 
 impl HasMemory for Unit {
-    fn op(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
         operation_texts(prepared, op, |drive| self.pitch(drive))
     }
 
@@ -44,18 +44,18 @@ impl HasMemory for Unit {
         !type_differences(&profile.identity, &own.profile()).is_empty()
     }
 
-    fn prepare(change: Change) -> HiperdriveJob {
+    fn prepare_job(change: Change) -> HiperdriveJob {
         HiperdriveJob::Prepare(change)
     }
 
     /// Stops all motion and returns the job that writes the plan. No limit of write cycles is known for these devices.
-    fn commit(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
+    fn commit_job(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin(&agreed.prepared.plan);
         HiperdriveJob::Commit(Box::new(agreed))
     }
 
-    fn carried_out(&mut self, _: &Committed, _: &mut Services) {
+    fn handle_executed_plan(&mut self, _: &Committed, _: &mut Services) {
         if let Some(prepared) = self.session.review.as_ref().and_then(Review::plan_in_progress) {
             self.unsaved.done(&prepared.plan);
         }
@@ -89,7 +89,7 @@ impl HasProfile for Unit {
         Some(Body::new(self.edited_profile()?))
     }
 
-    fn remarks(&self) -> Vec<Text> {
+    fn save_remarks(&self) -> Vec<Text> {
         truncated_list(&self.marks(), words::mark)
     }
 

@@ -18,8 +18,8 @@ use crate::devices::hiperdrive::state::axis::{
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    button, button_with_reason, card, card_with_trailing, enabled_button, paragraph, primary_button, row, severity,
-    split,
+    button_with_reason, card, card_with_trailing, enabled_button, labelled_button, paragraph, primary_button, row,
+    severity, split,
 };
 use crate::ui::widgets::{StepRow as Line, StepState, Steps, steps};
 use crate::ui::{Theme, icons};
@@ -75,7 +75,7 @@ const BESIDE: f32 = 640.0;
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
     let Some(axis) = unit.axis() else {
         intro_ui(ui, theme, unit, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
         notes_ui(ui, theme);
         return;
     };
@@ -84,7 +84,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     let shown = AxisPanel { unit, axis, seen: &seen, looked_at };
     if let Some(end) = axis.end() {
         end_ui(ui, theme, &shown, end, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
     }
     let goes_on = axis.end().is_none();
     if ui.available_width() < BESIDE {
@@ -94,7 +94,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         } else {
             card(ui, theme, TEXTS.text("hd_axis.title"), |ui| step_list_ui(ui, theme, &shown));
         }
-        theme.gap(ui);
+        theme.add_gap(ui);
         notes_ui(ui, theme);
         return;
     }
@@ -107,7 +107,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         |ui, actions| {
             if goes_on {
                 step_ui(ui, theme, &shown, actions);
-                theme.gap(ui);
+                theme.add_gap(ui);
             }
             notes_ui(ui, theme);
         },
@@ -136,7 +136,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
                 let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);
                 let layout = egui::Layout::right_to_left(egui::Align::Center);
                 ui.allocate_ui_with_layout(size, layout, |ui| ui.label(theme.label(number.to_string())));
-                ui.label(theme.label(theme.words(&words::title(step))));
+                ui.label(theme.label(theme.format_text(&words::title(step))));
             });
         }
     });
@@ -158,10 +158,10 @@ fn step_list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
             _ => words::found(shown.axis, step, shown.axis.displayed_facts(shown.seen)).filter(|_| has_result),
         };
         Line {
-            title: theme.words(&words::title(step)),
+            title: theme.format_text(&words::title(step)),
             state,
-            word: theme.words(&words::step_status(reached)),
-            note: found.map(|text| with_nonbreaking_spaces(theme.words(&text))).unwrap_or_default(),
+            word: theme.format_text(&words::step_status(reached)),
+            note: found.map(|text| with_nonbreaking_spaces(theme.format_text(&text))).unwrap_or_default(),
             ..Line::default()
         }
     };
@@ -183,11 +183,11 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
         ui.label(theme.caption(format!("{place}/{}", AxisStep::ALL.len())));
         if shown.unit.drives().len() > 1 {
             let drive = TEXTS.text("hd_axis.of_drive").with("drive", axis.drive().get());
-            ui.label(theme.caption(theme.words(&drive)));
+            ui.label(theme.caption(theme.format_text(&drive)));
         }
     };
     card_with_trailing(ui, theme, words::title(step), aside, |ui| {
-        paragraph(ui, with_nonbreaking_spaces(theme.words(&words::step_instructions(step, seen))));
+        paragraph(ui, with_nonbreaking_spaces(theme.format_text(&words::step_instructions(step, seen))));
         ui.add_space(theme.space.between);
         live_ui(ui, theme, shown);
         ui.add_space(theme.space.between);
@@ -196,7 +196,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
         if entries != axis.entries().shown(theme.language) {
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
-        theme.gap(ui);
+        theme.add_gap(ui);
         buttons_ui(ui, theme, shown, actions);
         ui.add_space(theme.space.between);
         messages(ui, theme, shown, &entries);
@@ -223,7 +223,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries
     // The limits to be checked are shown large above.
     if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
         ui.add_space(theme.space.inside);
-        row(ui, theme, &say(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.words(&found)));
+        row(ui, theme, &say(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.format_text(&found)));
     }
     if let (AxisStep::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
         warning_ui(ui, theme, &differences);
@@ -232,16 +232,16 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries
 
 fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     theme.sunken_frame().show(ui, |ui| {
-        crate::ui::controls::fill(ui);
+        crate::ui::controls::fill_width(ui);
         let position = shown.seen.position.map_or_else(
             || say(theme, "hd_axis.none"),
-            |position| theme.words(&words::millimetres(shown.seen.ruler(), position.into())),
+            |position| theme.format_text(&words::millimetres(shown.seen.ruler(), position.into())),
         );
         row(ui, theme, &say(theme, "hd_axis.position"), theme.value(position));
-        let state = shown
-            .seen
-            .actual
-            .map_or_else(|| say(theme, "hd_axis.none"), |actual| theme.words(&explain::state(actual.status.state())));
+        let state = shown.seen.actual.map_or_else(
+            || say(theme, "hd_axis.none"),
+            |actual| theme.format_text(&explain::state(actual.status.state())),
+        );
         let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
         let state = match (shown.seen.has_failed(), code) {
             (false, _) => RichText::new(state),
@@ -264,7 +264,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
         {
             shown.push(actions, Run::Back);
         }
-        if button(ui, icons::X, &say(theme, "hd_axis.cancel")).clicked() {
+        if labelled_button(ui, icons::X, &say(theme, "hd_axis.cancel")).clicked() {
             shown.push(actions, Run::Cancel);
         }
         let word = say(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
@@ -311,10 +311,10 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: End, actions: 
             {
                 shown.push(actions, Run::Begin);
             }
-            if button(ui, icons::FLOPPY_DISK, &say(theme, "hd_axis.save_report")).clicked() {
+            if labelled_button(ui, icons::FLOPPY_DISK, &say(theme, "hd_axis.save_report")).clicked() {
                 shown.push(actions, Run::AskReport);
             }
-            if button(ui, icons::COPY, &say(theme, "hd_axis.copy_report")).clicked()
+            if labelled_button(ui, icons::COPY, &say(theme, "hd_axis.copy_report")).clicked()
                 && let Some(report) = shown.unit.axis_report(theme.language)
             {
                 ui.ctx().copy_text(report);
@@ -356,13 +356,13 @@ fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
-        paragraph(ui, theme.words(text));
+        paragraph(ui, theme.format_text(text));
     });
 }
 
 fn warning_ui(ui: &mut Ui, theme: &Theme, why: &Text) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
+        paragraph(ui, RichText::new(theme.format_text(why)).color(theme.palette.warn));
     });
 }

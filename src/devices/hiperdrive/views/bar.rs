@@ -50,7 +50,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
 fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let palette = theme.palette;
     let (words, ink) = match (unit.loss_reason(), outside::badge(theme, unit)) {
-        (Some(why), _) => (format!("{}  {}", icons::WARNING_CIRCLE, theme.words(&why)), palette.bad),
+        (Some(why), _) => (format!("{}  {}", icons::WARNING_CIRCLE, theme.format_text(&why)), palette.bad),
         (None, Some(badge)) => (badge.text().to_owned(), palette.bad),
         (None, None) if unit.moves.is_open() => (say(theme, "hd_bar.in_control"), palette.good),
         (None, None) => (say(theme, "hd_bar.watching"), palette.muted),
@@ -61,14 +61,14 @@ fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
 /// Draws the STOP button. It can be pressed only if it has an effect.
 fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (palette, active) = (theme.palette, studio.can_stop_motion());
-    let word = theme.say("hd_bar.stop");
+    let word = theme.translate("hd_bar.stop");
     let (ink, fill) = if active { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.bold_font(theme.sizes.section)).color(ink);
     let button = egui::Button::new(text).fill(fill).stroke(Stroke::NONE);
     // The button acts when it is pressed down. A stop does not wait for the release.
     let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP, button)).inner;
     let response = response
-        .on_hover_text(theme.say("hd_bar.stop_hint"))
+        .on_hover_text(theme.translate("hd_bar.stop_hint"))
         .on_disabled_hover_text(say(theme, "hd_bar.stop_without_control"));
     let pressed = press_began(ui, &response);
     if name(response, active, &word).clicked() || pressed {
@@ -109,9 +109,9 @@ fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (Dri
         Some(State::NotReady) => (icons::PLUGS, palette.muted),
         None => (icons::QUESTION, palette.muted),
     };
-    let words = state.map_or_else(|| say(theme, "hd_bar.unknown"), |state| theme.words(&explain::state(state)));
+    let words = state.map_or_else(|| say(theme, "hd_bar.unknown"), |state| theme.format_text(&explain::state(state)));
     let name = TEXTS.text("hd_bar.named").with("drive", drive.get());
-    let name = theme.words(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
+    let name = theme.format_text(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
     let is_shown = drive == unit.drive();
     let ink = if is_shown { palette.text } else { palette.muted };
     let font = theme.bold_font(theme.sizes.body);

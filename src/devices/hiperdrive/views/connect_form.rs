@@ -8,9 +8,11 @@ use crate::devices::hiperdrive::state::{
     Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveLinkKind, TEXTS, VirtualHub,
 };
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner};
+use crate::ui::controls::{dropdown, enabled_button, entry, labelled_button, paragraph, problem_ui, spinner};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segmented_control, typed};
+use crate::ui::dialogs::connect::entries::{
+    entries_ui, expandable_ui, host_and_port_ui, recording_file_ui, segmented_control,
+};
 use crate::ui::{Theme, icons};
 
 pub(crate) struct HiperdriveConnectForm;
@@ -37,7 +39,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
         match form.kind {
             HiperdriveLinkKind::Virtual => simulated_ui(ui, theme, form),
             HiperdriveLinkKind::Network => {
-                place(
+                host_and_port_ui(
                     ui,
                     theme,
                     "connect.device_address",
@@ -46,10 +48,10 @@ impl TypedConnectForm for HiperdriveConnectForm {
                 );
                 setpoint_interval_ui(ui, theme, form);
                 ui.add_space(theme.space.inside);
-                let finder = dialog.finder::<DiscoveryFinder>();
+                let finder = dialog.finder_as::<DiscoveryFinder>();
                 discovery(ui, theme, finder.and_then(|own| own.discovery.as_ref()), actions);
             }
-            HiperdriveLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
+            HiperdriveLinkKind::Replay => recording_file_ui(ui, theme, &mut form.file, actions),
         }
         if form.kind != HiperdriveLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == HiperdriveLinkKind::Virtual {
@@ -58,10 +60,10 @@ impl TypedConnectForm for HiperdriveConnectForm {
             let word = say(theme, "connect.byte_order");
             entry(ui, theme, &word, |ui| {
                 let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
-                choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, say(theme, id))));
+                dropdown(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, say(theme, id))));
             });
             let (_, rest) = HiperdriveForm::link_entries();
-            typed(ui, theme, say, rest, &mut form.typed);
+            entries_ui(ui, theme, say, rest, &mut form.typed);
         }
     }
 }
@@ -74,15 +76,15 @@ fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
             (VirtualHub::Four, "connect.hub_four"),
             (VirtualHub::Eight, "connect.hub_eight"),
         ];
-        choice(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, say(theme, id))));
+        dropdown(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, say(theme, id))));
     });
     let own = form.virtual_device_entries();
-    typed(ui, theme, say, own, &mut form.typed);
+    entries_ui(ui, theme, say, own, &mut form.typed);
 }
 
 fn setpoint_interval_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     let (interval, _) = HiperdriveForm::link_entries();
-    typed(ui, theme, say, interval, &mut form.typed);
+    entries_ui(ui, theme, say, interval, &mut form.typed);
 }
 
 fn discovery(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actions: &mut Vec<Action>) {
@@ -98,19 +100,19 @@ fn discovery(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actions:
         ui.label(theme.caption(say(theme, "connect.discover_words")));
     });
     match discovery.and_then(|own| own.found.as_ref()) {
-        Some(Err(why)) => problem(ui, theme, Some(why)),
+        Some(Err(why)) => problem_ui(ui, theme, Some(why)),
         Some(Ok(found)) if found.is_empty() => paragraph(ui, theme.caption(say(theme, "connect.nobody"))),
         _ => {}
     }
     for (at, device) in discovery.map(Discovery::devices).unwrap_or_default().iter().enumerate() {
         ui.horizontal(|ui| {
             let words = TEXTS.text("connect.use_device").with("address", device.address);
-            if button(ui, icons::PLUGS_CONNECTED, &theme.words(&words)).clicked() {
+            if labelled_button(ui, icons::PLUGS_CONNECTED, &theme.format_text(&words)).clicked() {
                 actions.push(Action::Connect(Connect::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))));
             }
             ui.label(&device.name);
             let serial = Text::new("check.serial").with("number", device.serial_number);
-            ui.label(theme.label(theme.words(&serial)));
+            ui.label(theme.label(theme.format_text(&serial)));
             if !device.is_hiperdrive {
                 ui.label(theme.caption(say(theme, "connect.other_maker")));
             }

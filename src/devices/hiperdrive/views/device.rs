@@ -30,18 +30,18 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
         |ui, actions| {
             identity_ui(ui, theme, unit, actions);
             if !is_profile {
-                theme.gap(ui);
+                theme.add_gap(ui);
                 check_ui(ui, theme, unit, actions);
             }
         },
         |ui, _| {
             drives_ui(ui, theme, unit);
-            theme.gap(ui);
+            theme.add_gap(ui);
             wiring_ui(ui, theme);
         },
     );
     if !is_profile {
-        theme.gap(ui);
+        theme.add_gap(ui);
         service_buttons_ui(ui, theme, unit, actions);
     }
 }
@@ -98,14 +98,15 @@ fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         let taken = identity.drives.len();
         if taken < usize::from(places) {
             let text = TEXTS.text("hd_drives.empty").with("count", usize::from(places) - taken);
-            paragraph(ui, theme.caption(theme.words(&text)));
+            paragraph(ui, theme.caption(theme.format_text(&text)));
         }
     });
 }
 
 fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
-        if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
+        if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &theme.translate("check_card.run")).clicked()
+        {
             actions.push(Action::device(unit.session.id, Hiperdrive::Check));
         }
     };
@@ -117,7 +118,8 @@ fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
 fn service_buttons_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
-            if enabled_button(ui, unit.session.is_ready(), "", &theme.words(&explain::service(service))).clicked() {
+            if enabled_button(ui, unit.session.is_ready(), "", &theme.format_text(&explain::service(service))).clicked()
+            {
                 let change = Change::Do(service);
                 actions.push(Action::device(unit.session.id, Hiperdrive::Plan(Box::new(change))));
             }

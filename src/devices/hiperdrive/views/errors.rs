@@ -20,7 +20,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
         |ui, actions| buffer_ui(ui, theme, unit, actions),
         |ui, _| {
             words(ui, theme, unit);
-            theme.gap(ui);
+            theme.add_gap(ui);
             figures::card_ui(ui, theme, unit);
         },
     );
@@ -52,10 +52,10 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad));
                 ui.label(theme.monospace(format!("{:04X}", code.code())));
-                paragraph(ui, theme.words(&words.name));
+                paragraph(ui, theme.format_text(&words.name));
             });
-            paragraph(ui, theme.label(theme.words(&words.cause)));
-            paragraph(ui, theme.words(&words.remedy));
+            paragraph(ui, theme.label(theme.format_text(&words.cause)));
+            paragraph(ui, theme.format_text(&words.remedy));
             ui.add_space(theme.space.between);
         }
         if none {
@@ -88,7 +88,7 @@ fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         row(ui, theme, &say(theme, "hd_health.temperature"), theme.monospace(format!("{} °C", status.temperature)));
         if let Some(whole) = &unit.status {
             row(ui, theme, &say(theme, "hd_health.device"), theme.monospace(format!("{} °C", whole.temperature)));
-            let volts = theme.number(whole.supply_tenths as f64 / 10.0, 1);
+            let volts = theme.format_number(whole.supply_tenths as f64 / 10.0, 1);
             row(ui, theme, &say(theme, "hd_health.supply"), theme.monospace(format!("{volts} V")));
         }
         paragraph(ui, theme.caption(say(theme, "hd_health.words")));

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::{TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, empty_placeholder, folding_card, paragraph, row};
-use crate::ui::widgets::series;
+use crate::ui::widgets::series_colour;
 
 pub(super) fn control_status_words_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
     folding_card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
@@ -18,12 +18,12 @@ pub(super) fn control_status_words_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, d
             return;
         };
         let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
-        let set = actual.status.set_bits().map(|bit: StatusBit| theme.words(&explain::status_bit(bit))).collect();
+        let set = actual.status.set_bits().map(|bit: StatusBit| theme.format_text(&explain::status_bit(bit))).collect();
         row(ui, theme, &say(theme, "hd_words.status"), bits(set, actual.status.to_u16()));
         if let Some(sent) = unit.moves.last_setpoint(drive) {
             let speed_mode = sent.control.is_set(ControlBit::SpeedMode);
             let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.is_set(*bit));
-            let set = set.map(|bit| theme.words(&explain::control_bit(bit, speed_mode))).collect();
+            let set = set.map(|bit| theme.format_text(&explain::control_bit(bit, speed_mode))).collect();
             row(ui, theme, &say(theme, "hd_words.control"), bits(set, sent.control.to_u16()));
         }
     });
@@ -41,7 +41,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             empty_placeholder(ui, theme, &say(theme, "hd_link.nothing"), None);
             return;
         }
-        let milliseconds = theme.number(link.interval.as_secs_f64() * 1e3, 1);
+        let milliseconds = theme.format_number(link.interval.as_secs_f64() * 1e3, 1);
         row(ui, theme, &say(theme, "hd_link.interval"), theme.monospace(format!("{milliseconds} ms")));
         let priority = if view.punctual { "hd_link.real_time" } else { "hd_link.ordinary" };
         row(ui, theme, &say(theme, "hd_link.priority"), say(theme, priority));
@@ -57,11 +57,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             let ink = if count == 0 { theme.palette.text } else { theme.palette.warn };
             row(ui, theme, &say(theme, id), theme.monospace(count.to_string()).color(ink));
         }
-        row(ui, theme, &say(theme, "hd_link.parameter_words"), theme.words(&explain::parameter_words(view)));
+        row(ui, theme, &say(theme, "hd_link.parameter_words"), theme.format_text(&explain::parameter_words(view)));
         if let Some((least, greatest)) = link.intervals.deviation_range_us() {
             let off =
                 TEXTS.text("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
-            row(ui, theme, &say(theme, "hd_link.jitter"), theme.monospace(theme.words(&off)));
+            row(ui, theme, &say(theme, "hd_link.jitter"), theme.monospace(theme.format_text(&off)));
         }
         histogram(ui, theme, &view.link.intervals);
         paragraph(ui, theme.caption(say(theme, "hd_link.words")));
@@ -95,7 +95,7 @@ fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
             pos2(left + 1.0, ground - BARS * height(bucket.count)),
             pos2(left + width - 1.0, ground),
         );
-        painter.rect_filled(bar, 1.0, series(theme, 1));
+        painter.rect_filled(bar, 1.0, series_colour(theme, 1));
         let place = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
         if response.hover_pos().is_some_and(|at| place.contains(at)) {
             response.clone().on_hover_text(format!("{}: {}", span(bucket), bucket.count));

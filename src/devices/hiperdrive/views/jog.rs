@@ -78,7 +78,7 @@ fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<
     let fixed = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear", "hd_refused.not_taken", "hd_refused.remote"];
     let room = fixed.into_iter().map(|id| height(say(theme, id))).fold(0.0, f32::max);
     let words = match why_not {
-        Some(why) => RichText::new(theme.words(why)).color(theme.palette.warn),
+        Some(why) => RichText::new(theme.format_text(why)).color(theme.palette.warn),
         None => RichText::new(say(theme, id)).color(colour),
     };
     ui.allocate_ui(vec2(width, room), |ui| {

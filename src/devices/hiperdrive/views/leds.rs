@@ -42,7 +42,7 @@ fn device_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
         entry(ui, theme, &word, |ui| options(ui, &word, &mut s3, positions));
         if s3 != 0 {
             let away = TEXTS.text("hd_led.switch_away").with("drive", s3);
-            paragraph(ui, RichText::new(theme.words(&away)).color(theme.palette.warn));
+            paragraph(ui, RichText::new(theme.format_text(&away)).color(theme.palette.warn));
         }
     }
     if (hub, s3) != (leds.hub, leds.s3) {
@@ -59,9 +59,12 @@ fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
             let (icon, ink) = severity(theme, meaning.severity);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(ink));
-                paragraph(ui, RichText::new(theme.words(&meaning.meaning)).font(theme.bold_font(theme.sizes.body)));
+                paragraph(
+                    ui,
+                    RichText::new(theme.format_text(&meaning.meaning)).font(theme.bold_font(theme.sizes.body)),
+                );
             });
-            paragraph(ui, theme.label(theme.words(&meaning.remedy)));
+            paragraph(ui, theme.label(theme.format_text(&meaning.remedy)));
         });
     });
     ui.add_space(theme.space.inside);
@@ -69,7 +72,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
 
 /// Draws an LED. A click shows its next possible state.
 fn led_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
-    let shown = theme.words(&leds.state_text(lamp));
+    let shown = theme.format_text(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());
     let middle = pos2(rect.left() + 24.0, rect.center().y);
@@ -77,7 +80,7 @@ fn led_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
         Led::Drives if leds.hub && leds.s3 != 0 => {
-            theme.words(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
+            theme.format_text(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
         }
         Led::Drives => say(theme, "hd_led.what_drives"),
         Led::Bus(NetworkLed::Module) => say(theme, "hd_led.what_module"),

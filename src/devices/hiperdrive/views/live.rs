@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{PositionScale, State, turns};
 use crate::devices::hiperdrive::state::{HiperdriveAction, PositionUnit, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
-use crate::ui::panels::live::{LOW, raw_row};
+use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
@@ -19,7 +19,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let in_measure = |steps: i32, measure: PositionUnit| {
         // More than three decimals are useless.
         let decimals = ruler.decimals(measure).min(3);
-        ruler.of(steps.into(), measure).map(|value| theme.number(value, decimals))
+        ruler.of(steps.into(), measure).map(|value| theme.format_number(value, decimals))
     };
     let main = actual.map(|own| in_measure(own.position, unit.measure).unwrap_or_else(|| own.position.to_string()));
     let palette = theme.palette;
@@ -46,13 +46,13 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         State::Moving | State::Enabled => palette.good,
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
-    let word = theme.words(&explain::state(state));
+    let word = theme.format_text(&explain::state(state));
     // The text fits on one line beside the widest state, so the rows below do not move.
     let told_below = TEXTS.text("hd_outside.beside_state").with("state", &word);
-    let word = if is_told_below { theme.words(&told_below) } else { word };
-    let rpm = theme.number(unit.speed_scale(drive).rpm(actual.speed), 1);
-    let speed = format!("{rpm} {}", theme.say("unit.revolutions_per_minute"));
-    if ui.available_height() < LOW {
+    let word = if is_told_below { theme.format_text(&told_below) } else { word };
+    let rpm = theme.format_number(unit.speed_scale(drive).rpm(actual.speed), 1);
+    let speed = format!("{rpm} {}", theme.translate("unit.revolutions_per_minute"));
+    if ui.available_height() < LOW_PANEL_HEIGHT {
         // In a low window the plot needs the space.
         let words = format!("{word} · {speed}");
         ui.add(egui::Label::new(RichText::new(words).size(theme.sizes.caption).color(colour)).truncate());
@@ -67,15 +67,15 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     row(ui, theme, &say(theme, "hd_live.target"), target);
     if ruler.scale == PositionScale::FACTORY {
         let (turn, step) = turns(actual.position);
-        row(ui, theme, &theme.say("live.turns"), theme.monospace(turn.to_string()));
-        row(ui, theme, &theme.say("live.step"), theme.monospace(step.to_string()));
+        row(ui, theme, &theme.translate("live.turns"), theme.monospace(turn.to_string()));
+        row(ui, theme, &theme.translate("live.step"), theme.monospace(step.to_string()));
     }
     raw_row(ui, theme, actual.position.to_string());
 }
 
 /// Draws the menu that selects the temperatures to record with the position.
 pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
-    let word = theme.say("live.watch");
+    let word = theme.translate("live.watch");
     let watched = unit.watched_temperatures();
     icon_menu(ui, icons::EYE, &word, |ui| {
         ui.set_max_width(240.0);

@@ -127,7 +127,7 @@ impl TypedDeviceView for HiperdriveView {
             frame.show(ui, |ui| parameters::page_ui(ui, theme, unit, &mut view.parameters, actions));
             return;
         }
-        page::scrollable_page(ui, theme, (unit.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (unit.session.id, page.index()), |ui| match page {
             // Each drive has its own entries, with their own undo.
             Page::Motion => {
                 let own = &mut view.drives.entry(drive).or_default().motion;
@@ -140,12 +140,12 @@ impl TypedDeviceView for HiperdriveView {
             }
             Page::Diagnosis => {
                 errors::cards_ui(ui, theme, unit, actions);
-                theme.gap(ui);
+                theme.add_gap(ui);
                 leds::cards_ui(ui, theme, &mut view.leds);
             }
             Page::Device => {
                 device::cards_ui(ui, theme, unit, actions);
-                theme.gap(ui);
+                theme.add_gap(ui);
                 network::card_ui(ui, theme, unit, &mut view.network, actions);
             }
             Page::Backups => backups::page_ui(ui, theme, device, actions),
@@ -175,5 +175,5 @@ impl TypedDeviceView for HiperdriveView {
 
 /// Returns a string from this catalogue or the common one, in the window language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
-    theme.words(&TEXTS.text(id))
+    theme.format_text(&TEXTS.text(id))
 }

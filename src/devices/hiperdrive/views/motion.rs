@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    button_with_reason, card, card_with_trailing, choice, empty_placeholder, enabled_button, entry, folding_card,
+    button_with_reason, card, card_with_trailing, dropdown, empty_placeholder, enabled_button, entry, folding_card,
     message_label, options, paragraph, row, show_error_below, show_error_beside, text_entry, two_columns,
 };
 use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
@@ -52,16 +52,16 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     locks_ui(ui, theme, unit, actions);
     if !low {
         states_ui(ui, theme, unit, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
     }
     // With a unique ID, widgets that appear above do not take the keyboard focus from an entry.
     let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
         jog::card_ui(ui, theme, unit, view, actions);
-        theme.gap(ui);
+        theme.add_gap(ui);
         if low {
             states_ui(ui, theme, unit, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
         }
         two_columns(
             ui,
@@ -74,7 +74,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
             },
             |ui, (allowed, view, actions)| {
                 jog::step_card_ui(ui, theme, unit, allowed, view, actions);
-                theme.gap(ui);
+                theme.add_gap(ui);
                 folding_card(ui, theme, TEXTS.text("hd_run.title"), |ui| {
                     speed_control_ui(ui, theme, unit, allowed, actions)
                 });
@@ -83,7 +83,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         // The card is below the pads, so nothing that can be clicked moves when it appears.
         outside::card_ui(ui, theme, unit, &mut view.outside, actions);
     });
-    theme.gap(ui);
+    theme.add_gap(ui);
     figures::control_status_words_ui(ui, theme, unit, unit.drive());
 }
 
@@ -94,14 +94,14 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
-                paragraph(ui, theme.words(&explain::lock(lock)));
+                paragraph(ui, theme.format_text(&explain::lock(lock)));
             });
             if lock == MotionLock::LimitsUnconfirmed
                 && let Some((low, high)) = unit.limits_to_confirm(drive)
             {
                 let [low, high] = [low, high].map(|steps| {
                     let places = unit.position_texts(drive, steps);
-                    places.iter().map(|place| theme.words(place)).collect::<Vec<_>>().join("   ")
+                    places.iter().map(|place| theme.format_text(place)).collect::<Vec<_>>().join("   ")
                 });
                 row(ui, theme, &say(theme, "hd_limits.lower"), theme.monospace(low));
                 row(ui, theme, &say(theme, "hd_limits.upper"), theme.monospace(high));
@@ -138,10 +138,10 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
         let drive = unit.drive();
         let actual = unit.actual(drive);
         let present = actual.map(|actual| actual.status.state());
-        let names = State::ALL.map(|state| theme.words(&explain::state(state)));
+        let names = State::ALL.map(|state| theme.format_text(&explain::state(state)));
         let open = unit.moves.is_open();
         let reachable: Vec<State> = if open { unit.reachable_states(drive) } else { Vec::new() };
-        let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| theme.words(&hint)));
+        let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| theme.format_text(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
         if let Some(act) = state_machine(ui, theme, &machine).and_then(Unit::leads_to) {
             motor(actions, unit.session.id, act);
@@ -166,14 +166,14 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
         let newest = unit.drive_status(drive).and_then(|own| own.buffer.first().copied());
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
             let words = explain::error(code);
-            let text = format!("{:04X}  {}", code.code(), theme.words(&words.name));
-            message_label(ui, theme, text, theme.palette.bad.into()).on_hover_text(theme.words(&words.remedy));
+            let text = format!("{:04X}  {}", code.code(), theme.format_text(&words.name));
+            message_label(ui, theme, text, theme.palette.bad.into()).on_hover_text(theme.format_text(&words.remedy));
             return;
         }
     }
     if let Some(status) = unit.current_or_last_request(drive) {
         let ink = if status.is_well { theme.palette.good } else { theme.palette.warn };
-        message_label(ui, theme, theme.words(&status.words), ink.into());
+        message_label(ui, theme, theme.format_text(&status.words), ink.into());
     }
 }
 
@@ -230,7 +230,7 @@ fn move_to_position_ui(
         }
         let estimate = target.as_ref().ok().and_then(|target| unit.move_estimate(*target));
         if let Some(estimate) = estimate {
-            ui.add(egui::Label::new(theme.caption(theme.words(&estimate))).truncate());
+            ui.add(egui::Label::new(theme.caption(theme.format_text(&estimate))).truncate());
         }
     });
     // A reason that blocks all motion is shown only once, below the pads.
@@ -264,7 +264,7 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     });
     match endless {
         Ok(()) => paragraph(ui, theme.caption(say(theme, "hd_run.expert_words"))),
-        Err(why) => paragraph(ui, theme.caption(theme.words(&why))),
+        Err(why) => paragraph(ui, theme.caption(theme.format_text(&why))),
     }
 }
 
@@ -375,15 +375,16 @@ fn percent_ui(
 fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
     match (typed, sent, beside) {
         (Err(why), ..) => {
-            ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad)).on_hover_text(theme.words(why));
+            ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad))
+                .on_hover_text(theme.format_text(why));
         }
         (Ok(()), Some(sent), _) => {
-            let words = theme.words(&TEXTS.text("hd_effort.sent").with("sent", sent.get()));
+            let words = theme.format_text(&TEXTS.text("hd_effort.sent").with("sent", sent.get()));
             let label = egui::Label::new(RichText::new(words).color(theme.palette.warn)).truncate();
             ui.add(label).on_hover_text(say(theme, "hd_effort.waits"));
         }
         (Ok(()), None, Some(beside)) => {
-            ui.add(egui::Label::new(theme.caption(theme.words(&beside))).truncate());
+            ui.add(egui::Label::new(theme.caption(theme.format_text(&beside))).truncate());
         }
         (Ok(()), None, None) => {}
     }
@@ -391,7 +392,7 @@ fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: O
 
 pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> String {
     let SpeedTorque { speed, torque } = unit.moves.move_speed_torque(unit.drive());
-    theme.words(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
+    theme.format_text(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
 /// Draws the entry of a position or distance with its unit. The entry is marked if `problem` finds something in it.
@@ -411,7 +412,7 @@ pub(super) fn position_entry_ui(
         let measures = ruler.available_units().map(|own| (own, say(theme, own.unit())));
         ui.push_id(id, |ui| {
             ui.spacing_mut().combo_width = MEASURE;
-            if choice(ui, &say(theme, "hd_move.measure"), &mut measure, measures) {
+            if dropdown(ui, &say(theme, "hd_move.measure"), &mut measure, measures) {
                 actions.push(Action::device(unit.session.id, Hiperdrive::SetMeasure(measure)));
             }
         });

@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, U
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     button_with_reason, empty_placeholder, enabled_button, entry, folding_card, folding_card_with_trailing, mono_entry,
-    options, paragraph, problem, row, severity, split,
+    options, paragraph, problem_ui, row, severity, split,
 };
 use crate::ui::{Theme, icons};
 
@@ -98,7 +98,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
     if !sources.contains(&before.source) {
         sources.push(before.source);
     }
-    let named = sources.into_iter().map(|own| (own, theme.words(&network::source(own))));
+    let named = sources.into_iter().map(|own| (own, theme.format_text(&network::source(own))));
     // The options are below their name, since a narrow column has no space beside it.
     ui.label(theme.label(word.as_str()));
     options(ui, &word, &mut form.source, named);
@@ -125,7 +125,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
             mono_entry(ui, theme, own, ADDRESS, &word, &hint);
             if own != was && !was.is_empty() {
                 let was = TEXTS.text("hd_net.was").with("value", was);
-                ui.add(egui::Label::new(RichText::new(theme.words(&was)).color(theme.palette.staged)).truncate());
+                ui.add(egui::Label::new(RichText::new(theme.format_text(&was)).color(theme.palette.staged)).truncate());
             }
         });
     }
@@ -140,7 +140,7 @@ fn change_preview_ui(
 ) {
     ui.label(theme.label(say(theme, "hd_net.at_power_up")));
     match wanted {
-        Err(why) => problem(ui, theme, Some(why)),
+        Err(why) => problem_ui(ui, theme, Some(why)),
         Ok(wanted) => {
             for (own, text) in network::consequence_texts(unit.address_switch(), now, wanted, unit.host_address()) {
                 line_ui(ui, theme, own, &text);
@@ -153,7 +153,7 @@ fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
-        paragraph(ui, theme.words(text));
+        paragraph(ui, theme.format_text(text));
     });
 }
 
@@ -165,7 +165,7 @@ fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             ui.add_space(theme.space.inside);
         }
         for position in network::positions(switch) {
-            let words = theme.words(&position.meaning);
+            let words = theme.format_text(&position.meaning);
             ui.horizontal_top(|ui| {
                 let ink = if position.is_now { theme.palette.accent } else { theme.palette.muted };
                 let mark = if position.is_now { icons::CARET_RIGHT } else { "" };

@@ -34,10 +34,10 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
         *draft = Draft::default();
         return;
     };
-    theme.gap(ui);
+    theme.add_gap(ui);
     card(ui, theme, TEXTS.text("hd_outside.short"), |ui| {
         let strong =
-            RichText::new(theme.words(&words)).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad);
+            RichText::new(theme.format_text(&words)).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad);
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(theme.palette.bad));
             paragraph(ui, strong);

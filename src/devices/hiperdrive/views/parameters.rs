@@ -53,7 +53,7 @@ pub(super) fn page_ui(
 ) {
     header_ui(ui, theme, view);
     if let Some(refusal) = &unit.refusal {
-        paragraph(ui, RichText::new(theme.words(refusal)).color(theme.palette.bad));
+        paragraph(ui, RichText::new(theme.format_text(refusal)).color(theme.palette.bad));
     }
     ui.add_space(theme.space.inside);
     if view.is_scale_shown() {
@@ -117,11 +117,11 @@ fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 impl DriveParametersUiState {
     /// Returns whether the scaling page is shown. The table must have closed its editor before.
     fn is_scale_shown(&self) -> bool {
-        self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
+        self.shown == ParameterFilter::Scale && (self.table.edited_location().is_none() || self.table.is_refused())
     }
 
     fn typed(&self) -> Option<ParameterNumber> {
-        let place = self.table.typed()?;
+        let place = self.table.edited_location()?;
         self.lines.get(place.group)?.get(place.row).copied()
     }
 
@@ -132,7 +132,7 @@ impl DriveParametersUiState {
         let sought = self.sought.trim().to_lowercase();
         let fits = sought.is_empty()
             || row.number.get().to_string().contains(&sought)
-            || theme.words(&row.name).to_lowercase().contains(&sought);
+            || theme.format_text(&row.name).to_lowercase().contains(&sought);
         fits && match self.shown {
             ParameterFilter::All | ParameterFilter::Scale => true,
             ParameterFilter::Written => row.is_editable || !sought.is_empty(),
@@ -148,7 +148,7 @@ impl DriveParametersUiState {
         }
         let before = std::mem::replace(&mut self.lines, lines);
         let now = &self.lines;
-        self.table.follow(|place| {
+        self.table.follow_registers(|place| {
             let number = before.get(place.group)?.get(place.row)?;
             let row = now.get(place.group)?.iter().position(|own| own == number)?;
             Some(RegisterLocation { row, ..place })
@@ -171,7 +171,7 @@ fn table(
         .collect();
     let at = |place: RegisterLocation| rows.get(place.group)?.get(place.row);
     let row = |place: RegisterLocation| at(place).map(|row| register_row(theme, row)).unwrap_or_default();
-    let label = theme.say("page.parameters");
+    let label = theme.translate("page.parameters");
     let table = RegisterTable { label: &label, groups: &groups, row: &row, kind: RegisterKind::Numbers };
     let mut edits = Vec::new();
     let height = ui.available_height();
@@ -191,13 +191,14 @@ fn table(
 
 /// Returns the content of the columns of a row that a narrow window hides or cuts.
 fn row_details(theme: &Theme, row: &Row) -> String {
-    let named = |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.say(id)));
-    let range = row.range.as_ref().map(|range| theme.words(range)).unwrap_or_default();
+    let named =
+        |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.translate(id)));
+    let range = row.range.as_ref().map(|range| theme.format_text(range)).unwrap_or_default();
     let meaning = Some(row_meaning(theme, row)).filter(|meaning| !meaning.is_empty());
     let columns =
         [meaning, named("widget.register_range", range), named("widget.register_factory", row.factory.clone())];
     let columns = columns.into_iter().flatten().map(|column| format!(" · {column}")).collect::<String>();
-    format!("{} {}{columns}", row.number, theme.words(&row.name))
+    format!("{} {}{columns}", row.number, theme.format_text(&row.name))
 }
 
 fn parameter_text(row: &Row) -> String {
@@ -206,7 +207,7 @@ fn parameter_text(row: &Row) -> String {
 
 /// Returns unit and meaning of the value, or an empty text if there is no value.
 fn row_meaning(theme: &Theme, row: &Row) -> String {
-    let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
+    let words = |text: Option<&Text>| text.map(|text| theme.format_text(text)).unwrap_or_default();
     if parameter_text(row).is_empty() {
         return String::new();
     }
@@ -220,11 +221,11 @@ fn row_meaning(theme: &Theme, row: &Row) -> String {
 }
 
 fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
-    let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
+    let words = |text: Option<&Text>| text.map(|text| theme.format_text(text)).unwrap_or_default();
     let value = parameter_text(row);
     RegisterRow {
         address: row.number.to_string(),
-        name: theme.words(&row.name),
+        name: theme.format_text(&row.name),
         meaning: row_meaning(theme, row),
         range: words(row.range.as_ref()),
         differs: row.is_editable && !row.factory.is_empty() && !value.is_empty() && value != row.factory,
@@ -233,7 +234,7 @@ fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
         before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
         edited: row.is_edited,
         kept: row.kind.saved.then(|| say(theme, "hd_params.is_kept")),
-        read_only: row.not_editable_reason().map(|why| theme.words(&why)),
+        read_only: row.not_editable_reason().map(|why| theme.format_text(&why)),
         value,
         ..RegisterRow::default()
     }

@@ -27,7 +27,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
     card(ui, theme, TEXTS.text("hd_scale.title"), |ui| {
         let word = say(theme, "hd_scale.pitch");
         let pitch = unit.pitch(drive);
-        let shown = pitch.map(|own| theme.plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
+        let shown = pitch.map(|own| theme.format_plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
         entry(ui, theme, &word, |ui| {
             committed_entry(ui, &mut view.pitch, &shown, NUMBER, &word, |text| {
                 let pitch = if text.trim().is_empty() { None } else { Some(forms::length(text)?) };
@@ -72,12 +72,18 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
 fn scale_effect_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let ruler = unit.edited_ruler(drive);
-    let turn = format!("{} {}", theme.plain(ruler.scale.steps_per_turn()), say(theme, PositionUnit::Steps.unit()));
+    let turn =
+        format!("{} {}", theme.format_plain(ruler.scale.steps_per_turn()), say(theme, PositionUnit::Steps.unit()));
     row(ui, theme, &say(theme, "hd_scale.turn"), theme.monospace(turn));
     let Some((low, high)) = unit.staged.wanted().and_then(|image| image.limits(drive)) else { return };
     for measure in [PositionUnit::Turns, PositionUnit::Millimetres] {
         if let Some((low, high)) = ruler.of(low, measure).zip(ruler.of(high, measure)) {
-            let words = format!("{} … {} {}", theme.number(low, 2), theme.number(high, 2), say(theme, measure.unit()));
+            let words = format!(
+                "{} … {} {}",
+                theme.format_number(low, 2),
+                theme.format_number(high, 2),
+                say(theme, measure.unit())
+            );
             row(ui, theme, &say(theme, "hd_move.range"), theme.monospace(words));
         }
     }

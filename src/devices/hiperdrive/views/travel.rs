@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits}
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::{TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::widgets::series;
+use crate::ui::widgets::series_colour;
 use crate::ui::{Theme, icons};
 
 /// Height of the line above the bar, in points.
@@ -84,11 +84,11 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
     let size = vec2(ui.available_width().max(120.0), LINE + GAP + BAR + LIMITS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let place =
-        |steps: Option<i32>| steps.map_or_else(|| "–".to_owned(), |steps| theme.words(&unit.place(drive, steps)));
-    let named = |id: &'static str, steps| theme.words(&TEXTS.text(id).with("place", place(steps)));
+        |steps: Option<i32>| steps.map_or_else(|| "–".to_owned(), |steps| theme.format_text(&unit.place(drive, steps)));
+    let named = |id: &'static str, steps| theme.format_text(&TEXTS.text(id).with("place", place(steps)));
     let position = named("hd_travel.position", shown.position);
     let target = named("hd_travel.target", shown.target);
-    let warning = shown.outside.map(|own| theme.words(&return_instructions(own)));
+    let warning = shown.outside.map(|own| theme.format_text(&return_instructions(own)));
     let limits = shown.limits.map(|(low, high)| [place(Some(low)), place(Some(high))]);
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, say(theme, "hd_travel.title"));
@@ -209,7 +209,7 @@ fn position_colour(theme: &Theme, shown: &Shown) -> Color32 {
 }
 
 fn target_colour(theme: &Theme) -> Color32 {
-    series(theme, 0)
+    series_colour(theme, 0)
 }
 
 /// Draws the position marker of the legend and returns the position of its label.

@@ -15,7 +15,7 @@ use clap::builder::PossibleValue;
 
 use self::args::{DoOptions, FindOptions, HiperfaceAction};
 use self::codes::AccessCodeArgs;
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::cli::args::{Command, CommonArgs, SimulateArgs};
 use crate::cli::commands::{CommandId, DeviceCommands, KindOptions, enum_values, options_of};
 use crate::cli::output::Output;
@@ -67,8 +67,8 @@ impl DeviceCommands for HiperfaceCommands {
         options_of::<AccessCodeArgs>()
     }
 
-    fn given(&self, options: &KindOptions, given: Given) -> Result<Given> {
-        Ok(given.with(codes::given(&options.read()?)?))
+    fn given(&self, options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
+        Ok(given.with_value(codes::given(&options.read()?)?))
     }
 
     fn refused_option(&self, option: &str) -> Option<String> {

@@ -2,7 +2,7 @@
 //! encoder announces.
 
 use super::HiperfaceCommands;
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs};
@@ -26,7 +26,7 @@ impl Runs for Hiperface {
         may_have_other_master(url)
     }
 
-    fn begin(session: &mut Session<Self>, given: &Given) -> CharacterFormat {
+    fn begin(session: &mut Session<Self>, given: &TypeMap) -> CharacterFormat {
         if let Some(codes) = given.get::<InitialAccessCodes>() {
             codes.apply_codes(session.access_codes_mut());
         }

@@ -50,7 +50,7 @@ impl Encoder {
                     self.refresh_plan(with_options(&review.change, options), services);
                 }
             }
-            HiperfaceAction::ForceWear(force) => self.force_wear(force),
+            HiperfaceAction::ForceWear(force) => self.accept_wear(force),
             HiperfaceAction::Write(plan) => self.write(plan, services),
             HiperfaceAction::CloseReview => self.close_review(),
             HiperfaceAction::Save(path) => self.save(path, services),
@@ -71,7 +71,7 @@ impl Encoder {
 
     pub(super) fn update_watches(&mut self) {
         if let Some(line) = &self.session.line {
-            line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
+            line.watch_values(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
         }
     }
 
@@ -98,7 +98,7 @@ impl Encoder {
             put.map_err(|error| words::staged(&error, bytes.len(), address))
         });
         if let Err(text) = allowed {
-            self.session.refuse(text, services);
+            self.session.report_rejection(text, services);
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::search::EncoderSearchForm;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
-use crate::app::connect::target::{entered, filled, host_and_port, refused, split_target};
+use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
+use crate::app::connect::target::{host_and_port, non_empty, rejection_text, required_entry, split_target};
 use crate::devices::hiperface::jobs::check;
 use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
@@ -44,7 +44,7 @@ pub struct LinkForm {
     pub long_timeout: bool,
     pub model: String,
     /// Values of the remaining parameters, as typed.
-    pub typed: Typed,
+    pub typed: EnteredValues,
     /// Link parameters that the form cannot show, with their values.
     pub rest: Vec<(String, String)>,
 }
@@ -66,7 +66,7 @@ impl Default for LinkForm {
             echo: Echo::Unknown,
             long_timeout: true,
             model: model.name.to_owned(),
-            typed: Typed::default(),
+            typed: EnteredValues::default(),
             rest: Vec::new(),
         }
     }
@@ -75,7 +75,7 @@ impl Default for LinkForm {
 impl FormModel for LinkForm {
     type Finder = EncoderSearchForm;
 
-    fn usual() -> LinkUrl {
+    fn default_link() -> LinkUrl {
         LinkUrl::sim()
     }
 
@@ -99,7 +99,7 @@ impl FormModel for LinkForm {
 
     fn url(&self) -> Result<LinkUrl, Text> {
         let target = self.target()?;
-        let url = self.parameters()?.link(target)?;
+        let url = self.parameters()?.build_link(target)?;
         check(&url).map_err(|error| self.refused(&url, &error))?;
         Ok(url)
     }
@@ -108,7 +108,7 @@ impl FormModel for LinkForm {
         self.file = file;
     }
 
-    fn example(&self) -> &'static str {
+    fn example_link(&self) -> &'static str {
         PORT_EXAMPLE.serial
     }
 }
@@ -140,7 +140,7 @@ impl LinkForm {
             value.clone_into(&mut self.model);
             return true;
         }
-        self.typed.take(&self.entries(), name, value) || self.set_choice(name, value)
+        self.typed.fill_entry(&self.entries(), name, value) || self.set_choice(name, value)
     }
 
     fn set_choice(&mut self, name: &str, value: &str) -> bool {
@@ -157,8 +157,8 @@ impl LinkForm {
     fn target(&self) -> Result<(LinkScheme, String), Text> {
         match self.kind {
             LinkKind::Virtual => Ok((LinkScheme::Sim, String::new())),
-            LinkKind::Serial => Ok((LinkScheme::Serial, entered(&self.port, "form.port_missing")?)),
-            LinkKind::Replay => Ok((LinkScheme::Replay, entered(&self.file, "form.file_missing")?)),
+            LinkKind::Serial => Ok((LinkScheme::Serial, required_entry(&self.port, "form.port_missing")?)),
+            LinkKind::Replay => Ok((LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?)),
             LinkKind::Tcp => Ok((LinkScheme::Tcp, host_and_port(&self.host, &self.tcp_port)?)),
         }
     }
@@ -167,10 +167,10 @@ impl LinkForm {
         let usual = LinkForm::default();
         let mut parameters = Parameters::default();
         if self.kind == LinkKind::Virtual {
-            if filled(&self.model).is_some_and(|model| model != usual.model) {
+            if non_empty(&self.model).is_some_and(|model| model != usual.model) {
                 parameters.entry("model", &self.model);
             }
-            parameters.typed(&Self::virtual_device_entries(), &self.typed);
+            parameters.add_entered(&Self::virtual_device_entries(), &self.typed);
         }
         if self.baud != usual.baud {
             parameters.set("baud", &self.baud.to_string());
@@ -188,7 +188,7 @@ impl LinkForm {
         if !self.long_timeout {
             parameters.set("timeout", "11");
         }
-        parameters.typed(&Self::link_entries(), &self.typed);
+        parameters.add_entered(&Self::link_entries(), &self.typed);
         parameters.add_remaining(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
         Ok(parameters)
     }
@@ -210,7 +210,7 @@ impl LinkForm {
         let (OpenError::Url(UrlError::Value { name, value, .. })
         | OpenError::Sim(ConfigError::Value { key: name, value, .. })) = error
         else {
-            return refused(url, error);
+            return rejection_text(url, error);
         };
         let id = match name.as_str() {
             "address" => {
@@ -225,7 +225,7 @@ impl LinkForm {
             "periods" => "form.periods",
             "turns" if self.typed.get("periods").trim().is_empty() => "form.turns_alone",
             "turns" => "form.turns",
-            _ => return refused(url, error),
+            _ => return rejection_text(url, error),
         };
         TEXTS.text(id).with("value", value).with("most", MOST_PERIODS)
     }

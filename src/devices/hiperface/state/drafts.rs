@@ -25,7 +25,7 @@ impl HasSession for Encoder {
 }
 
 impl HasDraft for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
+    fn device_key(&self) -> Option<DeviceKey> {
         self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 
@@ -34,7 +34,7 @@ impl HasDraft for Encoder {
         Some((format!("{:02X}", identity.label.encoder_type), identity.serial.serial_number.clone()))
     }
 
-    fn edited(&self) -> Edits {
+    fn current_edits(&self) -> Edits {
         self.staged.edits().collect()
     }
 
@@ -42,7 +42,7 @@ impl HasDraft for Encoder {
         self.staged.take_draft(edits);
     }
 
-    fn pending(&self) -> &dyn PendingEdits {
+    fn pending_edits(&self) -> &dyn PendingEdits {
         &self.staged
     }
 

@@ -82,7 +82,8 @@ impl Encoder {
     fn log_answer(&self, services: &mut Services) {
         let Some(identity) = &self.identity else { return };
         let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
-        let firmware = if firmware.is_empty() { Text::new("encoder_card.not_told") } else { explain::plain(firmware) };
+        let firmware =
+            if firmware.is_empty() { Text::new("encoder_card.not_told") } else { explain::literal_text(firmware) };
         let line = TEXTS.text("log.line").with("address", format!("{:02X}h", identity.address));
         let kind = TEXTS.text("log.type").with("type", format!("{:02X}h", label.encoder_type));
         let facts = vec![

@@ -41,11 +41,11 @@ impl Kind for Hiperface {
         words::job(job)
     }
 
-    fn writes(job: &HiperfaceJob) -> bool {
+    fn writes_memory(job: &HiperfaceJob) -> bool {
         matches!(job, HiperfaceJob::Commit(_))
     }
 
-    fn survey() -> HiperfaceJob {
+    fn survey_job() -> HiperfaceJob {
         HiperfaceJob::Survey
     }
 
@@ -106,7 +106,7 @@ impl Encoder {
                     self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
-                    services.note(
+                    services.log_only(
                         Severity::Note,
                         vec![text.with("steps", format!("{steps:+}"))],
                         Some(&self.session.name()),
@@ -161,7 +161,7 @@ impl Encoder {
 
     fn apply_completed_steps(&mut self, error: &JobError, services: &mut Services) {
         let JobError::Interrupted { interrupted, .. } = error else { return };
-        let Some(prepared) = self.review().and_then(Review::plan_in_progress) else { return };
+        let Some(prepared) = self.open_review().and_then(Review::plan_in_progress) else { return };
         let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
         self.follow(&done, services);
     }
@@ -172,7 +172,7 @@ impl SessionEvents for Encoder {
         self.add_samples(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
+    fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.meaning.of(frame)
     }
 
@@ -192,7 +192,7 @@ impl SessionEvents for Encoder {
         !matches!(output, HiperfaceOutput::CodeNoted)
     }
 
-    fn finished(&mut self, output: HiperfaceOutput, services: &mut Services) {
+    fn handle_finished_job(&mut self, output: HiperfaceOutput, services: &mut Services) {
         match output {
             HiperfaceOutput::Surveyed(survey) => self.apply_survey(*survey, services),
             HiperfaceOutput::Identity(identity) => {
@@ -225,7 +225,7 @@ impl SessionEvents for Encoder {
             }
             HiperfaceOutput::CodeNoted => self.submit_access_codes(services),
             HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
-            HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
+            HiperfaceOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             HiperfaceOutput::Committed(committed) => self.handle_commit_end(committed, services),
             // Searches run in a separate session.
             HiperfaceOutput::Found(_) => {}
@@ -274,7 +274,7 @@ impl SessionEvents for Encoder {
     }
 
     /// Handles a failed job. The rejection of an analogue channel counts as a result of the reading.
-    fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
+    fn handle_failed_job(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.end_job(self.session.id, id, JobState::Failed(why.clone()));
@@ -282,7 +282,7 @@ impl SessionEvents for Encoder {
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
             // The encoder does not have this channel. This is a result, shown where the reading was requested.
             self.analogue.insert(channel, Err(why));
-            self.session.answers();
+            self.session.mark_replying();
             return;
         }
         self.session.save_to = None;
@@ -291,19 +291,19 @@ impl SessionEvents for Encoder {
         let silent = gone.is_none() && self.is_no_response(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
         if gone.is_none() && !silent && !garbled {
-            self.session.answers();
+            self.session.mark_replying();
         }
         let is_shown = self.handle_interrupted_write(EarlyEnd::Failed(error), &texts);
         match gone {
             Some(why) => {
                 if is_shown {
-                    services.note(Severity::Error, texts, Some(&self.session.name()));
+                    services.log_only(Severity::Error, texts, Some(&self.session.name()));
                 }
                 self.connection_lost(why, services);
             }
             None if silent => self.session.mark_unresponsive(texts, services),
             None => {
-                self.session.report(Severity::Error, texts, is_shown || stands_there, services);
+                self.session.report_message(Severity::Error, texts, is_shown || stands_there, services);
                 if error.has_begun() {
                     self.submit(HiperfaceJob::Survey, services);
                 }

@@ -34,7 +34,7 @@ pub use words::{
 };
 
 use crate::app::Text;
-use crate::app::explain::{link, not_started_text};
+use crate::app::explain::{link_error_text, not_started_text};
 use crate::devices::hiperface::jobs::{ChangeKind, JobError, TypeMismatch};
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::procedures::write::{Interrupted, WrittenChanges};
@@ -81,7 +81,7 @@ pub fn interruption_text(interrupted: &Interrupted, backup: &Path, planned: usiz
 /// Returns the reason why the connection was lost, or `None` if it can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
-        Error::Link(error) => Some(link(error)),
+        Error::Link(error) => Some(link_error_text(error)),
         _ => None,
     }
 }
@@ -103,7 +103,7 @@ pub fn verified(written: &WrittenChanges) -> Text {
 
 pub fn encoder(error: &Error) -> Text {
     match error {
-        Error::Link(error) => link(error),
+        Error::Link(error) => link_error_text(error),
         Error::NoReply { address, command, tries, echo_heard } => {
             let id = if *echo_heard { "encoder.echo_only" } else { "encoder.no_reply" };
             TEXTS
@@ -254,7 +254,7 @@ mod tests {
         let path = Path::new("b.ron");
         let words = |cycles, kind| {
             let texts = interruption_text(&cut_off(Error::Cancelled, cycles), path, 4, kind);
-            texts.last().unwrap().words(Language::English)
+            texts.last().unwrap().to_string_in(Language::English)
         };
         let cases = [
             (
@@ -290,7 +290,7 @@ mod tests {
     #[test]
     fn an_access_code_is_acknowledged_and_not_read_back() {
         let of = |verified| WrittenChanges { ops: 1, written: 1, verified, write_cycles: 1 };
-        assert!(verified(&of(3)).words(Language::English).starts_with("Read back and verified"));
+        assert!(verified(&of(3)).to_string_in(Language::English).starts_with("Read back and verified"));
         for text in [written(&of(0)), verified(&of(0))] {
             assert_eq!(text.id(), "session.acknowledged");
         }

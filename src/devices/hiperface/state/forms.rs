@@ -164,7 +164,7 @@ mod tests {
         assert!(address("3F").is_err() && address("60").is_err());
         assert_eq!(new_access_code("1A", "0x1a").map(AccessCode::byte), Ok(0x1A));
         assert!(new_access_code("1A", "1B").is_err() && new_access_code("1A", "").is_err());
-        let text = access_code("secret").unwrap_err().words(crate::app::Language::English);
+        let text = access_code("secret").unwrap_err().to_string_in(crate::app::Language::English);
         assert!(!text.contains("secret"));
     }
 }

@@ -22,7 +22,7 @@ impl DeviceType for Encoder {
     type Form = LinkForm;
     type Tables = Result<EncoderTypes, StoreError>;
 
-    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
     }
 
@@ -30,15 +30,15 @@ impl DeviceType for Encoder {
         jobs::may_have_other_master(url)
     }
 
-    fn explain(cause: &Cause) -> Option<Text> {
+    fn explain_rejection(cause: &Cause) -> Option<Text> {
         words::refused(cause)
     }
 
-    fn tables(store: &Store) -> Self::Tables {
+    fn load_tables(store: &Store) -> Self::Tables {
         encoder_types(store)
     }
 
-    fn begin(
+    fn create(
         session: Session<Hiperface>,
         profile: Option<(&HiperfaceProfile, Self::Tables)>,
         services: &mut Services,

@@ -21,7 +21,7 @@ impl Meaning {
             (Some(bytes), Direction::Received) => self.received(&bytes),
             (None, Direction::Received) => {
                 self.request = None;
-                FrameExplanation::broken(Text::new("trace.hidden"))
+                FrameExplanation::from_error(Text::new("trace.hidden"))
             }
         }
     }
@@ -36,13 +36,13 @@ impl Meaning {
     fn received(&mut self, bytes: &[u8]) -> FrameExplanation {
         let asked = self.request.take();
         let answer = match asked.as_ref().map(|(address, request)| request.parse_reply(*address, bytes)) {
-            Some(Err(error)) => return FrameExplanation::broken(words::damage_text(&Damage::Reply(error))),
+            Some(Err(error)) => return FrameExplanation::from_error(words::damage_text(&Damage::Reply(error))),
             Some(Ok(answer)) => Some(answer),
             None => None,
         };
         let facts = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
             Ok(facts) => facts,
-            Err(error) => return FrameExplanation::broken(words::damage_text(&Damage::Reply(error.into()))),
+            Err(error) => return FrameExplanation::from_error(words::damage_text(&Damage::Reply(error.into()))),
         };
         // The heading already contains the facts of the request. Only the other facts of the reply are added.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
@@ -96,7 +96,7 @@ mod tests {
             let mut meaning = Meaning::default();
             assert_eq!(meaning.of(&entry(Direction::Sent, &position)).fault, None);
             let said = meaning.of(&entry(Direction::Received, reply));
-            let text: Vec<String> = said.meaning.iter().map(|text| text.words(Language::English)).collect();
+            let text: Vec<String> = said.meaning.iter().map(|text| text.to_string_in(Language::English)).collect();
             assert_eq!(said.fault, fault, "{label}: {text:?}");
             assert!(text.join(" ").contains(words), "{label}: {text:?}");
         }

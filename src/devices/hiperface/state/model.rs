@@ -6,22 +6,22 @@ use super::{Encoder, HiperfaceAction};
 use crate::app::action::OpenedConnection;
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::SessionEvents;
-use crate::app::{ActionContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
+use crate::app::{ActionContext, DeviceMemory, DeviceModel, PrepareFn, Recording, SineCosineSource, Tab, Text};
 use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
 use crate::devices::hiperface::procedures::InitialAccessCodes;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Hiperface");
     type Action = HiperfaceAction;
-    type Done = Infallible;
+    type TaskResult = Infallible;
 
-    fn prepare(&self, world: &StudioEnvironment) -> Prepare<Hiperface> {
+    fn prepare_session(&self, world: &StudioEnvironment) -> PrepareFn<Hiperface> {
         let codes = world.given.get::<InitialAccessCodes>().cloned().unwrap_or_default();
         Box::new(move |session| codes.apply_codes(session.access_codes_mut()))
     }
 
     fn connect(&mut self, opened: OpenedConnection<Hiperface>, services: &mut Services) {
-        self.let_go(JobState::Cancelled, services);
+        self.release_thread(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.session.attach_connection(opened, services);
         self.update_watches();
@@ -30,11 +30,11 @@ impl DeviceModel for Encoder {
         self.read_encoder(services);
     }
 
-    fn act(&mut self, action: HiperfaceAction, context: &mut ActionContext<'_>) {
+    fn handle_action(&mut self, action: HiperfaceAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 
-    fn done(&mut self, done: Infallible, _services: &mut Services) {
+    fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
     }
 
@@ -43,7 +43,7 @@ impl DeviceModel for Encoder {
         HiperfaceJob::Position(geometry)
     }
 
-    fn record(&self) -> &dyn Recording {
+    fn recording(&self) -> &dyn Recording {
         &self.record.track
     }
 

@@ -7,7 +7,7 @@ use jiff::Zoned;
 use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, PositionSample, PositionScales, Watchable, WatchedValue};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
@@ -21,7 +21,7 @@ pub struct Record {
 impl Record {
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.refused) = (None, false);
-        self.track.begin(began);
+        self.track.begin_session(began);
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
@@ -36,11 +36,14 @@ impl Record {
                         is_bad: !reading.valid,
                         is_warned: !reading.codes.is_empty(),
                     };
-                    self.track.add(&[sighting], &meaning);
+                    self.track.add_positions(&[sighting], &meaning);
                     (self.last, self.refused) = (Some(reading), false);
                 }
                 Sample::NoPosition { at, .. } => {
-                    self.track.add(&[PositionSample { at, position: None, is_bad: true, is_warned: false }], &meaning);
+                    self.track.add_positions(
+                        &[PositionSample { at, position: None, is_bad: true, is_warned: false }],
+                        &meaning,
+                    );
                     self.refused = true;
                 }
                 Sample::Watched(reading) => self.track.add_watched(&reading.watch, &watching(&reading)),
@@ -50,11 +53,11 @@ impl Record {
 
     /// Selects the values to record in addition to the position.
     pub(super) fn watch(&mut self, watched: &[Watch]) {
-        self.track.watch(watched);
+        self.track.set_watched(watched);
     }
 
     pub fn watched(&self) -> Vec<Watch> {
-        self.track.watched()
+        self.track.watched_values()
     }
 
     /// Returns the last position, or `None` while the encoder refuses to report one.
@@ -68,26 +71,26 @@ impl Record {
     }
 
     pub fn positions(&self) -> u64 {
-        self.track.positions()
+        self.track.position_count()
     }
 
     pub(super) fn forget(&mut self) {
-        self.track.forget();
+        self.track.clear_unless_long();
         (self.last, self.refused) = (None, false);
     }
 }
 
-fn meaning(geometry: Option<Geometry>) -> Meaning {
+fn meaning(geometry: Option<Geometry>) -> PositionScales {
     match geometry {
         Some(Geometry::Linear { period_nm, .. }) => {
-            Meaning::for_millimetres(f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6)
+            PositionScales::for_millimetres(f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6)
         }
         Some(rotary @ Geometry::Rotary { .. }) => {
             let range = rotary.range().and_then(|range| i64::try_from(range).ok());
-            Meaning::for_steps_per_turn(range, rotary.steps_per_turn().unwrap_or(1) as f64)
+            PositionScales::for_steps_per_turn(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
         // Without a known range, the position wraps at the end of its 32-bit word.
-        None => Meaning::for_steps(Some(1 << 32)),
+        None => PositionScales::for_steps(Some(1 << 32)),
     }
 }
 
@@ -105,13 +108,13 @@ impl Watchable for Watch {
         true
     }
 
-    fn line(&self, group: GroupId) -> Series {
+    fn create_series(&self, group: GroupId) -> Series {
         let (heading, unit) = match *self {
             Watch::TEMPERATURE => ("temperature".to_owned(), "unit.celsius"),
             Watch::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
             Watch::Counter => ("counter".to_owned(), "unit.counts"),
         };
-        Series::of(group, 0, watch_name(*self), heading, vec![Scale::new(unit, 1.0, 0)])
+        Series::new(group, 0, watch_name(*self), heading, vec![Scale::new(unit, 1.0, 0)])
     }
 }
 

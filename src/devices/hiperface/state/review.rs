@@ -26,11 +26,11 @@ impl Reviewable for Hiperface {
     type Prepared = Prepared;
     type Written = WrittenChanges;
 
-    fn change(change: &Change) -> Text {
+    fn change_title(change: &Change) -> Text {
         words::change(change)
     }
 
-    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+    fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
         match permit {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
@@ -41,7 +41,7 @@ impl Reviewable for Hiperface {
         }
     }
 
-    fn op(_: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
         words::op(op)
     }
 
@@ -117,7 +117,7 @@ impl Reviewable for Hiperface {
         needs
     }
 
-    fn cost(prepared: &Prepared) -> Text {
+    fn cost_text(prepared: &Prepared) -> Text {
         let cycles = prepared.plan.write_cycles();
         match prepared.cycles_seen {
             Some(seen) => TEXTS.text("review.cost").with("cycles", cycles).with("seen", seen),
@@ -125,11 +125,11 @@ impl Reviewable for Hiperface {
         }
     }
 
-    fn written(written: &WrittenChanges) -> Text {
+    fn written_text(written: &WrittenChanges) -> Text {
         words::written(written)
     }
 
-    fn verified(written: &WrittenChanges) -> Text {
+    fn verified_text(written: &WrittenChanges) -> Text {
         words::verified(written)
     }
 }

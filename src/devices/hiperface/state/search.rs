@@ -2,7 +2,7 @@
 
 use crossbeam_channel::Receiver;
 
-use crate::app::action::{Done, OpenFailure, OpenedConnection, OpenedSession};
+use crate::app::action::{OpenFailure, OpenedConnection, OpenedSession, TaskResult};
 use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
 use crate::app::live_session::LiveSession;
@@ -34,7 +34,7 @@ pub struct Search {
 
 impl Search {
     pub fn progress(&self) -> Option<&Progress<JobStep>> {
-        self.line.as_ref()?.running()?.progress.as_ref()
+        self.line.as_ref()?.running_job()?.progress.as_ref()
     }
 
     pub fn is_running(&self) -> bool {
@@ -58,7 +58,7 @@ impl Search {
             Ok(opened) => {
                 let mut line = LiveSession::new(*opened);
                 let job = HiperfaceJob::Find(self.options.clone());
-                if line.submit(job, TEXTS.text("job.find"), false, services.now()).is_err() {
+                if line.submit(job, TEXTS.text("job.find"), false, services.current_time()).is_err() {
                     self.end = Some(Text::new("session.ended"));
                 }
                 self.line = Some(line);
@@ -76,7 +76,7 @@ impl Search {
                 Event::Failed(_, error) | Event::Cancelled(_, error) => {
                     self.end = words::job(&error).into_iter().next();
                 }
-                Event::Lost(error) => self.end = Some(explain::link(&error)),
+                Event::Lost(error) => self.end = Some(explain::link_error_text(&error)),
                 Event::Started(_)
                 | Event::Progress(..)
                 | Event::Remark(DeviceMessage::Codes(_) | DeviceMessage::CodesUnheard(_) | DeviceMessage::Line(_))
@@ -137,15 +137,15 @@ pub struct SearchLinkResult {
 impl Finder for EncoderSearchForm {
     type Form = LinkForm;
     type Action = SearchAction;
-    type Done = SearchLinkResult;
+    type TaskResult = SearchLinkResult;
 
-    fn act(&mut self, action: SearchAction, _form: &mut LinkForm, context: &mut FinderContext<'_>) {
+    fn handle_action(&mut self, action: SearchAction, _form: &mut LinkForm, context: &mut FinderContext<'_>) {
         match action {
             SearchAction::Search(options) => {
                 self.asked = Some(options);
                 match context.link() {
-                    Ok(url) if may_have_other_master(&url) => context.ask_about_other_master_on_link(&url),
-                    _ => self.confirmed(context),
+                    Ok(url) if may_have_other_master(&url) => context.ask_about_other_master(&url),
+                    _ => self.handle_confirmation(context),
                 }
             }
             SearchAction::Choose(at) => {
@@ -157,23 +157,25 @@ impl Finder for EncoderSearchForm {
         }
     }
 
-    fn confirmed(&mut self, context: &mut FinderContext<'_>) {
+    fn handle_confirmation(&mut self, context: &mut FinderContext<'_>) {
         let Some(options) = self.asked.take() else { return };
         let url = match context.link() {
             Ok(url) => url,
-            Err(problem) => return context.refuse(problem),
+            Err(problem) => return context.show_problem(problem),
         };
         let earlier = match context.release_connection(&url, Text::new("session.let_go_for_search")) {
-            Ok(earlier) => self.end(context.services()).or(earlier),
-            Err(problem) => return context.refuse(problem),
+            Ok(earlier) => self.finish(context.services()).or(earlier),
+            Err(problem) => return context.show_problem(problem),
         };
         let number = context.next_number();
-        let done = move |result| Done::finder::<EncoderSearchForm>(Encoder::TAB, SearchLinkResult { number, result });
+        let done = move |result| {
+            TaskResult::from_finder::<EncoderSearchForm>(Encoder::TAB, SearchLinkResult { number, result })
+        };
         let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
     }
 
-    fn done(finder: Option<&mut Self>, done: SearchLinkResult, services: &mut Services) {
+    fn handle_result(finder: Option<&mut Self>, done: SearchLinkResult, services: &mut Services) {
         let SearchLinkResult { number, result } = done;
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
@@ -184,7 +186,7 @@ impl Finder for EncoderSearchForm {
         }
     }
 
-    fn pump(&mut self) {
+    fn process_events(&mut self) {
         if let Some(search) = &mut self.search {
             search.pump();
         }
@@ -200,12 +202,12 @@ impl Finder for EncoderSearchForm {
         }
     }
 
-    fn end(&mut self, services: &mut Services) -> Option<Receiver<()>> {
+    fn finish(&mut self, services: &mut Services) -> Option<Receiver<()>> {
         let search = self.search.take()?;
         if let Some(line) = search.line {
             let (session, about) = (SessionId(search.number), services.world.kinds.display_link(&search.url));
             let who = ClosingSessionInfo { session, about, url: search.url, write: None };
-            services.leave(line.into_worker(), who, None);
+            services.release_worker(line.into_worker(), who, None);
         }
         Some(search.over)
     }

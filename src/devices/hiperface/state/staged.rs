@@ -12,7 +12,7 @@ use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 pub type StagedEdits = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
-    type Place = (u8, usize);
+    type Location = (u8, usize);
     type Value = u8;
 
     /// Returns whether a byte differs from the encoder's byte. In a field that could not be read, every byte counts as
@@ -47,7 +47,7 @@ impl StagedEdits {
     /// Adopts the bytes read from the encoder. An edit is dropped if its byte no longer exists or already has the
     /// edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
-        self.reread(|own| *own = device);
+        self.update_base(|own| *own = device);
     }
 
     pub fn device(&self) -> &[FieldImage] {
@@ -113,7 +113,7 @@ impl StagedEdits {
         if address.checked_add(bytes.len()).is_none_or(|end| end > size) {
             return Err(ByteEditError::Outside { field, last: size.saturating_sub(1) });
         }
-        self.set((address..).zip(bytes).map(|(at, byte)| ((field, at), *byte)));
+        self.edit_values((address..).zip(bytes).map(|(at, byte)| ((field, at), *byte)));
         Ok(())
     }
 
@@ -127,7 +127,7 @@ impl StagedEdits {
 
     /// Adopts the edits of a draft. Edits of missing bytes and edits without effect are left out.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
-        self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
+        self.edit_values(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }
 
     fn field(&self, number: u8) -> Option<&FieldImage> {
@@ -187,7 +187,7 @@ mod tests {
         assert!(staged.undo() && !staged.is_dirty() && !staged.undo());
         assert!(staged.redo() && staged.redo() && !staged.redo());
         assert_eq!(staged.byte(0, 1), Some(3));
-        staged.revert();
+        staged.discard_all();
         assert!(!staged.is_dirty());
         assert!(staged.undo() && staged.byte(0, 1) == Some(3));
         staged.revert_range(FieldRange::new(0, 1, 1));

@@ -47,11 +47,11 @@ impl HasMemory for Encoder {
         profile.identity.encoder_type != own.label.encoder_type
     }
 
-    fn prepare(change: Change) -> HiperfaceJob {
+    fn prepare_job(change: Change) -> HiperfaceJob {
         HiperfaceJob::Prepare(change)
     }
 
-    fn commit(&mut self, agreed: ApprovedPlanOf<Hiperface>) -> HiperfaceJob {
+    fn commit_job(&mut self, agreed: ApprovedPlanOf<Hiperface>) -> HiperfaceJob {
         HiperfaceJob::Commit(Box::new(agreed))
     }
 
@@ -63,8 +63,8 @@ impl HasMemory for Encoder {
         rules::preserves_edits(&self.staged, &prepared.plan).err()
     }
 
-    fn carried_out(&mut self, _: &Committed, services: &mut Services) {
-        let Some(prepared) = self.review().and_then(Review::plan_in_progress) else { return };
+    fn handle_executed_plan(&mut self, _: &Committed, services: &mut Services) {
+        let Some(prepared) = self.open_review().and_then(Review::plan_in_progress) else { return };
         let ops = prepared.plan.ops.clone();
         self.follow(&ops, services);
     }
@@ -73,7 +73,7 @@ impl HasMemory for Encoder {
     fn log_write_start(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
-        if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
+        if let Some(change) = self.open_review().and_then(|review| review.with_toggled_permit(permit)) {
             self.refresh_plan(change, services);
         }
     }

@@ -12,8 +12,8 @@ use crate::devices::hiperface::state::commutation::{
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    button_with_reason, card, card_with_trailing, choice, entry, folding_card, icon_button, labelled_entry, paragraph,
-    split, text_entry, verdict_ui,
+    button_with_reason, card, card_with_trailing, dropdown, entry, folding_card, icon_button, labelled_entry,
+    paragraph, split, text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -39,27 +39,27 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         (&mut *actions, &mut form),
         |ui, (_, form)| {
             preparation_ui(ui, theme, form);
-            theme.gap(ui);
+            theme.add_gap(ui);
             motor_ui(ui, theme, encoder, form);
             if wide {
-                theme.gap(ui);
+                theme.add_gap(ui);
                 result::report_ui(ui, theme, encoder);
             }
         },
         |ui, (actions, form)| {
             rest_position_ui(ui, theme, encoder, form, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             second_vector_ui(ui, theme, encoder, form, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             result::offset_ui(ui, theme, encoder, form);
-            theme.gap(ui);
+            theme.add_gap(ui);
             result::field_ui(ui, theme, encoder, form, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             result::position_ui(ui, theme, encoder, form, actions);
         },
     );
     if !wide {
-        theme.gap(ui);
+        theme.add_gap(ui);
         result::report_ui(ui, theme, encoder);
     }
     if form != encoder.commutation.form {
@@ -88,7 +88,7 @@ fn preparation_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         problem_ui(ui, theme, time.as_ref());
         entry(ui, theme, &say(theme, "commutation.vector"), |ui| {
             let vectors = Vector::ALL.map(|vector| (vector, say(theme, vector.word())));
-            choice(ui, &say(theme, "commutation.vector"), &mut form.vector, vectors);
+            dropdown(ui, &say(theme, "commutation.vector"), &mut form.vector, vectors);
         });
         if form.vector == Vector::Other {
             number_ui(ui, theme, "commutation.vector_angle", &mut form.vector_deg, "0");
@@ -113,7 +113,7 @@ fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
 
 fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
     if let Some(why) = problem {
-        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));
+        paragraph(ui, RichText::new(theme.format_text(why)).color(theme.palette.bad));
     }
 }
 
@@ -128,7 +128,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
         entry(ui, theme, &say(theme, "commutation.direction"), |ui| {
             let directions = [(false, "commutation.with"), (true, "commutation.against")];
             let directions = directions.map(|(reversed, id)| (reversed, say(theme, id)));
-            choice(ui, &say(theme, "commutation.direction"), &mut form.reversed, directions);
+            dropdown(ui, &say(theme, "commutation.direction"), &mut form.reversed, directions);
         });
         entry(ui, theme, &say(theme, "commutation.source"), |ui| {
             let sources = [
@@ -137,15 +137,15 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
                 (Source::Absolute, "commutation.from_absolute"),
             ];
             let sources = sources.map(|(source, id)| (source, say(theme, id)));
-            choice(ui, &say(theme, "commutation.source"), &mut form.source, sources);
+            dropdown(ui, &say(theme, "commutation.source"), &mut form.source, sources);
         });
         if form.source == Source::Typed {
-            number_ui(ui, theme, "commutation.phase", &mut form.phase, &theme.number(0.0, 4));
+            number_ui(ui, theme, "commutation.phase", &mut form.phase, &theme.format_number(0.0, 4));
         }
         let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
         limit.on_hover_text(say(theme, "commutation.limit_hint"));
         if let Err(why) = form.inputs(encoder.geometry()) {
-            paragraph(ui, theme.label(theme.words(&why)));
+            paragraph(ui, theme.label(theme.format_text(&why)));
         }
     });
 }
@@ -166,16 +166,16 @@ fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
         let [one, other, _] = &mut form.typed;
         slot(ui, theme, encoder, Slot::OneSide, one, actions);
         slot(ui, theme, encoder, Slot::OtherSide, other, actions);
-        let warn = |words: Text| RichText::new(theme.words(&words)).color(theme.palette.warn);
+        let warn = |words: Text| RichText::new(theme.format_text(&words)).color(theme.palette.warn);
         let message = match (&commutation.problem, commutation.offset(encoder.geometry())) {
-            (Some(problem), _) => RichText::new(theme.words(problem)).color(theme.palette.bad),
+            (Some(problem), _) => RichText::new(theme.format_text(problem)).color(theme.palette.bad),
             (None, Err(why)) if any => warn(why),
             (None, Err(_)) => RichText::new(""),
             (None, Ok(_)) if commutation.are_sides_identical() => warn(TEXTS.text("commutation.sides_equal")),
             (None, Ok(CommutationOffset { apart_deg: None, .. })) => warn(TEXTS.text("commutation.only_one_side")),
             (None, Ok(CommutationOffset { apart_deg: Some(apart), fine_periods, .. })) => {
                 let text = TEXTS.text("commutation.rest_value").with_number("apart", apart, 2);
-                RichText::new(theme.words(&text.with_number("mean", fine_periods, 5)))
+                RichText::new(theme.format_text(&text.with_number("mean", fine_periods, 5)))
             }
         };
         fixed_height_message_ui(ui, theme, message);
@@ -193,7 +193,7 @@ fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
         slot(ui, theme, encoder, Slot::Second, typed, actions);
         match encoder.commutation.second_vector_result(encoder.geometry()) {
             Some(Ok((verdict, words))) => verdict_ui(ui, theme, verdict, &words),
-            Some(Err(why)) => paragraph(ui, theme.label(theme.words(&why))),
+            Some(Err(why)) => paragraph(ui, theme.label(theme.format_text(&why))),
             None => {}
         }
     });
@@ -250,7 +250,7 @@ fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot) {
         ui.label(theme.monospace("–").color(theme.palette.muted));
         return;
     };
-    ui.label(theme.monospace(theme.number(reading.fine_periods, 5)));
-    let words = theme.words(&reading_kind_text(reading));
+    ui.label(theme.monospace(theme.format_number(reading.fine_periods, 5)));
+    let words = theme.format_text(&reading_kind_text(reading));
     ui.add(egui::Label::new(theme.caption(&words)).truncate()).on_hover_text(words);
 }

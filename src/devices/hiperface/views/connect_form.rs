@@ -13,10 +13,12 @@ use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{EncoderSearchForm, LinkForm, LinkKind, Search, SearchAction};
-use crate::ui::controls::{button, button_with_reason, choice, entry, fill, paragraph, spinner, text_entry};
+use crate::ui::controls::{
+    button_with_reason, dropdown, entry, fill_width, labelled_button, paragraph, spinner, text_entry,
+};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    echo, expandable_ui, network, parity, recording, segmented_control, serial, typed,
+    echo_ui, entries_ui, expandable_ui, network, parity, recording_file_ui, segmented_control, serial_port_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -53,9 +55,9 @@ impl TypedConnectForm for HiperfaceConnectForm {
         ui.add_space(theme.space.between);
         match form.kind {
             LinkKind::Virtual => simulated_ui(ui, theme, form),
-            LinkKind::Serial => serial(ui, theme, dialog, &mut form.port, actions),
+            LinkKind::Serial => serial_port_ui(ui, theme, dialog, &mut form.port, actions),
             LinkKind::Tcp => network(ui, theme, &mut form.host, &mut form.tcp_port),
-            LinkKind::Replay => recording(ui, theme, &mut form.file, actions),
+            LinkKind::Replay => recording_file_ui(ui, theme, &mut form.file, actions),
         }
         if form.kind != LinkKind::Replay {
             line_ui(ui, theme, form);
@@ -72,19 +74,19 @@ fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     entry(ui, theme, &say(theme, "connect.model"), |ui| {
         let mut at = LinkForm::model_names().position(|model| model == form.model).unwrap_or(0);
         let models = LinkForm::model_names().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
-        if choice(ui, &say(theme, "connect.model"), &mut at, models)
+        if dropdown(ui, &say(theme, "connect.model"), &mut at, models)
             && let Some(model) = LinkForm::model_names().nth(at)
         {
             model.clone_into(&mut form.model);
         }
     });
-    typed(ui, theme, say, LinkForm::virtual_device_entries(), &mut form.typed);
+    entries_ui(ui, theme, say, LinkForm::virtual_device_entries(), &mut form.typed);
 }
 
 fn line_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
-    entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
+    entry(ui, theme, &theme.translate("settings_card.baud"), |ui| {
         let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
-        choice(ui, &theme.say("settings_card.baud"), &mut form.baud, bauds);
+        dropdown(ui, &theme.translate("settings_card.baud"), &mut form.baud, bauds);
         parity(ui, theme, &mut form.parity);
     });
     entry(ui, theme, &say(theme, "connect.address"), |ui| {
@@ -96,20 +98,20 @@ fn more_settings_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut 
     if !expandable_ui(ui, theme, open) {
         return;
     }
-    echo(ui, theme, &mut form.echo);
+    echo_ui(ui, theme, &mut form.echo);
     entry(ui, theme, &say(theme, "settings_card.timeout"), |ui| {
         let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
         let times = times.map(|(long, id)| (long, say(theme, id)));
-        choice(ui, &say(theme, "settings_card.timeout"), &mut form.long_timeout, times);
+        dropdown(ui, &say(theme, "settings_card.timeout"), &mut form.long_timeout, times);
     });
-    typed(ui, theme, say, LinkForm::link_entries(), &mut form.typed);
+    entries_ui(ui, theme, say, LinkForm::link_entries(), &mut form.typed);
 }
 
 fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState, actions: &mut Vec<Action>) {
-    let search = dialog.finder::<EncoderSearchForm>().and_then(|finder| finder.search.as_ref());
+    let search = dialog.finder_as::<EncoderSearchForm>().and_then(|finder| finder.search.as_ref());
     let running = search.is_some_and(Search::is_running);
-    theme.card().show(ui, |ui| {
-        fill(ui);
+    theme.card_frame().show(ui, |ui| {
+        fill_width(ui);
         ui.label(theme.heading(say(theme, "find.title")));
         paragraph(ui, theme.label(say(theme, "find.words")));
         ui.add_enabled_ui(!running, |ui| {
@@ -120,7 +122,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState,
         });
         ui.horizontal(|ui| {
             if running {
-                if button(ui, icons::X, &say(theme, "find.stop")).clicked() {
+                if labelled_button(ui, icons::X, &say(theme, "find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
                 spinner(ui, theme);
@@ -140,7 +142,9 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState,
             if let Some(progress) = search.and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
-                ui.label(theme.monospace(theme.words(&words::step_text(&progress.step))).color(theme.palette.muted));
+                ui.label(
+                    theme.monospace(theme.format_text(&words::step_text(&progress.step))).color(theme.palette.muted),
+                );
             }
         });
         if let Some(search) = search {
@@ -157,16 +161,16 @@ fn search_results_ui(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut 
     for (at, found) in search.found.iter().enumerate() {
         ui.horizontal(|ui| {
             let word = TEXTS.text("find.choose").with("address", format!("{:02X}h", found.address));
-            if button(ui, icons::PLUGS_CONNECTED, &theme.words(&word)).clicked() {
+            if labelled_button(ui, icons::PLUGS_CONNECTED, &theme.format_text(&word)).clicked() {
                 actions.push(find(SearchAction::Choose(at)));
             }
             let talking = TEXTS.text("find.talking").with("format", found.format);
             let stored = TEXTS.text("find.stored").with_text("settings", words::line_settings(found.label.settings));
-            ui.label(theme.words(&talking));
-            ui.label(theme.label(theme.words(&stored)));
+            ui.label(theme.format_text(&talking));
+            ui.label(theme.label(theme.format_text(&stored)));
         });
     }
     if let Some(end) = &search.end {
-        paragraph(ui, theme.words(end));
+        paragraph(ui, theme.format_text(end));
     }
 }

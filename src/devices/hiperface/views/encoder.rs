@@ -21,13 +21,13 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &m
         (actions, restart),
         |ui, (actions, _)| {
             identity(ui, theme, encoder, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             status_ui(ui, theme, encoder, actions);
             extended_label_ui(ui, theme, encoder);
         },
         |ui, (actions, restart)| {
             check_ui(ui, theme, encoder, restart, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             wiring::card_ui(ui, theme);
         },
     );
@@ -36,13 +36,13 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &m
 fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_readable();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("encoder_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.translate("encoder_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
     card_with_trailing(ui, theme, "encoder_card.title", read, |ui| {
         let Some(identity) = &encoder.identity else {
-            empty_placeholder(ui, theme, &theme.say("encoder_card.nothing"), None);
+            empty_placeholder(ui, theme, &theme.translate("encoder_card.nothing"), None);
             return;
         };
         ui.label(theme.value(&identity.name));
@@ -55,7 +55,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
                 .with("total", identity.label.eeprom_bytes())
                 .with("free", memory.bytes())
                 .with("fields", memory.fields);
-            row(ui, theme, &say(theme, "encoder_card.memory"), theme.words(&text));
+            row(ui, theme, &say(theme, "encoder_card.memory"), theme.format_text(&text));
         } else {
             let total = format!("{} B", identity.label.eeprom_bytes());
             row(ui, theme, &say(theme, "encoder_card.memory"), theme.monospace(total));
@@ -65,36 +65,41 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
 }
 
 fn line_quality_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
-    if encoder.session.line().is_none() {
+    if encoder.session.live_session().is_none() {
         return;
     }
     let quality = &encoder.line_quality;
-    let words = RichText::new(theme.words(&words::line_quality(quality)));
+    let words = RichText::new(theme.format_text(&words::line_quality(quality)));
     let words = if quality.has_errors() { words.color(theme.palette.warn) } else { words };
     row(ui, theme, &say(theme, "encoder_card.line"), words);
 }
 
 fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
-    let none = || theme.say("encoder_card.not_told");
+    let none = || theme.translate("encoder_card.not_told");
     let or_none = |text: &str| if text.is_empty() { none() } else { text.to_owned() };
     let serial = &identity.serial;
-    row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(&serial.serial_number)));
+    row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(or_none(&serial.serial_number)));
     row(ui, theme, &say(theme, "encoder_card.type"), theme.monospace(format!("{:02X}h", identity.label.encoder_type)));
     let resolution = match identity.geometry {
-        Some(geometry) => theme.words(&words::geometry(geometry)),
+        Some(geometry) => theme.format_text(&words::geometry(geometry)),
         None => say(theme, "encoder_card.no_geometry"),
     };
     row(ui, theme, &say(theme, "encoder_card.resolution"), resolution);
     let firmware = format!("{}  {}", serial.firmware_version, serial.firmware_date);
-    row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(or_none(firmware.trim())));
+    row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware.trim())));
     row(ui, theme, &say(theme, "encoder_card.address"), theme.monospace(format!("{:02X}h", identity.address)));
-    row(ui, theme, &say(theme, "encoder_card.settings"), theme.words(&words::line_settings(identity.label.settings)));
+    row(
+        ui,
+        theme,
+        &say(theme, "encoder_card.settings"),
+        theme.format_text(&words::line_settings(identity.label.settings)),
+    );
     row(ui, theme, &say(theme, "encoder_card.options"), theme.monospace(format!("{:02X}h", identity.label.options)));
 }
 
 fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &theme.say("status_card.read"))
+        if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &theme.translate("status_card.read"))
             .clicked()
         {
             actions.push(Action::device(encoder.session.id, Hiperface::ReadStatus));
@@ -118,7 +123,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                 ui.horizontal_top(|ui| {
                     ui.label(RichText::new(icon).color(colour));
                     ui.label(theme.monospace(format!("{:02X}h", code.byte())));
-                    ui.add(egui::Label::new(theme.words(&words::status(*code))).wrap().selectable(true));
+                    ui.add(egui::Label::new(theme.format_text(&words::status(*code))).wrap().selectable(true));
                 });
             }
             ui.label(theme.caption(say(theme, "status_card.queue")));
@@ -132,7 +137,9 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, a
         lines_ui(ui, theme, lines.as_deref(), TEXTS.text("check_card.nothing"));
         ui.add_space(theme.space.between);
         ui.checkbox(restart, say(theme, "check_card.restart"));
-        if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
+        if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &theme.translate("check_card.run"))
+            .clicked()
+        {
             actions.push(Action::device(encoder.session.id, Hiperface::Check { restart: *restart }));
         }
     });
@@ -140,7 +147,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, a
 
 fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
-    theme.gap(ui);
+    theme.add_gap(ui);
     folding_card(ui, theme, TEXTS.text("label_card.title"), |ui| {
         for part in words::label(bytes) {
             ui.horizontal_top(|ui| {
@@ -149,7 +156,7 @@ fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
                 ui.add_space((ADDRESSES - addresses.rect.width()).max(0.0));
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
-                    paragraph(ui, theme.words(&part.meaning));
+                    paragraph(ui, theme.format_text(&part.meaning));
                     paragraph(ui, theme.monospace(&part.bytes).size(theme.sizes.caption).color(theme.palette.muted));
                 });
             });

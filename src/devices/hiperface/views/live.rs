@@ -7,14 +7,14 @@ use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::state::{self, Encoder, HiperfaceAction as Hiperface};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
-use crate::ui::panels::live::{LOW, mark, raw_row, unknown_rows};
+use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui, unknown_rows};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let record = &encoder.record;
     let reading = record.last();
     let position = reading.and_then(|reading| reading.position);
-    let number = |value: f64, decimals: usize| theme.number(value, decimals);
+    let number = |value: f64, decimals: usize| theme.format_number(value, decimals);
     let (main, unit) = match (reading, position) {
         (_, Some(position)) if position.millimetres().is_some() => {
             (number(position.millimetres().unwrap_or_default(), 4), "mm".to_owned())
@@ -27,25 +27,29 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
         ui.label(theme.label(unit));
         if record.refused() {
-            mark(ui, theme, "live.refused", theme.palette.bad);
+            remark_ui(ui, theme, "live.refused", theme.palette.bad);
         } else if reading.is_some_and(|reading| !reading.valid) {
-            mark(ui, theme, "live.invalid", theme.palette.bad);
+            remark_ui(ui, theme, "live.invalid", theme.palette.bad);
         }
     });
     let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
-    if ui.available_height() < LOW {
+    if ui.available_height() < LOW_PANEL_HEIGHT {
         // In a window of small height, the plot needs the space.
         let mut words = format!("{:08X}h", reading.raw);
         if let Some((turns, steps)) = place {
-            words = format!("{} {turns} · {} {steps} · {words}", theme.say("live.turns"), theme.say("live.step"));
+            words = format!(
+                "{} {turns} · {} {steps} · {words}",
+                theme.translate("live.turns"),
+                theme.translate("live.step")
+            );
         }
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
         return;
     }
     if let Some((turns, steps)) = place {
-        row(ui, theme, &theme.say("live.turns"), theme.monospace(turns.to_string()));
-        row(ui, theme, &theme.say("live.step"), theme.monospace(steps.to_string()));
+        row(ui, theme, &theme.translate("live.turns"), theme.monospace(turns.to_string()));
+        row(ui, theme, &theme.translate("live.step"), theme.monospace(steps.to_string()));
     }
     raw_row(ui, theme, format!("{:08X}h  {}", reading.raw, reading.raw));
 }
@@ -57,7 +61,7 @@ pub(crate) fn watch_menu(
     channel: &mut String,
     actions: &mut Vec<Action>,
 ) {
-    let word = theme.say("live.watch");
+    let word = theme.translate("live.watch");
     let watched = encoder.record.watched();
     icon_menu(ui, icons::EYE, &word, |ui| {
         ui.set_max_width(240.0);
@@ -67,7 +71,7 @@ pub(crate) fn watch_menu(
         let more = watched.iter().copied().filter(|own| !usual.contains(own));
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
             let mut on = watched.contains(&what);
-            if ui.checkbox(&mut on, theme.words(&state::watch_name(what))).changed() {
+            if ui.checkbox(&mut on, theme.format_text(&state::watch_name(what))).changed() {
                 actions.push(Action::device(encoder.session.id, Hiperface::Watch(what, on)));
             }
         }

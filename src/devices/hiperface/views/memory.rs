@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, Fie
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, StagedEdits, TEXTS, forms, rules};
 use crate::devices::hiperface::views::say;
-use crate::ui::controls::{button_with_reason, choice, empty_placeholder, name, paragraph};
+use crate::ui::controls::{button_with_reason, dropdown, empty_placeholder, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines, typed_view,
 };
@@ -52,7 +52,7 @@ pub(super) fn page_ui(
     let wanted = encoder.staged.wanted();
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, theme.say("memory.read"), encoder.session.is_readable());
+        let read = (icons::ARROW_CLOCKWISE, theme.translate("memory.read"), encoder.session.is_readable());
         if empty_placeholder(ui, theme, &say(theme, "memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
@@ -85,18 +85,18 @@ fn memory_map_ui(
     let fields: Vec<MapField> = wanted
         .iter()
         .map(|field| {
-            let status = theme.words(&words::field_status(field.status));
+            let status = theme.format_text(&words::field_status(field.status));
             let label = TEXTS.text("memory.field").with("number", field.number);
             MapField {
                 number: field.number,
                 blocks: usize::from(field.status.size().blocks()),
-                label: theme.words(&label),
+                label: theme.format_text(&label),
                 caption: format!("{} B", field.status.size().bytes()),
                 colour: usize::from(field.number),
                 locked: !field.status.is_writable(),
                 unreadable: field.bytes.is_none(),
                 edited: encoder.staged.edits().any(|(number, ..)| number == field.number),
-                tooltip: format!("{}\n{status}", theme.words(&label)),
+                tooltip: format!("{}\n{status}", theme.format_text(&label)),
             }
         })
         .collect();
@@ -106,7 +106,7 @@ fn memory_map_ui(
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
     let selected = (!view.free).then_some(view.field);
-    let free = theme.words(&TEXTS.text("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
+    let free = theme.format_text(&TEXTS.text("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
     let last = wanted.last().filter(|_| encoder.session.is_ready());
     let resize = last.zip(memory).map(|(last, memory)| {
         let largest = rules::largest_size(memory, last);
@@ -125,7 +125,8 @@ fn memory_map_ui(
     let sizes = fields.iter().map(|field| field.blocks * FieldSize::BLOCK).sum::<usize>();
     let id = if fields.len() == 1 { "memory.used_one" } else { "memory.used" };
     let used = TEXTS.text(id).with("fields", fields.len()).with("used", sizes);
-    let words = if memory.is_some() { format!("{} · {free}", theme.words(&used)) } else { theme.words(&used) };
+    let words =
+        if memory.is_some() { format!("{} · {free}", theme.format_text(&used)) } else { theme.format_text(&used) };
     ui.label(theme.caption(words));
     match event {
         Some(MapEvent::Select(number)) => {
@@ -162,7 +163,7 @@ fn field_ui(
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::KEY).color(theme.palette.warn));
             let why = encoder.reason_not_editable(field);
-            paragraph(ui, why.map(|why| theme.words(&why)).unwrap_or_default());
+            paragraph(ui, why.map(|why| theme.format_text(&why)).unwrap_or_default());
         });
         return;
     };
@@ -177,7 +178,7 @@ fn field_ui(
     let beside = ui.available_width() >= 820.0;
     let lines = hex_lines(ui.available_height(), beside);
     let model = HexModel { marks: &marks, read_only: read_only.as_ref(), lines, ..HexModel::new(&device, bytes) };
-    let label = theme.words(&TEXTS.text("memory.bytes").with("number", field.number));
+    let label = theme.format_text(&TEXTS.text("memory.bytes").with("number", field.number));
     let mut edits = Vec::new();
     if beside {
         ui.horizontal_top(|ui| {
@@ -192,7 +193,7 @@ fn field_ui(
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             if let [mark, ..] = marks.as_slice() {
                 let text = TEXTS.text("memory.mounting").with("what", mark.words);
-                ui.label(theme.caption(theme.words(&text)));
+                ui.label(theme.caption(theme.format_text(&text)));
             }
             ui.add_space(theme.space.between);
             typed_view(ui, theme, view.hex.to_read(bytes));
@@ -200,7 +201,7 @@ fn field_ui(
     }
     // The undo buttons of the edit bar move the cursor, as the keys do.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
-        view.hex.follow(bytes);
+        view.hex.move_to_change(bytes);
     }
     let number = field.number;
     let id = encoder.session.id;
@@ -225,8 +226,8 @@ fn field_header_ui(
 ) {
     let mut change = None;
     ui.horizontal(|ui| {
-        ui.label(theme.heading(theme.words(&TEXTS.text("memory.field").with("number", field.number))));
-        ui.label(theme.label(theme.words(&words::field_status(field.status))));
+        ui.label(theme.heading(theme.format_text(&TEXTS.text("memory.field").with("number", field.number))));
+        ui.label(theme.label(theme.format_text(&words::field_status(field.status))));
     });
     let Some(memory) = memory else { return };
     ui.horizontal_wrapped(|ui| {
@@ -257,7 +258,7 @@ fn code_menu_ui(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &Fi
             for code in AccessCodeNumber::all() {
                 for required in [true, false] {
                     let id = if required { "memory.code_required" } else { "memory.code_free" };
-                    let words = theme.words(&TEXTS.text(id).with("number", code));
+                    let words = theme.format_text(&TEXTS.text(id).with("number", code));
                     let is_own = field.status.code() == code && field.status.code_required() == required;
                     if ui.selectable_label(is_own, words).clicked() {
                         let status = field.status.with_code(code, required);
@@ -291,7 +292,7 @@ fn size_menu_ui(
             let response = ui.add_enabled(allowed.is_ok(), own);
             let response = match &allowed {
                 Ok(()) => response,
-                Err(why) => response.on_disabled_hover_text(theme.words(why)),
+                Err(why) => response.on_disabled_hover_text(theme.format_text(why)),
             };
             if response.clicked() {
                 *change = Some(Change::ResizeField { number: field.number, size });
@@ -310,16 +311,16 @@ fn create_field_ui(
     view: &mut MemoryUiState,
     actions: &mut Vec<Action>,
 ) {
-    ui.label(theme.heading(theme.words(&TEXTS.text("memory.create_title").with("number", memory.fields))));
+    ui.label(theme.heading(theme.format_text(&TEXTS.text("memory.create_title").with("number", memory.fields))));
     ui.label(theme.label(say(theme, "memory.create_words")));
     ui.add_space(theme.space.inside);
     ui.horizontal_wrapped(|ui| {
         ui.label(theme.label(say(theme, "memory.size")));
         let sizes = FieldSize::all().map(|size| (size, format!("{} B", size.bytes())));
-        choice(ui, &say(theme, "memory.size"), &mut view.size, sizes);
+        dropdown(ui, &say(theme, "memory.size"), &mut view.size, sizes);
         ui.label(theme.label(say(theme, "memory.code")));
         let codes = AccessCodeNumber::all().map(|code| (code, code.to_string()));
-        choice(ui, &say(theme, "memory.code"), &mut view.code, codes);
+        dropdown(ui, &say(theme, "memory.code"), &mut view.code, codes);
         ui.checkbox(&mut view.code_required, say(theme, "memory.required"));
         let allowed = if encoder.session.is_ready() {
             rules::create(memory, view.size, view.code, view.code_required)

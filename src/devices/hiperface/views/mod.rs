@@ -88,11 +88,11 @@ impl TypedDeviceView for HiperfaceView {
         if page == Page::Memory {
             // The editor scrolls, and its buttons stay in place.
             egui::Frame::NONE
-                .inner_margin(page::around(ui, theme))
+                .inner_margin(page::page_margin(ui, theme))
                 .show(ui, |ui| memory::page_ui(ui, theme, (studio, device), encoder, &mut view.memory, actions));
             return;
         }
-        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.index()), |ui| match page {
             Page::Encoder => encoder::page_ui(ui, theme, encoder, &mut view.check_restart, actions),
             Page::Values => values::page_ui(ui, theme, encoder, &mut view.values, actions),
             Page::Setup => setup::page_ui(ui, theme, encoder, &mut view.setup, actions),
@@ -119,5 +119,5 @@ impl TypedDeviceView for HiperfaceView {
 
 /// Returns a message in the window's language, from the HIPERFACE catalogue or the common one.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
-    theme.words(&TEXTS.text(id))
+    theme.format_text(&TEXTS.text(id))
 }

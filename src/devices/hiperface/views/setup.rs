@@ -10,7 +10,7 @@ use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    card, choice, enabled_button, entry, folding_card, forget_secret, paragraph, row, secret_entry, show_error_below,
+    card, clear_secret, dropdown, enabled_button, entry, folding_card, paragraph, row, secret_entry, show_error_below,
     text_entry, two_columns,
 };
 use crate::ui::{Theme, icons};
@@ -56,14 +56,14 @@ pub(super) fn page_ui(
         (actions, view),
         |ui, (actions, view)| {
             position_ui(ui, theme, encoder, view, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             access_codes_ui(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
             address_ui(ui, theme, encoder, view, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             settings_ui(ui, theme, encoder, view, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             restart_ui(ui, theme, encoder, view, actions);
         },
     );
@@ -113,7 +113,7 @@ fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             let steps = i64::from(from) - i64::from(to);
             let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
             ui.horizontal_wrapped(|ui| {
-                ui.label(theme.label(theme.words(&text)));
+                ui.label(theme.label(theme.format_text(&text)));
                 let undo = say(theme, "position_card.undo");
                 if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
                     actions.push(Action::device(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
@@ -128,7 +128,7 @@ fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut Set
         paragraph(ui, theme.label(say(theme, "codes_card.words")));
         entry(ui, theme, &say(theme, "codes_card.number"), |ui| {
             let numbers = AccessCodeNumber::all().map(|number| (number, number.to_string()));
-            choice(ui, &say(theme, "codes_card.number"), &mut view.code_number, numbers);
+            dropdown(ui, &say(theme, "codes_card.number"), &mut view.code_number, numbers);
         });
         let number = view.code_number;
         let ready = encoder.session.is_ready();
@@ -136,7 +136,7 @@ fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut Set
             let response = secret_entry(ui, &mut view.code, 64.0, &say(theme, "codes_card.known"));
             if enabled_button(ui, ready, icons::KEY, &say(theme, "codes_card.use")).clicked() {
                 let code = forms::access_code(&view.code);
-                forget_secret(ui, &response, &mut view.code);
+                clear_secret(ui, &response, &mut view.code);
                 match code {
                     Ok(code) => {
                         view.code_problem = None;
@@ -153,8 +153,8 @@ fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut Set
             let again = secret_entry(ui, &mut view.new_again, 64.0, &say(theme, "codes_card.again"));
             if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &say(theme, "codes_card.change")).clicked() {
                 let code = forms::new_access_code(&view.new_code, &view.new_again);
-                forget_secret(ui, &new, &mut view.new_code);
-                forget_secret(ui, &again, &mut view.new_again);
+                clear_secret(ui, &new, &mut view.new_code);
+                clear_secret(ui, &again, &mut view.new_again);
                 let change = code.map(|new| Change::ChangeCode { number, new });
                 plan(encoder, change, &mut view.code_problem, actions);
             }
@@ -187,22 +187,22 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             ui.label(theme.label(say(theme, "settings_card.nothing")));
             return;
         };
-        let stored_words = theme.words(&words::line_settings(stored));
+        let stored_words = theme.format_text(&words::line_settings(stored));
         row(ui, theme, &say(theme, "settings_card.stored"), stored_words);
         let mut chosen = view.settings.unwrap_or_else(|| chosen_settings(stored));
-        entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
+        entry(ui, theme, &theme.translate("settings_card.baud"), |ui| {
             let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
-            choice(ui, &theme.say("settings_card.baud"), &mut chosen.format.baud, bauds);
+            dropdown(ui, &theme.translate("settings_card.baud"), &mut chosen.format.baud, bauds);
         });
-        entry(ui, theme, &theme.say("settings_card.parity"), |ui| {
+        entry(ui, theme, &theme.translate("settings_card.parity"), |ui| {
             let parities = [Parity::Even, Parity::Odd, Parity::None];
-            let parities = parities.map(|parity| (parity, theme.words(&explain::parity(parity))));
-            choice(ui, &theme.say("settings_card.parity"), &mut chosen.format.parity, parities);
+            let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity(parity))));
+            dropdown(ui, &theme.translate("settings_card.parity"), &mut chosen.format.parity, parities);
         });
         entry(ui, theme, &say(theme, "settings_card.timeout"), |ui| {
             let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
             let times = times.map(|(long, id)| (long, say(theme, id)));
-            choice(ui, &say(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
+            dropdown(ui, &say(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
         });
         ui.checkbox(&mut chosen.bus, say(theme, "settings_card.bus"));
         view.settings = Some(chosen).filter(|chosen| *chosen != chosen_settings(stored));

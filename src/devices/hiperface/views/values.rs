@@ -47,7 +47,7 @@ fn analogue_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut ValuesU
                     ui.label(theme.value(value.to_string()).color(if over { palette.bad } else { palette.text }));
                     if let Some(limit) = limit {
                         let text = TEXTS.text("analogue_card.limit").with("limit", limit);
-                        ui.label(theme.label(theme.words(&text)));
+                        ui.label(theme.label(theme.format_text(&text)));
                     }
                     if over {
                         ui.label(RichText::new(icons::WARNING).color(palette.bad));
@@ -55,7 +55,7 @@ fn analogue_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut ValuesU
                     }
                 }
                 Err(why) => {
-                    paragraph(ui, theme.label(theme.words(why)));
+                    paragraph(ui, theme.label(theme.format_text(why)));
                 }
             });
         }
@@ -76,7 +76,7 @@ fn analogue_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut ValuesU
             }
         });
         if let Some(problem) = &view.problem {
-            ui.label(RichText::new(theme.words(problem)).color(palette.bad));
+            ui.label(RichText::new(theme.format_text(problem)).color(palette.bad));
         }
     });
 }

@@ -1,7 +1,7 @@
 //! Execution of jobs on an INTERBUS encoder.
 
 use super::InterbusCommands;
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::runner::{self, Runs, failed};
@@ -19,7 +19,7 @@ impl Runs for Interbus {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
 
-    fn begin(_session: &mut Session<Self>, _given: &Given) {}
+    fn begin(_session: &mut Session<Self>, _given: &TypeMap) {}
 
     fn step(doing: &JobStep) -> String {
         doing.to_string()

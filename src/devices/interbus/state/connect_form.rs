@@ -2,8 +2,8 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
-use crate::app::connect::target::{checked, entered, host_and_default_port, split_host_default_port};
+use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
+use crate::app::connect::target::{host_and_default_port, required_entry, split_host_default_port, validated_link};
 use crate::devices::interbus::jobs::check;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
@@ -29,7 +29,7 @@ pub struct InterbusForm {
     pub tcp_port: String,
     pub file: String,
     /// Entries of the remaining parameters.
-    pub typed: Typed,
+    pub typed: EnteredValues,
     /// Whether the low word is in the first of two registers.
     pub low_first: bool,
     /// Parameters of the link for which the form has no entry.
@@ -44,7 +44,7 @@ impl FormModel for InterbusForm {
     type Finder = NoFinder<Self>;
 
     // The window initially offers this virtual encoder, which is a slowly turning machine with cams.
-    fn usual() -> LinkUrl {
+    fn default_link() -> LinkUrl {
         let mut url = LinkUrl::sim();
         for (name, value) in [("rpm", "6"), ("steps", "3600"), ("revolutions", "1"), ("cams", "demo")] {
             url.query.set(name, value);
@@ -71,14 +71,14 @@ impl FormModel for InterbusForm {
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check)
     }
 
     fn set_file(&mut self, file: String) {
         self.file = file;
     }
 
-    fn example(&self) -> &'static str {
+    fn example_link(&self) -> &'static str {
         "modbus:192.168.1.10"
     }
 }
@@ -103,7 +103,7 @@ impl InterbusForm {
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;
-        is_low_first || self.typed.take(&self.entries(), name, value)
+        is_low_first || self.typed.fill_entry(&self.entries(), name, value)
     }
 
     fn target(&self) -> Result<(LinkScheme, String), Text> {
@@ -112,14 +112,14 @@ impl InterbusForm {
             InterbusLinkKind::Gateway => {
                 (LinkScheme::Modbus, host_and_default_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
             }
-            InterbusLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
+            InterbusLinkKind::Replay => (LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?),
         })
     }
 
     fn parameters(&self) -> Parameters {
         let is_virtual = self.kind == InterbusLinkKind::Virtual;
         let mut parameters = Parameters::default();
-        parameters.typed(&self.entries(), &self.typed);
+        parameters.add_entered(&self.entries(), &self.typed);
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }

@@ -38,11 +38,11 @@ impl Kind for Interbus {
         job::words(job)
     }
 
-    fn writes(job: &InterbusJob) -> bool {
+    fn writes_memory(job: &InterbusJob) -> bool {
         matches!(job, InterbusJob::Commit(_))
     }
 
-    fn survey() -> InterbusJob {
+    fn survey_job() -> InterbusJob {
         InterbusJob::Survey
     }
 
@@ -82,7 +82,7 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
+    fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.trace.shift = self.shift();
         self.trace.of(frame)
     }
@@ -91,7 +91,7 @@ impl SessionEvents for Encoder {
         self.record_handshake_step(step);
     }
 
-    fn finished(&mut self, output: InterbusOutput, services: &mut Services) {
+    fn handle_finished_job(&mut self, output: InterbusOutput, services: &mut Services) {
         match output {
             InterbusOutput::Hello(reading) => {
                 if std::mem::take(&mut self.session.just_connected) {
@@ -128,7 +128,7 @@ impl SessionEvents for Encoder {
             }
             InterbusOutput::Check(lines) => self.check = Some(words::check(&lines)),
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
-            InterbusOutput::Prepared(prepared) => self.planned(prepared, services),
+            InterbusOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             InterbusOutput::Committed(committed) => self.handle_commit_end(*committed, services),
             // Only the command line runs these jobs.
             InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
@@ -161,9 +161,9 @@ impl SessionEvents for Encoder {
         self.session.submit(job, services)
     }
 
-    fn let_go(&mut self, end: JobState, services: &mut Services) {
+    fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.motor = None;
         self.discard_requests();
-        self.session.let_go(end, services);
+        self.session.release_thread(end, services);
     }
 }

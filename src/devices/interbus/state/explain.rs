@@ -16,7 +16,7 @@ pub use item::{direction, parameter, read_out, startup_mode_text};
 pub use write::{change, op, other_type, plan, wear, weight, written};
 
 use crate::app::Text;
-use crate::app::explain::{link, plain};
+use crate::app::explain::{link_error_text, literal_text};
 use crate::devices::interbus::jobs::{JobError, JobStep};
 use crate::devices::interbus::procedures::{Error, ExpectedWord, ImplausibleValue, LeftState};
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
@@ -36,7 +36,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// Returns why the connection was lost, or `None` if it can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
-    lost(error.device()?).map(link)
+    lost(error.device()?).map(link_error_text)
 }
 
 /// Returns whether the link is open but the gateway does not reply.
@@ -54,7 +54,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
 
 pub fn encoder(error: &Error) -> Text {
     match error {
-        Error::Link(error) => link(error),
+        Error::Link(error) => link_error_text(error),
         Error::NoReply { requested, tries } => {
             TEXTS.text("interbus.no_reply").with_text("asked", gateway::item_text(*requested)).with("tries", tries)
         }
@@ -171,7 +171,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
         JobStep::ReadOut(read_out) => item::read_out(*read_out),
         JobStep::Program(program) => TEXTS.text("ib_startup.program").with("program", program.get()),
-        JobStep::Operation(item) => plain(item),
+        JobStep::Operation(item) => literal_text(item),
     }
 }
 

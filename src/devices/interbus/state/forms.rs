@@ -3,7 +3,7 @@
 use super::staged::Edit;
 use super::words;
 use crate::app::Text;
-use crate::app::number::number as decimal;
+use crate::app::number::parse_decimal as decimal;
 use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(edit(Parameter::Turns, "4096"), Ok(Edit::Revolutions(4096)));
         assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));
         // Reference 3: a preset is below the steps; steps are at most 8192 per turn.
-        let refused = edit(Parameter::Preset, "4096").unwrap_err().words(crate::app::Language::English);
+        let refused = edit(Parameter::Preset, "4096").unwrap_err().to_string_in(crate::app::Language::English);
         assert_eq!(refused, "Preset value: 4096 is outside the range 0 to 4095.");
         assert!(edit(Parameter::Steps, "8193").is_err() && edit(Parameter::Steps, "8192").is_ok());
         assert!(edit(Parameter::Turns, "4097").is_err() && edit(Parameter::Turns, "0").is_err());

@@ -22,17 +22,17 @@ impl DeviceType for Encoder {
     type Form = InterbusForm;
     type Tables = ();
 
-    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
     }
 
-    fn explain(cause: &Cause) -> Option<Text> {
+    fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
 
-    fn tables(_store: &Store) -> Self::Tables {}
+    fn load_tables(_store: &Store) -> Self::Tables {}
 
-    fn begin(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
+    fn create(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
         let staged =
             profile.map(|(profile, ())| StagedEdits::for_profile(profile.image.clone(), profile.names.clone()));
         Encoder::with(session, staged.unwrap_or_default())

@@ -11,10 +11,10 @@ use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Interbus");
     type Action = InterbusAction;
-    type Done = Done;
+    type TaskResult = Done;
 
     fn connect(&mut self, opened: OpenedConnection<Interbus>, services: &mut Services) {
-        self.let_go(JobState::Cancelled, services);
+        self.release_thread(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.trace = Meaning::new(self.word_order());
@@ -22,15 +22,15 @@ impl DeviceModel for Encoder {
         self.submit(InterbusJob::Hello, services);
     }
 
-    fn act(&mut self, action: InterbusAction, context: &mut ActionContext<'_>) {
+    fn handle_action(&mut self, action: InterbusAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 
-    fn done(&mut self, done: Done, services: &mut Services) {
+    fn handle_result(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Read(path, Ok(text)) => {
                 let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                self.read_table(explain::plain(name), text, self.table_program);
+                self.read_table(explain::literal_text(name), text, self.table_program);
             }
             Done::Written(path, Ok(())) => {
                 services.log.remove_file_notices(&path);
@@ -38,7 +38,7 @@ impl DeviceModel for Encoder {
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
             Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
-                self.session.refuse(explain::file(&error), services)
+                self.session.report_rejection(explain::file_error_text(&error), services)
             }
         }
     }
@@ -47,7 +47,7 @@ impl DeviceModel for Encoder {
         InterbusJob::Position
     }
 
-    fn record(&self) -> &dyn Recording {
+    fn recording(&self) -> &dyn Recording {
         &self.record.track
     }
 
@@ -62,7 +62,7 @@ impl DeviceModel for Encoder {
         }
     }
 
-    fn step(&mut self, step: EditStep) {
+    fn apply_edit_step(&mut self, step: EditStep) {
         step(&mut self.staged);
         self.refusal = None;
     }

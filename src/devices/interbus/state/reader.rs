@@ -108,7 +108,7 @@ mod tests {
     fn typed_words_are_decoded_or_refused_with_a_reason() {
         let says = |reading: Reading, text: &str| -> Vec<String> {
             let lines = reading.lines(text).into_iter();
-            lines.map(|line| line.meaning.unwrap_or_else(|why| why).words(Language::English)).collect()
+            lines.map(|line| line.meaning.unwrap_or_else(|why| why).to_string_in(Language::English)).collect()
         };
         let of = |way| Reading { source: way, ..Reading::default() };
         // Reference 7.

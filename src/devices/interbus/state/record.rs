@@ -6,7 +6,7 @@ use jiff::Zoned;
 
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, PositionSample, PositionScales, Watchable, WatchedValue};
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
@@ -27,7 +27,7 @@ pub struct Record {
 impl Record {
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
-        self.track.begin(began);
+        self.track.begin_session(began);
     }
 
     /// Adds new readings. `dropped` is the number of readings that could not be recorded in time.
@@ -48,19 +48,19 @@ impl Record {
         let at = reading.at;
         match reading.mode {
             Some(StartupMode::Velocity) => {
-                self.track.watch(&[RecordedValue::Speed]);
+                self.track.set_watched(&[RecordedValue::Speed]);
                 self.add_value(at, RecordedValue::Speed, reading.rpm().map(i64::from));
             }
             Some(StartupMode::Cams(_)) => {
                 let cams: Vec<RecordedValue> = CamNumber::all().map(RecordedValue::Cam).collect();
-                self.track.watch(&cams);
+                self.track.set_watched(&cams);
                 let output = reading.cams();
                 for cam in CamNumber::all() {
                     let on = output.map(|own| i64::from(own.outputs >> cam.get() & 1));
                     self.add_value(at, RecordedValue::Cam(cam), on);
                 }
             }
-            _ => self.track.watch(&[]),
+            _ => self.track.set_watched(&[]),
         }
         // A position counts as missing only if the mode transmits it completely.
         let is_sent = reading.mode != Some(StartupMode::Velocity);
@@ -73,7 +73,7 @@ impl Record {
                 is_bad: position.is_none(),
                 is_warned: reading.unexpected_bits() != 0 || is_beyond,
             };
-            self.track.add(&[sighting], &meaning(reading.gear));
+            self.track.add_positions(&[sighting], &meaning(reading.gear));
         }
     }
 
@@ -87,17 +87,18 @@ impl Record {
     }
 
     pub(super) fn forget(&mut self) {
-        self.track.forget();
+        self.track.clear_unless_long();
         self.last = None;
     }
 }
 
-fn meaning(gear: Option<Gear>) -> Meaning {
+fn meaning(gear: Option<Gear>) -> PositionScales {
     match gear {
-        Some(gear) => {
-            Meaning::for_steps_per_turn(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns()))
-        }
-        None => Meaning::for_steps(None),
+        Some(gear) => PositionScales::for_steps_per_turn(
+            Some(gear.steps().into()),
+            f64::from(gear.steps()) / f64::from(gear.turns()),
+        ),
+        None => PositionScales::for_steps(None),
     }
 }
 
@@ -106,15 +107,15 @@ impl Watchable for RecordedValue {
         true
     }
 
-    fn line(&self, group: GroupId) -> Series {
+    fn create_series(&self, group: GroupId) -> Series {
         match self {
             RecordedValue::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 0)];
-                Series::of(group, 0, TEXTS.text("ib_live.speed"), "encoder speed".to_owned(), scales)
+                Series::new(group, 0, TEXTS.text("ib_live.speed"), "encoder speed".to_owned(), scales)
             }
             RecordedValue::Cam(cam) => {
                 let name = TEXTS.text("ib_live.cam").with("cam", cam.get());
-                Series::of(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
+                Series::new(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
             }
         }
     }

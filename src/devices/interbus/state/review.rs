@@ -1,6 +1,6 @@
 //! Review of a write to an INTERBUS encoder, with the permits, warnings and cost of the plan.
 
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_ASK, WEAR_LAST, Wear};
@@ -17,16 +17,16 @@ impl Reviewable for Interbus {
     type Prepared = Prepared;
     type Written = WrittenChanges;
 
-    fn change(change: &Change) -> Text {
+    fn change_title(change: &Change) -> Text {
         words::change(change)
     }
 
-    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+    fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
-        permit.option(options)
+        permit.restore_option(options)
     }
 
-    fn op(_: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
         words::op(op)
     }
 
@@ -35,7 +35,7 @@ impl Reviewable for Interbus {
     }
 
     fn redo(prepared: &Prepared) -> Vec<Text> {
-        prepared.mounting_written.iter().map(explain::plain).collect()
+        prepared.mounting_written.iter().map(explain::literal_text).collect()
     }
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
@@ -45,10 +45,10 @@ impl Reviewable for Interbus {
         if prepared.plan.ops.contains(&Op::Default) {
             warnings.push(TEXTS.text("ib_review.experimental"));
         }
-        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        let mounting = prepared.mounting_left.iter().map(explain::literal_text).collect();
         warnings.extend(review::skipped_texts(
             TEXTS.text("ib_review.missing"),
-            prepared.missing.iter().map(plain).collect(),
+            prepared.missing.iter().map(literal_text).collect(),
             mounting,
         ));
         warnings
@@ -66,7 +66,7 @@ impl Reviewable for Interbus {
         needs
     }
 
-    fn cost(prepared: &Prepared) -> Text {
+    fn cost_text(prepared: &Prepared) -> Text {
         let stores = prepared.plan.write_cycles();
         if stores == 0 {
             return TEXTS.text("ib_review.cost_nothing");
@@ -85,7 +85,7 @@ impl Reviewable for Interbus {
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
     }
 
-    fn written(written: &WrittenChanges) -> Text {
+    fn written_text(written: &WrittenChanges) -> Text {
         words::written(written)
     }
 }

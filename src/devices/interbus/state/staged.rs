@@ -104,7 +104,7 @@ impl StagedEdits {
         }
         let edits = self.edits();
         self.waiting.clear();
-        self.history.forget();
+        self.history.clear_steps();
         (self.base, self.wanted) = (Some(now.clone()), Some(now));
         self.take_draft(edits);
     }
@@ -144,7 +144,9 @@ impl StagedEdits {
     /// Sets the base values and transfers the edits to them.
     fn rebase(&mut self, now: EditedValues) {
         match (&self.base, &mut self.wanted) {
-            (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
+            (Some(before), Some(wanted)) => {
+                self.history.update_all_states(wanted, |own| merge::rebase(own, before, &now))
+            }
             _ => self.wanted = Some(now.clone()),
         }
         self.base = Some(now);
@@ -196,7 +198,7 @@ impl StagedEdits {
     }
 
     fn step(&mut self, after: EditedValues) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
+        self.wanted.as_mut().is_some_and(|wanted| self.history.apply_step(wanted, after))
     }
 }
 
@@ -216,7 +218,7 @@ impl SnapshotEdits for StagedEdits {
         &self.history
     }
 
-    fn parts(&mut self) -> Option<EditHistoryParts<'_, EditedValues>> {
+    fn history_parts(&mut self) -> Option<EditHistoryParts<'_, EditedValues>> {
         Some((self.base.as_ref()?, self.wanted.as_mut()?, &mut self.history))
     }
 }

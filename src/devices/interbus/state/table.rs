@@ -6,7 +6,7 @@ use super::Done;
 use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::Text;
-use crate::app::action::{Action as StudioAction, Done as StudioDone};
+use crate::app::action::{Action as StudioAction, TaskResult as StudioDone};
 use crate::app::services::Services;
 use crate::devices::interbus::profile::{CamTable, TableOptions, emit_table};
 use crate::devices::interbus::protocol::ProgramNumber;

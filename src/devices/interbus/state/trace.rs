@@ -31,13 +31,15 @@ impl Meaning {
 
     /// Explains a frame. The explanation is empty if an intact frame contains no word.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
-        let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
+        let Some(bytes) = entry.bytes.to_bytes() else {
+            return FrameExplanation::from_error(Text::new("trace.hidden"));
+        };
         if entry.direction == Direction::Sent {
             self.requested.clone_from(&bytes);
             return self.word_meaning_texts(entry.direction, &bytes).into();
         }
         match fault(&self.requested, &bytes, self.order) {
-            Some(Fault::Broken(damage)) => FrameExplanation::broken(explained::damage_text(damage)),
+            Some(Fault::Broken(damage)) => FrameExplanation::from_error(explained::damage_text(damage)),
             Some(Fault::Refused(exception)) => FrameExplanation {
                 fault: Some(TraceFault::Reported),
                 ..vec![explained::exception_text(exception)].into()
@@ -124,7 +126,7 @@ mod tests {
             };
             assert_eq!(said(Direction::Sent, request).fault, None);
             let told = said(Direction::Received, reply);
-            let words: Vec<String> = told.meaning.iter().map(|text| text.words(Language::English)).collect();
+            let words: Vec<String> = told.meaning.iter().map(|text| text.to_string_in(Language::English)).collect();
             assert_eq!(told.fault, fault, "{label}: {words:?}");
             assert!(!words.concat().is_empty(), "{label}");
         }

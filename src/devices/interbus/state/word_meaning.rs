@@ -2,7 +2,7 @@
 
 use super::words;
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::interbus::protocol::{
     CamOutput, Command, EncoderMode, ErrorWord, Parameter, ReadOutNumber, ReadOutValue, Reply, Value, WindowShift,
 };
@@ -134,7 +134,7 @@ fn echo(reply: Reply, mode: EncoderMode) -> Text {
 
 fn cams(mask: u16) -> Text {
     let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
-    if numbers.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(numbers.join(", ")) }
+    if numbers.is_empty() { TEXTS.text("ib_item.no_cam") } else { literal_text(numbers.join(", ")) }
 }
 
 fn outputs(word: u32, shift: Option<WindowShift>) -> Text {
@@ -161,7 +161,7 @@ mod tests {
     /// The words are from references 3, 5 and 7.
     #[test]
     fn words_are_decoded_in_their_mode() {
-        let english = |text: Text| text.words(Language::English);
+        let english = |text: Text| text.to_string_in(Language::English);
         for (word, mode, says) in [
             (0x0200_00FF, EncoderMode::Position, "Steps := 255"),
             (0x0600_0004, EncoderMode::Parameterisation, "Direction := counterclockwise"),
@@ -192,7 +192,7 @@ mod tests {
         }
         let temperature = WordContext { read_out: Some(ReadOutNumber::TEMPERATURE), ..known(EncoderMode::ReadOut) };
         assert_eq!(english(word_text(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
-        assert_eq!(word_text(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
+        assert_eq!(word_text(0xA1FF_FF9C, &temperature).to_string_in(Language::German), "Temperatur: -10,0 °C");
         assert!(
             unexpected_bits(0x0412_3456).is_some()
                 && unexpected_bits(0x0012_3456).is_none()

@@ -1,7 +1,7 @@
 //! Names of parameters, values, modes, LEDs and jobs of an INTERBUS encoder.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{
     EncoderMode, Flags, Interface, LedRow, Parameter, ReadOutNumber, ReadOutValue, Value,
@@ -23,7 +23,7 @@ pub fn parameter(parameter: Parameter) -> Text {
 pub fn setting(parameter: Parameter, number: u32) -> Text {
     match (parameter, Direction::from_code(number)) {
         (Parameter::Direction, Some(own)) => direction(own),
-        _ => plain(number),
+        _ => literal_text(number),
     }
 }
 
@@ -40,7 +40,7 @@ pub fn mode(mode: EncoderMode) -> Text {
 
 pub fn read_out_value(value: ReadOutValue) -> Text {
     match value {
-        ReadOutValue::Plain(number) => plain(format!("{number} (0x{number:X})")),
+        ReadOutValue::Plain(number) => literal_text(format!("{number} (0x{number:X})")),
         ReadOutValue::Minutes(minutes) => TEXTS.text("ib_read_out.minutes").with("minutes", minutes).with_number(
             "hours",
             f64::from(minutes) / 60.0,
@@ -99,7 +99,7 @@ pub fn read_value(what: ReadOutNumber, value: Value) -> Text {
     match (what.number(), Direction::from_code(value.get())) {
         (0x3, Some(own)) => direction(own),
         // These values are counted numbers or identifiers, so their bits need no explanation.
-        (0x0..=0x7, _) => plain(value.get()),
+        (0x0..=0x7, _) => literal_text(value.get()),
         _ => read_out_value(what.value(value)),
     }
 }

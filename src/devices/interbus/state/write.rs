@@ -54,16 +54,17 @@ impl HasMemory for Encoder {
         other_type(&profile.identity, &own.profile()).is_some()
     }
 
-    fn prepare(change: Change) -> InterbusJob {
+    fn prepare_job(change: Change) -> InterbusJob {
         InterbusJob::Prepare(change)
     }
 
-    fn commit(&mut self, agreed: ApprovedPlanOf<Interbus>) -> InterbusJob {
+    fn commit_job(&mut self, agreed: ApprovedPlanOf<Interbus>) -> InterbusJob {
         InterbusJob::Commit(Box::new(agreed))
     }
 
     fn schedule_rereads(&mut self) {
-        let programs = self.review().and_then(Review::plan_in_progress).and_then(|own| changed_programs(&own.plan));
+        let programs =
+            self.open_review().and_then(Review::plan_in_progress).and_then(|own| changed_programs(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
     }
 
@@ -84,7 +85,7 @@ impl HasProfile for Encoder {
         Some(Body::new(self.edited_profile()?))
     }
 
-    fn remarks(&self) -> Vec<Text> {
+    fn save_remarks(&self) -> Vec<Text> {
         truncated_list(&words::marks(&self.marks()), Text::clone)
     }
 

@@ -53,9 +53,9 @@ pub(super) fn page_ui(
         return;
     };
     chart::card_ui(ui, theme, encoder, &chart, &mut view.chart, actions);
-    theme.gap(ui);
+    theme.add_gap(ui);
     table::card_ui(ui, theme, encoder, &chart, &mut view.table, actions);
-    theme.gap(ui);
+    theme.add_gap(ui);
     two_columns(
         ui,
         theme,
@@ -74,7 +74,7 @@ fn unread_program_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: Pro
         }
         empty_placeholder(ui, theme, &say(theme, "ib_cams.unread"), None);
         let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
-        paragraph(ui, RichText::new(theme.words(&cost)).color(theme.palette.warn));
+        paragraph(ui, RichText::new(theme.format_text(&cost)).color(theme.palette.warn));
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
             if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_one")).clicked() {

@@ -7,9 +7,11 @@ use crate::app::connect::ConnectDialog as Dialog;
 use crate::devices::interbus::state::{InterbusForm, InterbusLinkKind};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, paragraph};
+use crate::ui::controls::{dropdown, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segmented_control, typed};
+use crate::ui::dialogs::connect::entries::{
+    entries_ui, expandable_ui, host_and_port_ui, recording_file_ui, segmented_control,
+};
 
 pub(crate) struct InterbusConnectForm;
 
@@ -36,9 +38,11 @@ impl TypedConnectForm for InterbusConnectForm {
         }
         ui.add_space(theme.space.between);
         match form.kind {
-            InterbusLinkKind::Virtual => typed(ui, theme, say, InterbusForm::virtual_device_entries(), &mut form.typed),
+            InterbusLinkKind::Virtual => {
+                entries_ui(ui, theme, say, InterbusForm::virtual_device_entries(), &mut form.typed)
+            }
             InterbusLinkKind::Gateway => {
-                place(
+                host_and_port_ui(
                     ui,
                     theme,
                     "connect.device_address",
@@ -48,7 +52,7 @@ impl TypedConnectForm for InterbusConnectForm {
                 register_addresses_ui(ui, theme, form);
             }
             InterbusLinkKind::Replay => {
-                recording(ui, theme, &mut form.file, actions);
+                recording_file_ui(ui, theme, &mut form.file, actions);
                 order_ui(ui, theme, form);
             }
         }
@@ -57,14 +61,14 @@ impl TypedConnectForm for InterbusConnectForm {
                 register_addresses_ui(ui, theme, form);
             }
             let (_, rest) = InterbusForm::link_entries();
-            typed(ui, theme, say, rest, &mut form.typed);
+            entries_ui(ui, theme, say, rest, &mut form.typed);
         }
     }
 }
 
 fn register_addresses_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::link_entries();
-    typed(ui, theme, say, registers, &mut form.typed);
+    entries_ui(ui, theme, say, registers, &mut form.typed);
     order_ui(ui, theme, form);
 }
 
@@ -72,6 +76,6 @@ fn order_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let word = say(theme, "connect.word_order");
     entry(ui, theme, &word, |ui| {
         let orders = [(false, "connect.high_first"), (true, "connect.low_first")];
-        choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(theme, id))));
+        dropdown(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(theme, id))));
     });
 }

@@ -8,8 +8,8 @@ use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
-    card, card_with_trailing, choice, empty_placeholder, enabled_button, encoder_page, entry, folding_card, paragraph,
-    row,
+    card, card_with_trailing, dropdown, empty_placeholder, enabled_button, encoder_page, entry, folding_card,
+    paragraph, row,
 };
 use crate::ui::{Theme, icons, motor};
 
@@ -26,7 +26,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             |ui, actions| {
                 current_word_ui(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
-                    theme.gap(ui);
+                    theme.add_gap(ui);
                     motor::card_ui(ui, theme, motor.rpm(), |rpm| {
                         actions.push(Action::device(encoder.session.id, Interbus::Turn(rpm)))
                     });
@@ -35,7 +35,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         ),
     );
     if !is_profile {
-        theme.gap(ui);
+        theme.add_gap(ui);
         wiring_ui(ui, theme);
     }
 }
@@ -43,33 +43,33 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
 fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_readable() && (encoder.is_stopped() || encoder.profile().is_some());
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("encoder_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.translate("encoder_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
     card_with_trailing(ui, theme, "encoder_card.title", read, |ui| {
-        let serial = theme.say("encoder_card.serial");
+        let serial = theme.translate("encoder_card.serial");
         if let Some(survey) = &encoder.survey {
             let identity = &survey.identity;
             ui.label(theme.value(say(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&identity.serial_number));
             row(ui, theme, &say(theme, "ib_card.version"), theme.monospace(identity.software_version.to_string()));
-            row(ui, theme, &say(theme, "ib_card.flags"), theme.words(&words::flags(identity.flags)));
-            row(ui, theme, &say(theme, "ib_card.mode"), theme.words(&explain::startup_mode_text(identity.mode)));
+            row(ui, theme, &say(theme, "ib_card.flags"), theme.format_text(&words::flags(identity.flags)));
+            row(ui, theme, &say(theme, "ib_card.mode"), theme.format_text(&explain::startup_mode_text(identity.mode)));
             let range = words::range(identity.steps, identity.revolutions);
-            row(ui, theme, &say(theme, "ib_card.range"), theme.words(&range));
+            row(ui, theme, &say(theme, "ib_card.range"), theme.format_text(&range));
             let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
-            row(ui, theme, &say(theme, "ib_card.time"), theme.words(&time));
+            row(ui, theme, &say(theme, "ib_card.time"), theme.format_text(&time));
             let celsius = words::celsius(survey.temperature_tenths);
-            row(ui, theme, &say(theme, "ib_card.temperature"), theme.words(&celsius));
+            row(ui, theme, &say(theme, "ib_card.temperature"), theme.format_text(&celsius));
         } else if let Some(profile) = encoder.profile() {
             ui.label(theme.value(say(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;
             let range = words::range(parameters.steps, parameters.revolutions);
-            row(ui, theme, &say(theme, "ib_card.range"), theme.words(&range));
+            row(ui, theme, &say(theme, "ib_card.range"), theme.format_text(&range));
             let programs = profile.image.known().count();
             row(ui, theme, &say(theme, "ib_card.programs"), programs.to_string());
         } else {
@@ -81,7 +81,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
 fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready() && encoder.is_stopped();
-        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.translate("check_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Interbus::Check));
         }
     };
@@ -99,9 +99,9 @@ fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
             Some(reading) => {
                 row(ui, theme, &say(theme, "ib_sends.word"), theme.monospace(format!("0x{:08X}", reading.word)));
                 let meaning = word_meaning::word_text(reading.word, &encoder.known());
-                row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&meaning));
+                row(ui, theme, &say(theme, "ib_sends.says"), theme.format_text(&meaning));
                 if let Some(warning) = word_meaning::unexpected_bits(reading.word) {
-                    paragraph(ui, RichText::new(theme.words(&warning)).color(theme.palette.warn));
+                    paragraph(ui, RichText::new(theme.format_text(&warning)).color(theme.palette.warn));
                     paragraph(ui, theme.caption(say(theme, "ib_sends.swapped")));
                 }
             }
@@ -111,7 +111,7 @@ fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
         if encoder.record.last().is_some_and(|own| matches!(own.reply(), Reply::Echo { .. } | Reply::Busy { .. })) {
             paragraph(ui, RichText::new(say(theme, "ib_sends.left")).color(theme.palette.warn));
         }
-        if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &theme.say("lead_back_card.button")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &theme.translate("lead_back_card.button")).clicked() {
             actions.push(Action::device(encoder.session.id, Interbus::LeadBack));
         }
         let Some(own) = encoder.mode() else {
@@ -125,11 +125,11 @@ fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
         let modes = [usual, StartupMode::Velocity].into_iter().chain(programs);
         ui.add_enabled_ui(ready, |ui| {
             entry(ui, theme, &word, |ui| {
-                choice(
+                dropdown(
                     ui,
                     &word,
                     &mut wanted,
-                    modes.map(|mode| (mode, theme.words(&explain::startup_mode_text(mode)))),
+                    modes.map(|mode| (mode, theme.format_text(&explain::startup_mode_text(mode)))),
                 );
             });
         });

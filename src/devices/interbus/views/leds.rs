@@ -52,8 +52,8 @@ fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
             return;
         };
         let (meaning, remedy) = words::lamps(own);
-        ui.label(theme.value(theme.words(&meaning)));
-        paragraph(ui, theme.words(&remedy));
+        ui.label(theme.value(theme.format_text(&meaning)));
+        paragraph(ui, theme.format_text(&remedy));
     });
 }
 
@@ -85,13 +85,13 @@ fn codes(ui: &mut Ui, theme: &Theme) {
                 .into_iter()
                 .map(|interface| {
                     let code = id_code(class, interface);
-                    format!("{} 0x{code:02X} ({code})", theme.words(&words::interface(interface)))
+                    format!("{} 0x{code:02X} ({code})", theme.format_text(&words::interface(interface)))
                 })
                 .collect();
             let (bytes_in, bytes_out) = class.bytes();
             let bytes = TEXTS.text("ib_id.bytes").with("in", bytes_in).with("out", bytes_out);
             row(ui, theme, &format!("{class:?}"), codes.join(" · "));
-            paragraph(ui, theme.caption(theme.words(&bytes)));
+            paragraph(ui, theme.caption(theme.format_text(&bytes)));
         }
     });
 }

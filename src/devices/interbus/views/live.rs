@@ -9,7 +9,7 @@ use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{connection_dot, row};
-use crate::ui::panels::live::{LOW, mark, raw_row};
+use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui};
 
 /// Width of eight output indicators side by side.
 const LAMPS: f32 = 280.0;
@@ -18,8 +18,8 @@ const LAMP: f32 = 16.0;
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let last = encoder.record.last();
     let (main, unit) = match (last.and_then(WordReading::rpm), encoder.position()) {
-        (Some(rpm), _) => (rpm.to_string(), theme.say("unit.revolutions_per_minute")),
-        (None, Some(position)) => (position.to_string(), theme.say("unit.steps")),
+        (Some(rpm), _) => (rpm.to_string(), theme.translate("unit.revolutions_per_minute")),
+        (None, Some(position)) => (position.to_string(), theme.translate("unit.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
     let palette = theme.palette;
@@ -27,9 +27,9 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
         ui.label(theme.label(unit));
         if last.is_some_and(|reading| !reading.is_valid()) {
-            mark(ui, theme, "live.invalid", palette.bad);
+            remark_ui(ui, theme, "live.invalid", palette.bad);
         } else if last.is_some_and(|reading| reading.unexpected_bits() != 0) {
-            mark(ui, theme, "live.warning", palette.warn);
+            remark_ui(ui, theme, "live.warning", palette.warn);
         }
     });
     // Unknown values have their rows already, so that the buttons below stay where they are.
@@ -37,18 +37,19 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let word = last.map_or_else(unknown, |reading| format!("0x{:08X}", reading.word));
     let place = last.and_then(WordReading::place);
     let is_position = last.is_none_or(|reading| reading.rpm().is_none() && reading.cams().is_none());
-    if ui.available_height() < LOW {
+    if ui.available_height() < LOW_PANEL_HEIGHT {
         // A low window leaves only one line for the words, since the plot needs the space.
-        let place = place
-            .map(|own| format!("{} {} · {}° · ", theme.say("live.turns"), own.turns, theme.number(own.degrees, 2)));
+        let place = place.map(|own| {
+            format!("{} {} · {}° · ", theme.translate("live.turns"), own.turns, theme.format_number(own.degrees, 2))
+        });
         let words = format!("{}{word}", place.unwrap_or_default());
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
         if is_position {
-            let angle = |degrees| format!("{} °", theme.number(degrees, 3));
+            let angle = |degrees| format!("{} °", theme.format_number(degrees, 3));
             let rows = [
-                (theme.say("live.turns"), place.as_ref().map(|place| place.turns.to_string())),
-                (theme.say("live.step"), place.as_ref().map(|place| place.steps.to_string())),
+                (theme.translate("live.turns"), place.as_ref().map(|place| place.turns.to_string())),
+                (theme.translate("live.step"), place.as_ref().map(|place| place.steps.to_string())),
                 (say(theme, "ib_live.angle"), place.as_ref().map(|place| angle(place.degrees))),
             ];
             for (label, value) in rows {
@@ -62,7 +63,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         && let Some(output) = reading.cams()
     {
         let text = TEXTS.text("ib_startup.program").with("program", program.get());
-        ui.label(theme.caption(theme.words(&text)));
+        ui.label(theme.caption(theme.format_text(&text)));
         let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
         ui.scope(|ui| {
             // The indicators are not interactive, so they may be lower than a button.

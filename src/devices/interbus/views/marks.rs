@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::Encoder;
-use crate::ui::controls::{paragraph, problem};
+use crate::ui::controls::{paragraph, problem_ui};
 use crate::ui::{Theme, icons, page};
 
 /// Draws the marks and the reason why the last edit was refused. Marks of the program `shown` come first.
@@ -21,9 +21,9 @@ pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Opt
         for mark in &marks {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-                paragraph(ui, theme.words(mark));
+                paragraph(ui, theme.format_text(mark));
             });
         }
-        problem(ui, theme, encoder.refusal.as_ref());
+        problem_ui(ui, theme, encoder.refusal.as_ref());
     });
 }

@@ -109,7 +109,7 @@ impl TypedDeviceView for InterbusView {
         }
         let shown = (page == Page::Cams).then(|| view.cams.shown());
         marks::marks_ui(ui, theme, encoder, shown);
-        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.index()), |ui| {
             if page != Page::Backups {
                 standstill::bar_ui(ui, theme, encoder, actions);
             }
@@ -119,9 +119,9 @@ impl TypedDeviceView for InterbusView {
                 Page::Cams => cams::page_ui(ui, theme, encoder, &mut view.cams, actions),
                 Page::Diagnosis => {
                     read_outs::cards_ui(ui, theme, encoder, actions);
-                    theme.gap(ui);
+                    theme.add_gap(ui);
                     reader::card_ui(ui, theme, &mut view.reader);
-                    theme.gap(ui);
+                    theme.add_gap(ui);
                     leds::cards_ui(ui, theme, &mut view.lamps);
                 }
                 Page::Backups => backups::page_ui(ui, theme, device, actions),
@@ -135,5 +135,5 @@ impl TypedDeviceView for InterbusView {
 }
 
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
-    theme.words(&TEXTS.text(id))
+    theme.format_text(&TEXTS.text(id))
 }

@@ -15,8 +15,8 @@ use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, word_meaning, words};
 use crate::ui::controls::{
-    card, choice, committed_entry, empty_placeholder, enabled_button, entry, paragraph, problem, row, show_error_below,
-    show_error_beside, two_columns,
+    card, committed_entry, dropdown, empty_placeholder, enabled_button, entry, paragraph, problem_ui, row,
+    show_error_below, show_error_beside, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -51,12 +51,12 @@ pub(super) fn page_ui(
                 return;
             }
             preset_ui(ui, theme, encoder, view, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             eeprom_wear_ui(ui, theme, encoder);
         },
     );
     if !is_profile {
-        theme.gap(ui);
+        theme.add_gap(ui);
         handshake_ui(ui, theme, encoder);
     }
 }
@@ -78,14 +78,14 @@ fn table_ui(
         for parameter in
             [Parameter::Turns, Parameter::Steps, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift]
         {
-            let word = theme.words(&words::parameter(parameter));
+            let word = theme.format_text(&words::parameter(parameter));
             let (Some(before), Some(now)) = (old.value(parameter), new.value(parameter)) else { continue };
             entry(ui, theme, &word, |ui| {
                 if parameter == Parameter::Direction {
                     let mut direction = new.direction;
                     let both = [Direction::Clockwise, Direction::Counterclockwise];
-                    let both = both.map(|own| (own, theme.words(&explain::direction(own))));
-                    if choice(ui, &word, &mut direction, both) {
+                    let both = both.map(|own| (own, theme.format_text(&explain::direction(own))));
+                    if dropdown(ui, &word, &mut direction, both) {
                         actions.push(Action::device(id, Interbus::Edit(Box::new(Edit::Direction(direction)))));
                     }
                 } else {
@@ -101,7 +101,9 @@ fn table_ui(
                     show_error_beside(ui, theme, refused);
                 } else if before != now {
                     let was = TEXTS.text("ib_set.was").with_text("value", words::setting(parameter, before));
-                    ui.add(egui::Label::new(RichText::new(theme.words(&was)).color(theme.palette.staged)).truncate());
+                    ui.add(
+                        egui::Label::new(RichText::new(theme.format_text(&was)).color(theme.palette.staged)).truncate(),
+                    );
                 } else if let Ok(gear) = new.gear()
                     && parameter != Parameter::Direction
                 {
@@ -119,13 +121,13 @@ fn table_ui(
                     .text("ib_set.gear")
                     .with_number("steps", per_turn, if gear.steps() % gear.turns() == 0 { 0 } else { 4 })
                     .with_number("degrees", 360.0 / per_turn, 5);
-                paragraph(ui, theme.label(theme.words(&text)));
+                paragraph(ui, theme.label(theme.format_text(&text)));
                 if gear.steps() % gear.turns() != 0 {
                     paragraph(ui, theme.caption(say(theme, "ib_set.uneven")));
                 }
             }
             Err(error) => {
-                problem(ui, theme, Some(&cams::words::gear(&error)));
+                problem_ui(ui, theme, Some(&cams::words::gear(&error)));
             }
         }
         if encoder.identity().is_some_and(|own| own.flags.steps_minus_one()) {
@@ -186,12 +188,12 @@ fn eeprom_wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             None => palette.accent,
         };
         let text = TEXTS.text("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
-        paragraph(ui, theme.words(&text));
+        paragraph(ui, theme.format_text(&text));
         let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
         let text =
             TEXTS.text("ib_wear.words").with("warning", WEAR_WARNING).with("ask", WEAR_ASK).with("limit", WEAR_LIMIT);
-        paragraph(ui, theme.caption(theme.words(&text)));
+        paragraph(ui, theme.caption(theme.format_text(&text)));
     });
 }
 
@@ -206,11 +208,11 @@ fn handshake_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
                     ui.label(theme.monospace(format!("0x{:08X}", step.out)));
-                    ui.label(theme.label(theme.words(&word_meaning::command_text(step.command))));
+                    ui.label(theme.label(theme.format_text(&word_meaning::command_text(step.command))));
                     ui.label(theme.monospace(format!("0x{:08X}", step.input)));
                     let known = word_meaning::WordContext::of(step.command, encoder.shift());
                     ui.add(
-                        egui::Label::new(theme.label(theme.words(&word_meaning::word_text(step.input, &known))))
+                        egui::Label::new(theme.label(theme.format_text(&word_meaning::word_text(step.input, &known))))
                             .truncate(),
                     );
                     ui.end_row();

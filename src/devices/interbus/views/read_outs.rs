@@ -28,7 +28,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
         let names = (ui.available_width() * 0.2).clamp(least, most);
         egui::Grid::new("read_outs").num_columns(columns * 3).spacing([12.0, 4.0]).show(ui, |ui| {
             for (at, row) in READ_OUTS.iter().enumerate() {
-                let name = theme.words(&explain::read_out(row.read_out));
+                let name = theme.format_text(&explain::read_out(row.read_out));
                 if icon_button(ui, ready, icons::ARROW_CLOCKWISE, &name).clicked() {
                     actions.push(Action::device(id, Interbus::ReadOut(row.read_out)));
                 }
@@ -37,7 +37,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
                     ui.label(theme.label(&name));
                 });
                 let value = encoder.read_out(row.read_out);
-                let value = value.map(|value| theme.words(&words::read_value(row.read_out, value)));
+                let value = value.map(|value| theme.format_text(&words::read_value(row.read_out, value)));
                 ui.add(egui::Label::new(theme.monospace(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
                 if at % columns == columns - 1 {
                     ui.end_row();
@@ -45,12 +45,12 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
             }
         });
     });
-    theme.gap(ui);
+    theme.add_gap(ui);
     folding_card(ui, theme, TEXTS.text("ib_values.chip"), |ui| {
         paragraph(ui, theme.caption(say(theme, "ib_values.chip_words")));
         ui.horizontal_wrapped(|ui| {
             for what in (0..16).filter_map(ReadOutNumber::chip_register) {
-                let name = theme.words(&explain::read_out(what));
+                let name = theme.format_text(&explain::read_out(what));
                 let number = what.register().unwrap_or_default();
                 let value = encoder.read_out(what).map_or_else(|| "–".to_owned(), |own| format!("0x{:X}", own.get()));
                 let button = egui::Button::new(theme.monospace(format!("{number:X}  {value}")))

@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{EncoderMode, READ_OUTS, WindowShift};
 use crate::devices::interbus::state::reader::{Reading, WordSource};
 use crate::devices::interbus::state::{TEXTS, explain, words};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{card, choice, entry, mono_entry, name, paragraph};
+use crate::ui::controls::{card, dropdown, entry, mono_entry, name, paragraph};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -33,11 +33,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
         if reading.source.has_mode() {
             let word = say(theme, "ib_reader.mode");
             entry(ui, theme, &word, |ui| {
-                choice(
+                dropdown(
                     ui,
                     &word,
                     &mut reading.mode,
-                    EncoderMode::ALL.map(|mode| (mode, theme.words(&words::mode(mode)))),
+                    EncoderMode::ALL.map(|mode| (mode, theme.format_text(&words::mode(mode)))),
                 );
             });
         }
@@ -45,15 +45,21 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
             let word = say(theme, "ib_cams.shift");
             entry(ui, theme, &word, |ui| {
                 let shifts = (0..=25).filter_map(WindowShift::new);
-                choice(ui, &word, &mut reading.shift, shifts.map(|own| (own, own.get().to_string())));
+                dropdown(ui, &word, &mut reading.shift, shifts.map(|own| (own, own.get().to_string())));
             });
         }
         if reading.source == WordSource::In && reading.mode == EncoderMode::ReadOut {
             let word = say(theme, "ib_reader.read_out");
             entry(ui, theme, &word, |ui| {
-                let all =
-                    READ_OUTS.iter().map(|row| (Some(row.read_out), theme.words(&explain::read_out(row.read_out))));
-                choice(ui, &word, &mut reading.read_out, [(None, say(theme, "ib_reader.any"))].into_iter().chain(all));
+                let all = READ_OUTS
+                    .iter()
+                    .map(|row| (Some(row.read_out), theme.format_text(&explain::read_out(row.read_out))));
+                dropdown(
+                    ui,
+                    &word,
+                    &mut reading.read_out,
+                    [(None, say(theme, "ib_reader.any"))].into_iter().chain(all),
+                );
             });
         }
         let word = say(theme, "ib_reader.entry");
@@ -66,15 +72,15 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
                 match &line.meaning {
                     Ok(meaning) => {
                         ui.vertical(|ui| {
-                            paragraph(ui, theme.words(meaning));
+                            paragraph(ui, theme.format_text(meaning));
                             if let Some(warning) = &line.warning {
-                                paragraph(ui, RichText::new(theme.words(warning)).color(theme.palette.warn));
+                                paragraph(ui, RichText::new(theme.format_text(warning)).color(theme.palette.warn));
                             }
                         });
                     }
                     Err(why) => {
                         ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
-                        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));
+                        paragraph(ui, RichText::new(theme.format_text(why)).color(theme.palette.bad));
                     }
                 }
             });

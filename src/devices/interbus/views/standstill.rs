@@ -32,5 +32,5 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mu
         });
         paragraph(ui, theme.caption(say(theme, "ib_stop.words")));
     });
-    theme.gap(ui);
+    theme.add_gap(ui);
 }

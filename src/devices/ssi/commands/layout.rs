@@ -42,7 +42,7 @@ pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) ->
 /// Returns the encoder families. User-defined families replace built-in ones with the same key, and errors in their
 /// files are printed.
 pub(super) fn families(output: &Output) -> Result<Families> {
-    let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
+    let store = Store::for_user().map_err(|error| failed(&explain::store_error_text(&error)))?;
     let (families, broken) = read_families(&store);
     for error in broken {
         output.remark(&words::store(&error).terminal_text());

@@ -38,5 +38,5 @@ pub(super) fn document(profile: SsiProfile) -> ProfileDocument {
 }
 
 pub(super) fn write(path: &Path, text: &str) -> Result<()> {
-    write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file(&error)))
+    write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file_error_text(&error)))
 }

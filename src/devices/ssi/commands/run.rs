@@ -2,7 +2,7 @@
 
 use super::SsiCommands;
 use super::layout::Chosen;
-use crate::app::Given;
+use crate::app::TypeMap;
 use crate::cli::Result;
 use crate::cli::args::CommonArgs;
 use crate::cli::commands::DeviceCommands;
@@ -23,7 +23,7 @@ impl Runs for Ssi {
     type Context = ClockSettings;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &Given) -> ClockSettings {
+    fn begin(session: &mut Session<Self>, _given: &TypeMap) -> ClockSettings {
         session.station().asking
     }
 

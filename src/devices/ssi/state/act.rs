@@ -9,7 +9,7 @@ use super::encoder::Encoder;
 use super::families::families;
 use super::search::{Frames, MOST, Origin, SearchState, read_frames};
 use super::{Done, strip};
-use crate::app::action::{Action as StudioAction, Done as StudioDone};
+use crate::app::action::{Action as StudioAction, TaskResult as StudioDone};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, SessionEvents, Source};
 use crate::app::{ActionContext, DeviceCommand, DeviceFile, DeviceModel, FileQuestion, Text};
@@ -76,7 +76,7 @@ impl Encoder {
             }
             SsiAction::Export(format, language, path) => match self.designer.export(format, language) {
                 Ok(text) => self.write_text(path, text, services),
-                Err(why) => self.session.refuse(why, services),
+                Err(why) => self.session.report_rejection(why, services),
             },
             SsiAction::AskSaveFrames => {
                 let suggested = self.suggested_path("txt");
@@ -89,7 +89,7 @@ impl Encoder {
                 let clocks = self.clocks();
                 let words = self.record.words(clocks);
                 if words.is_empty() {
-                    return self.session.refuse(TEXTS.text("ssi_find.nothing_read"), services);
+                    return self.session.report_rejection(TEXTS.text("ssi_find.nothing_read"), services);
                 }
                 let lines: Vec<String> = words.iter().map(|word| frame_bits(*word, clocks)).collect();
                 self.write_text(path, lines.join("\n") + "\n", services);

@@ -2,8 +2,10 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
-use crate::app::connect::target::{checked, entered, for_adapter, network_address_of_adapter, split_target};
+use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
+use crate::app::connect::target::{
+    for_adapter, network_address_of_adapter, required_entry, split_target, validated_link,
+};
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
@@ -34,7 +36,7 @@ pub struct SsiForm {
     pub file: String,
     /// Whether the adapter leaves the supply of the encoder on when the session ends.
     pub leave_supply: bool,
-    pub typed: Typed,
+    pub typed: EnteredValues,
     /// Link parameters without an entry in the form.
     pub rest: Vec<(String, String)>,
 }
@@ -43,7 +45,7 @@ impl FormModel for SsiForm {
     type Finder = NoFinder<Self>;
 
     // The clock of the virtual encoder is slow enough to see the bits.
-    fn usual() -> LinkUrl {
+    fn default_link() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set("rpm", "6");
         url
@@ -72,14 +74,14 @@ impl FormModel for SsiForm {
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check)
     }
 
     fn set_file(&mut self, file: String) {
         self.file = file;
     }
 
-    fn example(&self) -> &'static str {
+    fn example_link(&self) -> &'static str {
         PORT_EXAMPLE.bridge
     }
 }
@@ -107,22 +109,22 @@ impl SsiForm {
             self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;
             return self.leave_supply;
         }
-        self.typed.take(&self.entries(), name, value)
+        self.typed.fill_entry(&self.entries(), name, value)
     }
 
     fn target(&self) -> Result<(LinkScheme, String), Text> {
         Ok(match self.kind {
             SsiLinkKind::Virtual => (LinkScheme::Sim, String::new()),
             SsiLinkKind::Adapter if self.network => (LinkScheme::Bridge, for_adapter(&self.host, &self.tcp_port)?),
-            SsiLinkKind::Adapter => (LinkScheme::Bridge, entered(&self.port, "form.port_missing")?),
-            SsiLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
+            SsiLinkKind::Adapter => (LinkScheme::Bridge, required_entry(&self.port, "form.port_missing")?),
+            SsiLinkKind::Replay => (LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?),
         })
     }
 
     fn parameters(&self) -> Parameters {
         let is_virtual = self.kind == SsiLinkKind::Virtual;
         let mut parameters = Parameters::default();
-        parameters.typed(&self.entries(), &self.typed);
+        parameters.add_entered(&self.entries(), &self.typed);
         if self.leave_supply {
             parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
         }
@@ -151,7 +153,7 @@ mod tests {
             "replay:monday.trace",
         ];
         assert_round_trip(&links, |url| SsiForm::from_url(url).url());
-        assert_eq!(SsiForm::usual().to_string(), "sim:?rpm=6");
+        assert_eq!(SsiForm::default_link().to_string(), "sim:?rpm=6");
     }
 
     #[test]

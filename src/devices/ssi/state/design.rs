@@ -188,7 +188,7 @@ impl LayoutDesigner {
                     return false;
                 }
                 let before = std::mem::replace(&mut self.now, design);
-                self.history.note(before.profile);
+                self.history.record_step(before.profile);
                 true
             }
             Err(why) => {
@@ -285,12 +285,12 @@ impl PendingEdits for LayoutDesigner {
         self.step_by(History::redo)
     }
 
-    fn revert(&mut self) -> bool {
+    fn discard_all(&mut self) -> bool {
         self.edit(Edit::Whole(Box::new(self.saved.clone())))
     }
 
     fn clear_undo_steps(&mut self) {
-        self.history.forget();
+        self.history.clear_steps();
     }
 }
 

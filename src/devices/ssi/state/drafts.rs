@@ -28,7 +28,7 @@ impl HasSession for Encoder {
 
 impl HasDraft for Encoder {
     /// Returns `None`, because an SSI encoder does not report its identity.
-    fn key(&self) -> Option<DeviceKey> {
+    fn device_key(&self) -> Option<DeviceKey> {
         None
     }
 
@@ -39,14 +39,14 @@ impl HasDraft for Encoder {
     fn type_and_serial(&self) -> Option<(String, String)> {
         let Source::Link(url) = &self.session.source else { return None };
         let wire = if self.session.is_virtual() {
-            self.session.place()
+            self.session.data_source()
         } else {
             format!("{}:{}", url.scheme.word(), url.target)
         };
         Some(("link".to_owned(), wire))
     }
 
-    fn edited(&self) -> Drafts {
+    fn current_edits(&self) -> Drafts {
         let changes = document_of(self.designer.saved()).changes_to(&document_of(&self.edited_profile()));
         changes.iter().filter_map(|change| ron::to_string(change).ok()).collect()
     }
@@ -70,7 +70,7 @@ impl HasDraft for Encoder {
         }
     }
 
-    fn pending(&self) -> &dyn PendingEdits {
+    fn pending_edits(&self) -> &dyn PendingEdits {
         &self.designer
     }
 
@@ -79,7 +79,7 @@ impl HasDraft for Encoder {
     }
 
     fn revert_edits(&mut self) {
-        DeviceModel::step(self, |edits| edits.revert());
+        DeviceModel::apply_edit_step(self, |edits| edits.discard_all());
     }
 
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
@@ -89,7 +89,7 @@ impl HasDraft for Encoder {
         if self.designer.design().profile == *profile {
             self.designer.mark_saved(profile.clone());
         } else {
-            let edits = self.edited();
+            let edits = self.current_edits();
             self.designer.open(profile.clone());
             self.take_edits(edits);
         }

@@ -39,7 +39,7 @@ impl Kind for Ssi {
         words::job(job)
     }
 
-    fn survey() -> SsiJob {
+    fn survey_job() -> SsiJob {
         SsiJob::Hello
     }
 
@@ -94,11 +94,11 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
+    fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
         trace::meaning(frame)
     }
 
-    fn pump(&mut self, services: &mut Services) {
+    fn process_events(&mut self, services: &mut Services) {
         self.poll_line(services);
         self.send_reading_settings(services);
     }
@@ -107,7 +107,7 @@ impl SessionEvents for Encoder {
         match remark {}
     }
 
-    fn finished(&mut self, output: SsiOutput, services: &mut Services) {
+    fn handle_finished_job(&mut self, output: SsiOutput, services: &mut Services) {
         match output {
             SsiOutput::Hello(identity) => {
                 self.requested = Some(identity.asking);

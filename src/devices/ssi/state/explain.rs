@@ -8,7 +8,7 @@ mod phrases;
 mod refused;
 
 use crate::app::Text;
-use crate::app::explain::link;
+use crate::app::explain::link_error_text;
 use crate::buses::bridge::state::adapter;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
@@ -25,7 +25,7 @@ pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
 /// Returns texts that explain why a job ended early. Each may be shown on its own line.
 pub fn job(error: &JobError) -> Vec<Text> {
     vec![match error {
-        JobError::Link(error) => link(error),
+        JobError::Link(error) => link_error_text(error),
         JobError::Adapter(error) => adapter(error),
         JobError::Cancelled => Text::new("encoder.cancelled"),
     }]
@@ -34,7 +34,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 /// Returns the reason for the loss of the connection, or `None` if the error does not end it.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error {
-        JobError::Link(error) => Some(link(error)),
+        JobError::Link(error) => Some(link_error_text(error)),
         JobError::Adapter(_) | JobError::Cancelled => None,
     }
 }
@@ -215,7 +215,7 @@ mod tests {
         ];
         for (error, fact) in cases {
             for language in [English, German] {
-                let words: Vec<String> = job(&error).iter().map(|text| text.words(language)).collect();
+                let words: Vec<String> = job(&error).iter().map(|text| text.to_string_in(language)).collect();
                 let words = words.join(" ");
                 assert!(words.contains(fact) && !words.contains('{') && words.ends_with('.'), "{words}");
                 assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");

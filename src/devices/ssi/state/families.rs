@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Encoder;
 use super::explain as words;
-use crate::app::action::{Action, Done};
+use crate::app::action::{Action, TaskResult};
 use crate::app::services::Services;
 use crate::app::{AnyDevice, Severity};
 use crate::devices::ssi::jobs;
@@ -17,11 +17,11 @@ pub(super) fn families(services: &mut Services) -> Arc<Families> {
         return families.clone();
     }
     let built_in = Arc::new(Families::built_in());
-    services.share(built_in.clone());
+    services.share_value(built_in.clone());
     let store = services.world.store.clone();
     services.tasks.run("families", move || {
         let (families, broken) = jobs::families(&store);
-        Action::Done(Done::Shared(Box::new(move |services, devices| {
+        Action::Done(TaskResult::Shared(Box::new(move |services, devices| {
             for error in &broken {
                 services.notify(Severity::Warning, vec![words::store(error)], None);
             }
@@ -35,5 +35,5 @@ fn update_families(families: &Arc<Families>, services: &mut Services, devices: &
     for encoder in devices.iter_mut().filter_map(|device| device.get_mut::<Encoder>()) {
         encoder.update_families(families.clone());
     }
-    services.share(families.clone());
+    services.share_value(families.clone());
 }

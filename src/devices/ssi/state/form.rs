@@ -128,7 +128,7 @@ impl Row {
         let unit = match unit {
             "" => None,
             "bit" => Some(TEXTS.text("ssi_form.bit")),
-            symbol => Some(explain::plain(symbol)),
+            symbol => Some(explain::literal_text(symbol)),
         };
         Row { field, name: TEXTS.text(name), entry: Entry::Number { value: value.into(), unit }, hint: None }
     }

@@ -26,17 +26,17 @@ impl DeviceType for Encoder {
     type Form = SsiForm;
     type Tables = ();
 
-    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
     }
 
-    fn explain(cause: &Cause) -> Option<Text> {
+    fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
 
-    fn tables(_store: &Store) -> Self::Tables {}
+    fn load_tables(_store: &Store) -> Self::Tables {}
 
-    fn begin(session: Session<Ssi>, profile: Option<(&SsiProfile, ())>, services: &mut Services) -> Self {
+    fn create(session: Session<Ssi>, profile: Option<(&SsiProfile, ())>, services: &mut Services) -> Self {
         let families = families(services);
         let mut designer = match &session.source {
             Source::Link(url) => LayoutDesigner::for_link(url, families),
@@ -53,7 +53,7 @@ impl DeviceType for Encoder {
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
         let suggested = names.find(|name| !is_taken(name))?;
-        let mut encoder = Self::begin(Session::new_unsaved(id, suggested), None, services);
+        let mut encoder = Self::create(Session::new_unsaved(id, suggested), None, services);
         encoder.load_draft(services);
         Some(encoder)
     }

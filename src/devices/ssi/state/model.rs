@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use super::design::Edit;
 use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
 use crate::app::action::OpenedConnection;
-use crate::app::documents::{document_of, read_only_reason};
+use crate::app::documents::{new_document, read_only_reason};
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::{HasDraft, SessionEvents, Source};
 use crate::app::{
-    ActionContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
+    ActionContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, PrepareFn, Recording, Severity, Tab, Text,
+    explain,
 };
 use crate::devices::ssi::jobs::{Ssi, SsiJob};
 use crate::link::LinkUrl;
@@ -18,15 +19,15 @@ use crate::profile::{Body, ProfileDocument, ProfileError};
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Ssi");
     type Action = SsiAction;
-    type Done = Done;
+    type TaskResult = Done;
 
-    fn prepare(&self, _world: &StudioEnvironment) -> Prepare<Ssi> {
+    fn prepare_session(&self, _world: &StudioEnvironment) -> PrepareFn<Ssi> {
         let asking = self.query_settings();
         Box::new(move |session| session.request_settings(asking))
     }
 
     fn connect(&mut self, opened: OpenedConnection<Ssi>, services: &mut Services) {
-        self.let_go(JobState::Cancelled, services);
+        self.release_thread(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.requested = None;
@@ -37,11 +38,11 @@ impl DeviceModel for Encoder {
         self.submit(SsiJob::Hello, services);
     }
 
-    fn act(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
+    fn handle_action(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context);
     }
 
-    fn done(&mut self, done: Done, services: &mut Services) {
+    fn handle_result(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Found { number, hunt } => {
                 if self.hunt == SearchState::Running(number) {
@@ -53,7 +54,7 @@ impl DeviceModel for Encoder {
                 let text = Text::new("session.saved").with("path", path.display());
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
-            Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
+            Done::Written(_, Err(error)) => self.session.report_rejection(explain::file_error_text(&error), services),
         }
     }
 
@@ -68,12 +69,12 @@ impl DeviceModel for Encoder {
 
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = read_only_reason(&self.session.source) {
-            return self.session.refuse(refusal, services);
+            return self.session.report_rejection(refusal, services);
         }
         let body = Body::new(self.edited_profile());
         let document = match &self.session.source {
             Source::File { document, .. } => ProfileDocument { body, ..(**document).clone() },
-            Source::Link(_) | Source::New { .. } => document_of(body),
+            Source::Link(_) | Source::New { .. } => new_document(body),
         };
         self.session.write_document(path, document, Vec::new(), services);
     }
@@ -87,7 +88,7 @@ impl DeviceModel for Encoder {
         SsiJob::Read
     }
 
-    fn record(&self) -> &dyn Recording {
+    fn recording(&self) -> &dyn Recording {
         &self.record
     }
 
@@ -109,7 +110,7 @@ impl DeviceModel for Encoder {
         }
     }
 
-    fn step(&mut self, step: EditStep) {
+    fn apply_edit_step(&mut self, step: EditStep) {
         let before = self.designer.layout().clone();
         if step(&mut self.designer) {
             self.handle_layout_change(&before);

@@ -11,7 +11,7 @@ use super::trial::Decoded;
 use crate::analysis::SampleTime;
 use crate::app::Recording;
 use crate::app::recorder::Recorder;
-use crate::app::track::{DeviceRecorder, Meaning, PositionSample};
+use crate::app::track::{DeviceRecorder, PositionSample, PositionScales};
 use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{FindingCounts, Flags, FrameDescriptor, Layout, Meaning as Says, Range};
 use crate::units::Moment;
@@ -23,7 +23,7 @@ const KEPT: usize = 40_000;
 pub struct Record {
     track: DeviceRecorder<Infallible>,
     layout: Layout,
-    meaning: Meaning,
+    meaning: PositionScales,
     kept: VecDeque<Words>,
     held: usize,
     tally: FindingCounts,
@@ -79,7 +79,7 @@ impl Record {
     }
 
     pub(super) fn begin(&mut self, began: &Zoned) {
-        self.track.begin(began);
+        self.track.begin_session(began);
         self.kept.clear();
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
@@ -88,7 +88,7 @@ impl Record {
     pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
             // The numbers of streamed words show how many were dropped.
-            Some(_) if dropped > 0 => self.track.gap(),
+            Some(_) if dropped > 0 => self.track.mark_gap(),
             _ => self.track.record_dropped(dropped),
         }
         for run in runs {
@@ -103,7 +103,7 @@ impl Record {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
         if run.is_streamed() && (run.is_stream_start() || missing > 0) {
-            self.track.gap();
+            self.track.mark_gap();
         }
         self.lost += missing;
         let next = run.first + run.words.len() as u64;
@@ -130,7 +130,7 @@ impl Record {
             let is_warned = reading.flags != Flags::NONE && warned();
             sightings.push(PositionSample { at, position, is_bad, is_warned });
         }
-        self.track.add(&sightings, &self.meaning);
+        self.track.add_positions(&sightings, &self.meaning);
         if let Some((at, word)) = run.iter_with_times().last() {
             self.last = Some(ReceivedWord {
                 at,
@@ -220,7 +220,7 @@ impl Record {
     }
 
     pub fn positions(&self) -> u64 {
-        self.track.positions()
+        self.track.position_count()
     }
 }
 
@@ -255,17 +255,17 @@ fn descriptor_without_names(layout: &Layout) -> FrameDescriptor {
 }
 
 /// Returns the meaning of a layout's positions.
-fn meaning(layout: &Layout) -> Meaning {
+fn meaning(layout: &Layout) -> PositionScales {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
     match range {
-        Range::Bits { singleturn, .. } => Meaning::for_steps_per_turn(all, f64::from(singleturn).exp2()),
-        Range::Steps { per_turn, .. } => Meaning::for_steps_per_turn(all, per_turn.into()),
+        Range::Bits { singleturn, .. } => PositionScales::for_steps_per_turn(all, f64::from(singleturn).exp2()),
+        Range::Steps { per_turn, .. } => PositionScales::for_steps_per_turn(all, per_turn.into()),
         Range::RoundAxis { steps, revolutions } => {
             let around = f64::from(steps) * f64::from(revolutions.denominator);
-            Meaning::for_steps_per_turn(all, around / f64::from(revolutions.numerator))
+            PositionScales::for_steps_per_turn(all, around / f64::from(revolutions.numerator))
         }
-        Range::Length { step_nanometres, .. } => Meaning::for_millimetres(f64::from(step_nanometres) * 1e-6),
+        Range::Length { step_nanometres, .. } => PositionScales::for_millimetres(f64::from(step_nanometres) * 1e-6),
     }
 }
 

@@ -96,7 +96,7 @@ fn file(error: &FileError) -> Text {
             let path = error.path.display();
             TEXTS.text("ssi_capture.too_large").with("path", path).with("megabytes", limit >> 20)
         }
-        _ => explain::file(error),
+        _ => explain::file_error_text(error),
     }
 }
 

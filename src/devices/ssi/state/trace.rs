@@ -6,7 +6,7 @@ use crate::buses::bridge::state::traced;
 use crate::link::{Direction, TraceEntry};
 
 pub(super) fn meaning(entry: &TraceEntry) -> FrameExplanation {
-    let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
+    let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::from_error(Text::new("trace.hidden")) };
     if entry.direction == Direction::Received
         && let Some(fault) = traced::received(&bytes)
     {

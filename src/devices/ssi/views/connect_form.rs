@@ -11,7 +11,7 @@ use crate::ui::Theme;
 use crate::ui::controls::paragraph;
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    expandable_ui, leave_supply, network, recording, segmented_control, serial, typed,
+    entries_ui, expandable_ui, network, recording_file_ui, segmented_control, serial_port_ui, supply_choice_ui,
 };
 
 pub(crate) struct SsiConnectForm;
@@ -39,24 +39,30 @@ impl TypedConnectForm for SsiConnectForm {
         }
         ui.add_space(theme.space.between);
         match form.kind {
-            SsiLinkKind::Virtual => typed(ui, theme, say, SsiForm::virtual_device_entries(), &mut form.typed),
+            SsiLinkKind::Virtual => entries_ui(ui, theme, say, SsiForm::virtual_device_entries(), &mut form.typed),
             SsiLinkKind::Adapter => {
                 segmented_control(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
                     network(ui, theme, &mut form.host, &mut form.tcp_port);
                 } else {
-                    serial(ui, theme, dialog, &mut form.port, actions);
+                    serial_port_ui(ui, theme, dialog, &mut form.port, actions);
                 }
             }
-            SsiLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
+            SsiLinkKind::Replay => recording_file_ui(ui, theme, &mut form.file, actions),
         }
         if form.kind != SsiLinkKind::Replay && expandable_ui(ui, theme, more) {
             let (supply, rest) = SsiForm::link_entries();
             let none = say(theme, "connect.voltage_none");
-            typed(ui, theme, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);
+            entries_ui(
+                ui,
+                theme,
+                say,
+                supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }),
+                &mut form.typed,
+            );
             paragraph(ui, theme.caption(say(theme, "connect.voltage_words")));
-            leave_supply(ui, theme, &mut form.leave_supply);
-            typed(ui, theme, say, rest, &mut form.typed);
+            supply_choice_ui(ui, theme, &mut form.leave_supply);
+            entries_ui(ui, theme, say, rest, &mut form.typed);
         }
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         |ui, actions| {
             adapter_ui(ui, theme, encoder, actions);
             if let Some(motor) = &encoder.motor {
-                theme.gap(ui);
+                theme.add_gap(ui);
                 motor::card_ui(ui, theme, motor.rpm(), |rpm| {
                     actions.push(Action::device(encoder.session.id, Ssi::Turn(rpm)))
                 });
@@ -28,11 +28,11 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         },
         |ui, actions| {
             errors_ui(ui, theme, encoder, actions);
-            theme.gap(ui);
+            theme.add_gap(ui);
             check_ui(ui, theme, encoder, actions);
         },
     );
-    theme.gap(ui);
+    theme.add_gap(ui);
     wiring::card_ui(ui, theme, encoder.designer.family());
 }
 
@@ -40,7 +40,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     let id = encoder.session.id;
     let is_readable = encoder.session.is_readable() && !encoder.is_profile();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, is_readable, icons::ARROW_CLOCKWISE, &theme.say("encoder_card.read")).clicked() {
+        if enabled_button(ui, is_readable, icons::ARROW_CLOCKWISE, &theme.translate("encoder_card.read")).clicked() {
             actions.push(Action::Command(id, DeviceCommand::Read));
         }
     };
@@ -52,18 +52,18 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
         let hello = &identity.hello;
         ui.label(theme.value(&hello.name));
         ui.add_space(theme.space.inside);
-        row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(&hello.firmware));
-        row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(&hello.serial));
+        row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(&hello.firmware));
+        row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(&hello.serial));
         let asking = &identity.asking;
         let text = TEXTS
             .text("ssi_adapter.asks")
             .with("clocks", asking.clocks)
             .with_number("khz", f64::from(identity.clock_hz) / 1000.0, 0)
             .with("pause", asking.pause_us);
-        row(ui, theme, &say(theme, "ssi_adapter.reads"), theme.words(&text));
+        row(ui, theme, &say(theme, "ssi_adapter.reads"), theme.format_text(&text));
         if identity.clock_hz != asking.clock_hz {
             let text = TEXTS.text("ssi_adapter.other_clock").with_number("khz", f64::from(asking.clock_hz) / 1000.0, 0);
-            paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
+            paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         }
         let supply = identity.supply.map(|supply| match supply.measured {
             Some((millivolt, milliampere)) => TEXTS
@@ -73,7 +73,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
             None => TEXTS.text("ssi_adapter.supply_off"),
         });
         let supply = supply.unwrap_or_else(|| TEXTS.text("ssi_adapter.no_supply"));
-        row(ui, theme, &say(theme, "ssi_adapter.supply"), theme.words(&supply));
+        row(ui, theme, &say(theme, "ssi_adapter.supply"), theme.format_text(&supply));
     });
 }
 
@@ -101,8 +101,8 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(colour));
                 ui.vertical(|ui| {
-                    paragraph(ui, theme.words(&words::finding_text(&own.finding)));
-                    paragraph(ui, theme.caption(theme.words(&words::finding_counts(own))));
+                    paragraph(ui, theme.format_text(&words::finding_text(&own.finding)));
+                    paragraph(ui, theme.caption(theme.format_text(&words::finding_counts(own))));
                 });
             });
         }
@@ -112,7 +112,7 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
 fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.translate("check_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Ssi::Check));
         }
     };

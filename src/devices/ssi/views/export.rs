@@ -6,7 +6,7 @@ use super::picture::picture_ui;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::ssi::state::{Encoder, ExportFormat, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
-use crate::ui::controls::{button, card, card_with_trailing, enabled_button, name, paragraph, problem};
+use crate::ui::controls::{card, card_with_trailing, enabled_button, labelled_button, name, paragraph, problem_ui};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -57,16 +57,16 @@ pub(super) fn page_ui(
                 ui.add(egui::Label::new(theme.monospace(text)).selectable(true).extend());
             });
         }
-        (None, Err(why)) => problem(ui, theme, Some(why)),
+        (None, Err(why)) => problem_ui(ui, theme, Some(why)),
     });
-    theme.gap(ui);
+    theme.add_gap(ui);
     card(ui, theme, TEXTS.text("ssi_export.profile"), |ui| {
         paragraph(ui, theme.label(say(theme, "ssi_export.profile_words")));
         ui.horizontal(|ui| {
-            if button(ui, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
+            if labelled_button(ui, icons::FLOPPY_DISK, &theme.translate("profile_card.save")).clicked() {
                 actions.push(Action::Save(id));
             }
-            if button(ui, "", &theme.say("profile_card.save_as")).clicked() {
+            if labelled_button(ui, "", &theme.translate("profile_card.save_as")).clicked() {
                 actions.push(Action::Command(id, DeviceCommand::AskSave));
             }
         });

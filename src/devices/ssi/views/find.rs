@@ -34,7 +34,7 @@ pub(super) fn page_ui(
     actions: &mut Vec<Action>,
 ) {
     source(ui, theme, encoder, view, actions);
-    theme.gap(ui);
+    theme.add_gap(ui);
     match &encoder.hunt {
         SearchState::Nothing => {}
         SearchState::Running(_) => {
@@ -46,7 +46,7 @@ pub(super) fn page_ui(
         SearchState::Failed(why) => {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
-                paragraph(ui, theme.words(why));
+                paragraph(ui, theme.format_text(why));
             });
         }
         SearchState::Found { origin, clocks, left_out, frames, search } => {
@@ -54,9 +54,9 @@ pub(super) fn page_ui(
             if *left_out > 0 {
                 let text = TEXTS.text("ssi_capture.left_out").with("count", left_out);
                 ui.add_space(theme.space.between);
-                paragraph(ui, theme.caption(theme.words(&text)));
+                paragraph(ui, theme.caption(theme.format_text(&text)));
             }
-            theme.gap(ui);
+            theme.add_gap(ui);
             frames::card_ui(ui, theme, encoder, (*clocks, frames), actions);
         }
     }
@@ -123,7 +123,7 @@ fn search_results_ui(
         .with("clocks", clocks)
         .with("different", search.different)
         .with_text("source", source);
-    paragraph(ui, theme.label(theme.words(&text)));
+    paragraph(ui, theme.label(theme.format_text(&text)));
     let (icon, colour) = match search.doubt {
         None => (icons::CHECK_CIRCLE, theme.palette.good),
         Some(SearchUncertainty::Open) => (icons::QUESTION, theme.palette.accent),
@@ -134,7 +134,7 @@ fn search_results_ui(
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, theme.words(&words::doubt(search.doubt)));
+        paragraph(ui, theme.format_text(&words::doubt(search.doubt)));
     });
     for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
         ui.add_space(theme.space.between);
@@ -154,7 +154,7 @@ fn class_ui(
     let evidence = &class.evidence;
     let rank = TEXTS.text("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
     let aside = |ui: &mut Ui| {
-        ui.label(theme.caption(theme.words(&rank)));
+        ui.label(theme.caption(theme.format_text(&rank)));
     };
     card_with_trailing(
         ui,
@@ -174,24 +174,26 @@ fn class_ui(
                     ui.vertical(|ui| {
                         ui.spacing_mut().item_spacing.y = theme.space.inside;
                         title_ui(ui, theme, encoder, proposal);
-                        ui.add(egui::Label::new(theme.caption(theme.words(&words::frame(&proposal.layout)))).wrap());
+                        ui.add(
+                            egui::Label::new(theme.caption(theme.format_text(&words::frame(&proposal.layout)))).wrap(),
+                        );
                     });
                 });
             }
             let more = class.members.len().saturating_sub(shown);
             if more > 0 {
                 let text = TEXTS.text("ssi_find.more").with("count", more);
-                if ui.link(theme.words(&text)).clicked() {
+                if ui.link(theme.format_text(&text)).clicked() {
                     view.unfolded = Some(number);
                 }
             }
             for open in &class.open {
                 ui.horizontal_top(|ui| {
                     ui.label(RichText::new(icons::QUESTION).color(theme.palette.accent));
-                    paragraph(ui, theme.words(&words::open(*open)));
+                    paragraph(ui, theme.format_text(&words::open(*open)));
                 });
             }
-            paragraph(ui, theme.caption(theme.words(&words::evidence_for(evidence))));
+            paragraph(ui, theme.caption(theme.format_text(&words::evidence_for(evidence))));
         },
     );
 }

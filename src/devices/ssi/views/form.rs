@@ -10,7 +10,7 @@ use crate::app::{Action, Text};
 use crate::devices::ssi::state::timing::{frequency, read_frequency};
 use crate::devices::ssi::state::{Encoder, Entry, Field, FieldInput, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
-use crate::ui::controls::{choice, committed_entry, entry, label_width, show_error_beside};
+use crate::ui::controls::{committed_entry, dropdown, entry, label_width, show_error_beside};
 
 #[derive(Default)]
 pub(super) struct LayoutFormUiState {
@@ -29,7 +29,7 @@ pub(super) fn rows_ui(
     actions: &mut Vec<Action>,
 ) {
     for row in rows {
-        let word = theme.words(&row.name);
+        let word = theme.format_text(&row.name);
         let mut put = |input| actions.push(Action::device(encoder.session.id, Ssi::Enter(row.field, input)));
         let response = match &row.entry {
             Entry::Switch(is_on) => {
@@ -46,10 +46,10 @@ pub(super) fn rows_ui(
             }
             Entry::Choice { options, chosen } => {
                 let mut own = *chosen;
-                let all = options.iter().enumerate().map(|(at, text)| (at, theme.words(text)));
+                let all = options.iter().enumerate().map(|(at, text)| (at, theme.format_text(text)));
                 let inner = ui.scope(|ui| {
                     entry(ui, theme, &word, |ui| {
-                        if choice(ui, &word, &mut own, all) {
+                        if dropdown(ui, &word, &mut own, all) {
                             put(FieldInput::Choice(own));
                         }
                     });
@@ -73,7 +73,7 @@ pub(super) fn rows_ui(
                         }
                     }
                     if let Some(unit) = unit {
-                        ui.label(theme.label(theme.words(unit)));
+                        ui.label(theme.label(theme.format_text(unit)));
                     }
                     show_error_beside(ui, theme, refusal(draft));
                     response
@@ -81,7 +81,7 @@ pub(super) fn rows_ui(
             }
             Entry::Frequency(hertz) => {
                 let draft = view.drafts.entry(row.field).or_default();
-                let shown = theme.words(&frequency((*hertz).into()));
+                let shown = theme.format_text(&frequency((*hertz).into()));
                 entry(ui, theme, &word, |ui| {
                     let response = committed_entry(ui, draft, &shown, NUMBER, &word, |text| {
                         put(FieldInput::Number(read_frequency(text)?.into()));

@@ -13,8 +13,8 @@ use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, 
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
-    button, card_with_trailing, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph,
-    primary_button, show_error_below, two_columns,
+    card_with_trailing, committed_entry, dropdown, enabled_button, folding_card, icon_button, labelled_button, name,
+    paragraph, primary_button, show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -34,7 +34,7 @@ pub(super) fn page_ui(
     actions: &mut Vec<Action>,
 ) {
     layout(ui, theme, encoder, &mut view.frame, actions);
-    theme.gap(ui);
+    theme.add_gap(ui);
     let form = encoder.designer.form();
     let (left, right) = columns(&form);
     two_columns(
@@ -44,20 +44,20 @@ pub(super) fn page_ui(
         |ui, (view, actions)| {
             trial::card_ui(ui, theme, encoder, &mut view.trial, actions);
             for group in right {
-                theme.gap(ui);
+                theme.add_gap(ui);
                 group_ui(ui, theme, encoder, group, view, actions);
             }
         },
         |ui, (view, actions)| {
             for (number, group) in left.iter().enumerate() {
                 if number > 0 {
-                    theme.gap(ui);
+                    theme.add_gap(ui);
                 }
                 group_ui(ui, theme, encoder, group, view, actions);
             }
         },
     );
-    theme.gap(ui);
+    theme.add_gap(ui);
     buttons_ui(ui, theme, studio, device, encoder, actions);
 }
 
@@ -70,10 +70,14 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
     let designer = &encoder.designer;
     let id = encoder.session.id;
     let aside = |ui: &mut Ui| {
-        if icon_button(ui, encoder.designer.can_redo(), icons::ARROW_U_UP_RIGHT, &theme.say("memory.redo")).clicked() {
+        if icon_button(ui, encoder.designer.can_redo(), icons::ARROW_U_UP_RIGHT, &theme.translate("memory.redo"))
+            .clicked()
+        {
             actions.push(Action::Command(id, DeviceCommand::Redo));
         }
-        if icon_button(ui, encoder.designer.can_undo(), icons::ARROW_U_UP_LEFT, &theme.say("memory.undo")).clicked() {
+        if icon_button(ui, encoder.designer.can_undo(), icons::ARROW_U_UP_LEFT, &theme.translate("memory.undo"))
+            .clicked()
+        {
             actions.push(Action::Command(id, DeviceCommand::Undo));
         }
     };
@@ -86,7 +90,7 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
                 ui.label(say(theme, "ssi_layout.sends_other"));
-                if button(ui, icons::PLAY, &say(theme, "ssi_layout.send")).clicked() {
+                if labelled_button(ui, icons::PLAY, &say(theme, "ssi_layout.send")).clicked() {
                     asked.push(Action::device(id, Ssi::SendLayout));
                 }
             });
@@ -95,7 +99,7 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         for advice in &designer.design().advice {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
-                paragraph(ui, theme.caption(theme.words(&words::advice_text(advice))));
+                paragraph(ui, theme.caption(theme.format_text(&words::advice_text(advice))));
             });
         }
         if designer.layout().loses_lowest_bit() {
@@ -117,7 +121,7 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         ui.label(theme.label(&word));
         let all = families.iter().enumerate().map(|(at, family)| (Some(at), family.name.clone()));
         let free = std::iter::once((None, say(theme, "ssi_layout.free")));
-        if choice(ui, &word, &mut chosen, free.chain(all)) {
+        if dropdown(ui, &word, &mut chosen, free.chain(all)) {
             let key = chosen.and_then(|at| families.get(at)).map(|family| family.key.clone());
             actions.push(edit(key.map_or(Edit::Free, Edit::Family)));
         }
@@ -131,11 +135,11 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, say(theme, "ssi_layout.import")), |ui| {
             ui.set_width(320.0);
             paragraph(ui, theme.caption(say(theme, "ssi_layout.import_words")));
-            if button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
+            if labelled_button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
                 actions.push(Action::New(Encoder::TAB));
                 ui.close();
             }
-            if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
+            if labelled_button(ui, icons::FOLDER_OPEN, &theme.translate("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
                 ui.close();
             }
@@ -156,14 +160,14 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
             ui.horizontal_wrapped(|ui| {
                 let text = TEXTS.text("ssi_layout.by_hand").with("family", &family.name);
                 ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-                ui.label(theme.words(&text));
-                if button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_layout.delivered")).clicked() {
+                ui.label(theme.format_text(&text));
+                if labelled_button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_layout.delivered")).clicked() {
                     actions.push(edit(Edit::Family(family.key.clone())));
                 }
             });
         }
         Some(family) => {
-            paragraph(ui, theme.caption(theme.words(&words::note(family, &family.source))));
+            paragraph(ui, theme.caption(theme.format_text(&words::note(family, &family.source))));
         }
         None => paragraph(ui, theme.caption(say(theme, "ssi_layout.free_words"))),
     }
@@ -195,7 +199,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
         Some(StripEvent::Preview(..)) | None => {}
     }
     let words = match selected {
-        Some(clock) => theme.words(&strip::cell(&strip, clock)),
+        Some(clock) => theme.format_text(&strip::cell(&strip, clock)),
         None => say(theme, "ssi_layout.hint"),
     };
     paragraph(ui, theme.caption(words));
@@ -247,11 +251,11 @@ fn buttons_ui(
 ) {
     let is_dirty = encoder.is_dirty();
     ui.horizontal(|ui| {
-        if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.say("memory.revert")).clicked() {
+        if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.translate("memory.revert")).clicked() {
             actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if primary_button(ui, theme, true, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
+            if primary_button(ui, theme, true, icons::FLOPPY_DISK, &theme.translate("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
             adopt_for_device_ui(ui, theme, studio, device, actions);
@@ -272,7 +276,7 @@ fn adopt_for_device_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &Any
     let word = say(theme, "ssi_layout.take_for");
     let menu = ui.menu_button(format!("{}  {word}", icons::PLUGS_CONNECTED), |ui| {
         for target in targets {
-            if ui.button(format!("{} · {}", target.name(), target.place())).clicked() {
+            if ui.button(format!("{} · {}", target.name(), target.data_source())).clicked() {
                 actions.push(device.command(DeviceCommand::WriteInto(target.id())));
                 ui.close();
             }

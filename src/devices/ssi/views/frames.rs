@@ -23,7 +23,7 @@ pub(super) fn card_ui(
     card(ui, theme, TEXTS.text("ssi_frames.title"), |ui| {
         if layout.clocks() != clocks {
             let text = TEXTS.text("ssi_frames.other_clocks").with("bits", clocks).with("clocks", layout.clocks());
-            paragraph(ui, theme.caption(theme.words(&text)));
+            paragraph(ui, theme.caption(theme.format_text(&text)));
             return;
         }
         paragraph(ui, theme.caption(say(theme, "ssi_frames.try")));
@@ -59,7 +59,7 @@ fn decoded_summary(theme: &Theme, number: usize, decoded: &Decoded, digits: usiz
             (position.to_string(), turns.to_string(), steps.to_string())
         }
         Some((position, Location::Length { millimetres })) => {
-            (position.to_string(), String::new(), format!("{} mm", theme.number(millimetres, 3)))
+            (position.to_string(), String::new(), format!("{} mm", theme.format_number(millimetres, 3)))
         }
         None => ("–".to_owned(), String::new(), String::new()),
     };
@@ -67,7 +67,7 @@ fn decoded_summary(theme: &Theme, number: usize, decoded: &Decoded, digits: usiz
     if decoded.is_valid {
         (own, theme.palette.text)
     } else {
-        (format!("{own}  {}", theme.say("live.invalid")), theme.palette.bad)
+        (format!("{own}  {}", theme.translate("live.invalid")), theme.palette.bad)
     }
 }
 

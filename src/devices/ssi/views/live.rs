@@ -8,15 +8,15 @@ use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::row;
-use crate::ui::panels::live::{LOW, mark as mark_ui, raw_row};
+use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui as mark_ui};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let last = encoder.last();
     let decoded = last.and_then(|seen| seen.decoded.as_ref());
     let place = decoded.and_then(|decoded| decoded.place);
     let (main, unit) = match place {
-        Some((_, Location::Shaft { degrees, .. })) => (theme.number(degrees, 3), "°"),
-        Some((_, Location::Length { millimetres })) => (theme.number(millimetres, 4), "mm"),
+        Some((_, Location::Shaft { degrees, .. })) => (theme.format_number(degrees, 3), "°"),
+        Some((_, Location::Length { millimetres })) => (theme.format_number(millimetres, 4), "mm"),
         None => ("–".to_owned(), ""),
     };
     let palette = theme.palette;
@@ -38,19 +38,23 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let raw = format!("0x{:0width$X}", seen.word, width = usize::from(seen.clocks).div_ceil(4));
     if decoded.is_none() {
         let text = TEXTS.text("live.other_clocks").with("clocks", seen.clocks);
-        ui.label(RichText::new(theme.words(&text)).size(theme.sizes.caption).color(palette.warn));
+        ui.label(RichText::new(theme.format_text(&text)).size(theme.sizes.caption).color(palette.warn));
     }
-    if ui.available_height() < LOW {
+    if ui.available_height() < LOW_PANEL_HEIGHT {
         // In a low window, the plot needs the space.
         let mut words = raw;
         if let Some((_, Location::Shaft { turns, steps, .. })) = place {
-            words = format!("{} {turns} · {} {steps} · {words}", theme.say("live.turns"), theme.say("live.step"));
+            words = format!(
+                "{} {turns} · {} {steps} · {words}",
+                theme.translate("live.turns"),
+                theme.translate("live.step")
+            );
         }
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
         if let Some((position, Location::Shaft { turns, steps, .. })) = place {
-            row(ui, theme, &theme.say("live.turns"), theme.monospace(turns.to_string()));
-            row(ui, theme, &theme.say("live.step"), theme.monospace(steps.to_string()));
+            row(ui, theme, &theme.translate("live.turns"), theme.monospace(turns.to_string()));
+            row(ui, theme, &theme.translate("live.step"), theme.monospace(steps.to_string()));
             row(ui, theme, &say(theme, "ssi_trial.position"), theme.monospace(position.to_string()));
         }
         raw_row(ui, theme, raw);
@@ -60,7 +64,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         let text = TEXTS.text(if stream.is_limited() { "live.streamed_all" } else { "live.streamed" });
         let text =
             text.with_number("count", stream.frame_rate_hz(), 0).with_number("clock", f64::from(clock_hz) / 1e6, 1);
-        ui.add(egui::Label::new(theme.caption(theme.words(&text))).wrap())
-            .on_hover_text(theme.say("live.streamed_hint"));
+        ui.add(egui::Label::new(theme.caption(theme.format_text(&text))).wrap())
+            .on_hover_text(theme.translate("live.streamed_hint"));
     }
 }

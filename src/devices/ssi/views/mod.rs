@@ -18,7 +18,7 @@ use egui::Ui;
 
 use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio};
 use crate::devices::ssi::state::{Encoder, SsiAction, TEXTS};
-use crate::ui::controls::button;
+use crate::ui::controls::labelled_button;
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, icons, page};
 
@@ -83,7 +83,7 @@ impl TypedDeviceView for SsiView {
         (page, view): (Page, &mut SsiUiState),
         actions: &mut Vec<Action>,
     ) {
-        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.index()), |ui| match page {
             Page::Frame => frame::page_ui(ui, theme, (studio, device), encoder, view, actions),
             Page::Timing => timing::page_ui(ui, theme, encoder, &mut view.form, actions),
             Page::Find => find::page_ui(ui, theme, encoder, &mut view.find, actions),
@@ -97,7 +97,7 @@ impl TypedDeviceView for SsiView {
 
     fn empty_ui(ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         // A layout can be created without a device.
-        if button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
+        if labelled_button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
             actions.push(Action::New(Encoder::TAB));
         }
     }
@@ -109,5 +109,5 @@ impl TypedDeviceView for SsiView {
 
 /// Returns a message of the SSI catalogue, or else of the common one, in the language of the window.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
-    theme.words(&TEXTS.text(id))
+    theme.format_text(&TEXTS.text(id))
 }

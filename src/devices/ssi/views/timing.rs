@@ -29,7 +29,7 @@ pub(super) fn page_ui(
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);
     });
-    theme.gap(ui);
+    theme.add_gap(ui);
     two_columns(
         ui,
         theme,
@@ -49,8 +49,8 @@ pub(super) fn page_ui(
 }
 
 fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
-    let micros = |time: std::time::Duration| theme.number(time.as_secs_f64() * 1e6, 2);
-    let hertz = |hertz: f64| theme.words(&frequency(hertz));
+    let micros = |time: std::time::Duration| theme.format_number(time.as_secs_f64() * 1e6, 2);
+    let hertz = |hertz: f64| theme.format_text(&frequency(hertz));
     let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.monospace(words));
     value_row("ssi_timing.period", format!("{} µs", micros(timing.period)));
     value_row("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
@@ -85,6 +85,6 @@ fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
 fn warning_ui(ui: &mut Ui, theme: &Theme, (icon, colour): (&str, crate::app::Rgb), words: &Text) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, theme.words(words));
+        paragraph(ui, theme.format_text(words));
     });
 }

@@ -75,7 +75,7 @@ fn numbers(
 ) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
     let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
-    paragraph(ui, theme.caption(theme.words(&most)));
+    paragraph(ui, theme.caption(theme.format_text(&most)));
     let word = say(theme, "ssi_trial.position");
     entry(ui, theme, &word, |ui| {
         committed_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
@@ -86,7 +86,7 @@ fn numbers(
     });
     match shown.place {
         Some((_, Location::Shaft { turns, steps, degrees })) => {
-            let (own_turns, own_steps) = (theme.say("live.turns"), theme.say("live.step"));
+            let (own_turns, own_steps) = (theme.translate("live.turns"), theme.translate("live.step"));
             entry(ui, theme, &own_turns, |ui| {
                 committed_entry(ui, &mut view.turns, &turns.to_string(), NUMBER, &own_turns, |text| {
                     put(TrialInput::Place(whole(text)?, steps));
@@ -101,14 +101,19 @@ fn numbers(
                 });
                 refusal_ui(ui, theme, view.steps.as_ref());
             });
-            row(ui, theme, &say(theme, "ssi_trial.angle"), theme.monospace(format!("{} °", theme.number(degrees, 4))));
+            row(
+                ui,
+                theme,
+                &say(theme, "ssi_trial.angle"),
+                theme.monospace(format!("{} °", theme.format_number(degrees, 4))),
+            );
         }
         Some((_, Location::Length { millimetres })) => {
             row(
                 ui,
                 theme,
                 &say(theme, "ssi_trial.length"),
-                theme.monospace(format!("{} mm", theme.number(millimetres, 4))),
+                theme.monospace(format!("{} mm", theme.format_number(millimetres, 4))),
             );
         }
         None => {}
@@ -163,7 +168,7 @@ fn findings_ui(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            paragraph(ui, theme.words(&words::finding_text(finding)));
+            paragraph(ui, theme.format_text(&words::finding_text(finding)));
         });
     }
 }

@@ -43,9 +43,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
             ui.add_space(theme.space.between);
             ui.label(theme.heading(&family.name));
             for note in &family.notes {
-                paragraph(ui, theme.caption(theme.words(&words::note(family, note))));
+                paragraph(ui, theme.caption(theme.format_text(&words::note(family, note))));
             }
-            paragraph(ui, theme.caption(theme.words(&words::note(family, &family.source))));
+            paragraph(ui, theme.caption(theme.format_text(&words::note(family, &family.source))));
         }
     });
 }
@@ -53,13 +53,15 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
 fn limits(theme: &Theme, signal: &Signal) -> String {
     let volts = |(least, most): (f64, f64)| {
         if (most - least).abs() < 1e-9 {
-            theme.number(most, 2)
+            theme.format_number(most, 2)
         } else {
-            format!("{} … {}", theme.number(least, 2), theme.number(most, 2))
+            format!("{} … {}", theme.format_number(least, 2), theme.format_number(most, 2))
         }
     };
     let parts = [
-        signal.amplitude_volts.map(|own| theme.words(&TEXTS.text("ssi_wiring.volts_pp").with("volts", volts(own)))),
+        signal
+            .amplitude_volts
+            .map(|own| theme.format_text(&TEXTS.text("ssi_wiring.volts_pp").with("volts", volts(own)))),
         signal.offset_volts.map(|own| format!("{} {} V", say(theme, "ssi_wiring.offset"), volts(own))),
         signal.supply_volts.map(|own| format!("{} {} V", say(theme, "ssi_wiring.at"), volts(own))),
     ];

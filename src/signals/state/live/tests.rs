@@ -12,7 +12,10 @@ use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    (Services::new(StudioEnvironment::real(Store::at(folder.path()), KindRegistry::NONE), Arc::new(|| ())), folder)
+    (
+        Services::new(StudioEnvironment::production(Store::at(folder.path()), KindRegistry::NONE), Arc::new(|| ())),
+        folder,
+    )
 }
 
 fn started(services: &mut Services) -> Signals {
@@ -39,8 +42,8 @@ fn until(signals: &mut Signals, services: &mut Services, condition: impl Fn(&Sig
     while !condition(signals) {
         assert!(began.elapsed() < Duration::from_secs(20), "never");
         while let Some(action) = services.tasks.next() {
-            if let crate::app::Action::Done(crate::app::action::Done::Tool(_, done)) = action {
-                Tool::done(signals, done, services).unwrap();
+            if let crate::app::Action::Done(crate::app::action::TaskResult::Tool(_, done)) = action {
+                Tool::handle_result(signals, done, services).unwrap();
             }
         }
         std::thread::sleep(Duration::from_millis(1));

@@ -2,30 +2,38 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, Typed};
+use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, EnteredValues};
 use crate::app::{Action, explain};
 use crate::link::{Echo, PORT_EXAMPLE};
 use crate::parameter::Entry;
-use crate::ui::controls::{choice, disclosure, entry, icon_button, label_width, name, paragraph, text_entry};
+use crate::ui::controls::{disclosure, dropdown, entry, icon_button, label_width, name, paragraph, text_entry};
 use crate::ui::{Theme, icons};
 use crate::units::Parity;
 
-pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut String, actions: &mut Vec<Action>) {
-    entry(ui, theme, &theme.say("connect.port"), |ui| {
-        text_entry(ui, port, 300.0, &theme.say("connect.port"), PORT_EXAMPLE.port);
-        if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &theme.say("connect.list_ports")).clicked() {
+pub(crate) fn serial_port_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    dialog: &Dialog,
+    port: &mut String,
+    actions: &mut Vec<Action>,
+) {
+    entry(ui, theme, &theme.translate("connect.port"), |ui| {
+        text_entry(ui, port, 300.0, &theme.translate("connect.port"), PORT_EXAMPLE.port);
+        if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &theme.translate("connect.list_ports"))
+            .clicked()
+        {
             actions.push(Action::Connect(Connect::ListPorts));
         }
     });
     match &dialog.ports {
         None => {
-            ui.label(theme.caption(theme.say("connect.listing")));
+            ui.label(theme.caption(theme.translate("connect.listing")));
         }
         Some(Err(why)) => {
-            paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
+            paragraph(ui, RichText::new(theme.format_text(why)).color(theme.palette.warn));
         }
         Some(Ok(offers)) if offers.is_empty() => {
-            paragraph(ui, theme.caption(theme.say("connect.no_ports")));
+            paragraph(ui, theme.caption(theme.translate("connect.no_ports")));
         }
         Some(Ok(offers)) => {
             for offer in offers {
@@ -37,7 +45,7 @@ pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut Str
                     }
                     ui.label(theme.label(&offer.description));
                     if !offer.listed {
-                        ui.label(theme.caption(theme.say("connect.not_listed")));
+                        ui.label(theme.caption(theme.translate("connect.not_listed")));
                     }
                 });
             }
@@ -46,28 +54,28 @@ pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut Str
 }
 
 pub(crate) fn network(ui: &mut Ui, theme: &Theme, host: &mut String, port: &mut String) {
-    place(ui, theme, "connect.host", (host, "192.168.0.7"), (port, "4001"));
-    ui.label(theme.caption(theme.say("connect.tcp_words")));
+    host_and_port_ui(ui, theme, "connect.host", (host, "192.168.0.7"), (port, "4001"));
+    ui.label(theme.caption(theme.translate("connect.tcp_words")));
 }
 
-pub(crate) fn place(
+pub(crate) fn host_and_port_ui(
     ui: &mut Ui,
     theme: &Theme,
     id: &'static str,
     host: (&mut String, &str),
     port: (&mut String, &str),
 ) {
-    let word = theme.say(id);
+    let word = theme.translate(id);
     entry(ui, theme, &word, |ui| {
         text_entry(ui, host.0, 220.0, &word, host.1);
-        text_entry(ui, port.0, 72.0, &theme.say("connect.tcp_port"), port.1);
+        text_entry(ui, port.0, 72.0, &theme.translate("connect.tcp_port"), port.1);
     });
 }
 
-pub(crate) fn recording(ui: &mut Ui, theme: &Theme, file: &mut String, actions: &mut Vec<Action>) {
-    entry(ui, theme, &theme.say("connect.file"), |ui| {
-        text_entry(ui, file, 360.0, &theme.say("connect.file"), "capture.trace");
-        if icon_button(ui, true, icons::FOLDER_OPEN, &theme.say("connect.choose_file")).clicked() {
+pub(crate) fn recording_file_ui(ui: &mut Ui, theme: &Theme, file: &mut String, actions: &mut Vec<Action>) {
+    entry(ui, theme, &theme.translate("connect.file"), |ui| {
+        text_entry(ui, file, 360.0, &theme.translate("connect.file"), "capture.trace");
+        if icon_button(ui, true, icons::FOLDER_OPEN, &theme.translate("connect.choose_file")).clicked() {
             actions.push(Action::Connect(Connect::AskRecording));
         }
     });
@@ -75,35 +83,35 @@ pub(crate) fn recording(ui: &mut Ui, theme: &Theme, file: &mut String, actions: 
 
 pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     let parities = [Parity::Even, Parity::Odd, Parity::None];
-    let parities = parities.map(|parity| (parity, theme.words(&explain::parity(parity))));
-    ui.label(theme.label(theme.say("settings_card.parity")));
-    choice(ui, &theme.say("settings_card.parity"), own, parities);
+    let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity(parity))));
+    ui.label(theme.label(theme.translate("settings_card.parity")));
+    dropdown(ui, &theme.translate("settings_card.parity"), own, parities);
 }
 
 /// Draws the heading of the rarely needed entries. Returns whether the entries are expanded.
 pub(crate) fn expandable_ui(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
-    disclosure(ui, RichText::new(theme.say("connect.more")), open);
+    disclosure(ui, RichText::new(theme.translate("connect.more")), open);
     *open
 }
 
-pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
-    entry(ui, theme, &theme.say("connect.echo"), |ui| {
+pub(crate) fn echo_ui(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
+    entry(ui, theme, &theme.translate("connect.echo"), |ui| {
         let echoes =
             [(Echo::Unknown, "connect.echo_auto"), (Echo::On, "connect.echo_on"), (Echo::Off, "connect.echo_off")];
-        let echoes = echoes.map(|(echo, id)| (echo, theme.say(id)));
-        choice(ui, &theme.say("connect.echo"), echo, echoes);
+        let echoes = echoes.map(|(echo, id)| (echo, theme.translate(id)));
+        dropdown(ui, &theme.translate("connect.echo"), echo, echoes);
     });
 }
 
 /// Function that returns a device message in the window's language.
 type TranslateFn = fn(&Theme, &'static str) -> String;
 
-pub(crate) fn typed(
+pub(crate) fn entries_ui(
     ui: &mut Ui,
     theme: &Theme,
     say: TranslateFn,
     entries: impl IntoIterator<Item = Entry>,
-    typed: &mut Typed,
+    typed: &mut EnteredValues,
 ) {
     for own in entries {
         let word = say(theme, own.label);
@@ -117,7 +125,7 @@ pub(crate) fn entry_row(
     theme: &Theme,
     say: TranslateFn,
     entries: impl IntoIterator<Item = Entry>,
-    typed: &mut Typed,
+    typed: &mut EnteredValues,
 ) {
     for own in entries {
         let word = say(theme, own.label);
@@ -126,7 +134,7 @@ pub(crate) fn entry_row(
     }
 }
 
-pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: &mut Typed) {
+pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: &mut EnteredValues) {
     let mut text = typed.get(own.key).to_owned();
     // The width depends on the hint. A number needs less space than a list of faults.
     let width = match own.hint.len() {
@@ -143,9 +151,9 @@ pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: 
 }
 
 /// Draws the choice to leave the encoder's supply on when the adapter is closed.
-pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
-    ui.checkbox(leave_on, theme.say("connect.leave_supply"));
-    paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));
+pub(crate) fn supply_choice_ui(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
+    ui.checkbox(leave_on, theme.translate("connect.leave_supply"));
+    paragraph(ui, theme.caption(theme.translate("connect.leave_supply_words")));
 }
 
 /// Draws a choice between a few options, side by side.
@@ -157,7 +165,7 @@ pub(crate) fn segmented_control<T: PartialEq + Copy, const N: usize>(
 ) {
     ui.horizontal(|ui| {
         for (one, id) in all {
-            let word = theme.say(id);
+            let word = theme.translate(id);
             let response = ui.add(egui::Button::selectable(*own == one, &word));
             if name(response, true, &word).clicked() {
                 *own = one;

@@ -38,12 +38,12 @@ struct FormAdapter<F: TypedConnectForm>(F::Memory);
 
 impl<F: TypedConnectForm> ConnectForm for FormAdapter<F> {
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>) {
-        let Some(own) = dialog.form::<F::Form>() else { return };
+        let Some(own) = dialog.form_as::<F::Form>() else { return };
         let mut form = own.clone();
         F::form_ui(ui, theme, dialog, &mut form, (&mut self.0, more), actions);
         if form != *own {
             // The edit comes first, because the other clicked actions depend on it.
-            actions.insert(0, Action::Connect(Connect::edit(form)));
+            actions.insert(0, Action::Connect(Connect::edit_form(form)));
         }
     }
 }

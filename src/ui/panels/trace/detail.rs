@@ -3,10 +3,10 @@
 use egui::text::LayoutJob;
 use egui::{FontId, Label, RichText, ScrollArea, TextFormat, Ui};
 
-use super::{TIME, ink};
+use super::{TIME, frame_colour};
 use crate::app::{Text, TraceLine, TraceLog};
 use crate::link::Direction;
-use crate::ui::controls::{fill, icon_button};
+use crate::ui::controls::{fill_width, icon_button};
 use crate::ui::{Theme, icons};
 
 /// Bytes in a line.
@@ -16,32 +16,32 @@ const COLUMNS: usize = 8;
 pub(super) fn frame_ui(ui: &mut Ui, theme: &Theme, log: &TraceLog, line: &TraceLine) -> bool {
     let mut closes = false;
     ui.horizontal(|ui| {
-        let word = theme.say(if line.direction == Direction::Sent { "trace.sent" } else { "trace.received" });
+        let word = theme.translate(if line.direction == Direction::Sent { "trace.sent" } else { "trace.received" });
         ui.label(theme.label(word));
         let time = log.line_time(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
         ui.label(theme.monospace(time));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            closes = icon_button(ui, true, icons::X, &theme.say("trace.close_frame")).clicked();
+            closes = icon_button(ui, true, icons::X, &theme.translate("trace.close_frame")).clicked();
         });
     });
     ScrollArea::vertical().id_salt("frame").auto_shrink(false).show(ui, |ui| {
-        fill(ui);
+        fill_width(ui);
         ui.spacing_mut().item_spacing.y = theme.space.inside;
-        let colour = ink(theme, line);
+        let colour = frame_colour(theme, line);
         for text in &line.meaning {
-            ui.add(Label::new(RichText::new(theme.words(text)).color(colour)).wrap().selectable(true));
+            ui.add(Label::new(RichText::new(theme.format_text(text)).color(colour)).wrap().selectable(true));
         }
-        ui.add(Label::new(dump(theme, line)).selectable(true));
+        ui.add(Label::new(hex_dump(theme, line)).selectable(true));
         if line.header > 0 {
             let text = Text::new("trace.header").with("count", line.header);
-            ui.add(Label::new(RichText::new(theme.words(&text)).color(theme.palette.muted)).wrap());
+            ui.add(Label::new(RichText::new(theme.format_text(&text)).color(theme.palette.muted)).wrap());
         }
     });
     closes
 }
 
 /// Returns the bytes in lines with their offsets. The header of the transport is muted.
-fn dump(theme: &Theme, line: &TraceLine) -> LayoutJob {
+fn hex_dump(theme: &Theme, line: &TraceLine) -> LayoutJob {
     let font = FontId::monospace(theme.sizes.body);
     let format = |muted: bool| {
         let colour = if muted { theme.palette.muted } else { theme.palette.text };

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKin
 
 use super::MapField;
 use super::strip::{Strip, widest_run};
-use crate::ui::widgets::{draw_hatching, focus_ring, series};
+use crate::ui::widgets::{draw_hatching, focus_ring, series_colour};
 use crate::ui::{Theme, icons};
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,7 +31,7 @@ fn run_outline(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadi
 }
 
 pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field: &MapField, state: &State) {
-    let colour = series(theme, field.colour);
+    let colour = series_colour(theme, field.colour);
     let painter = ui.painter();
     for number in 0..runs.len() {
         let (rect, corners) = run_outline(theme, runs, number);
@@ -79,7 +79,7 @@ fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let font = theme.bold_font(size);
     let number = painter.layout_no_wrap(field.number.to_string(), font, palette.text.into());
     let beside = number.size().x + theme.space.inside + shown.len() as f32 * pitch <= inside.width();
-    let caption = fitting(ui, theme, &field.caption, inside.width()).filter(|_| beside);
+    let caption = fitting_caption(ui, theme, &field.caption, inside.width()).filter(|_| beside);
     let (top, bottom) = (inside.top() + size / 2.0, inside.bottom() - size / 2.0 + 1.0);
     let y = if caption.is_some() || !beside { top } else { inside.center().y };
     let narrow = run.width() < theme.space.inside * 7.0;
@@ -103,7 +103,7 @@ fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
 }
 
 /// Returns as much of a caption as fits. Parts separated by ` · ` are dropped from the end.
-fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
+fn fitting_caption(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {
         let font = FontId::proportional(theme.sizes.caption);
@@ -117,7 +117,7 @@ fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync
 }
 
 /// Draws the free space as one outline per block.
-pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: &State) {
+pub(super) fn paint_free_space(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: &State) {
     let painter = ui.painter();
     let edge = match state.hovered {
         true => theme.palette.accent.into(),
@@ -138,7 +138,7 @@ pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: 
     }
 }
 
-pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
+pub(super) fn paint_handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     let colour = if active { theme.palette.accent } else { theme.palette.text };
     let (x, y) = (run.right() - theme.space.between, run.center().y);
     let half = if active { theme.space.between + 2.0 } else { theme.space.between };

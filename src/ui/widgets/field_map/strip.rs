@@ -38,12 +38,12 @@ impl Strip {
     }
 
     /// Returns a copy with its upper left corner at `origin`.
-    pub(super) fn at(self, origin: Pos2) -> Self {
+    pub(super) fn at_origin(self, origin: Pos2) -> Self {
         Strip { origin, ..self }
     }
 
     /// Returns the rectangles that cover the blocks from `first` up to but excluding `end`. There is one per line.
-    pub(super) fn runs(&self, first: usize, end: usize) -> Vec<Rect> {
+    pub(super) fn range_rects(&self, first: usize, end: usize) -> Vec<Rect> {
         let mut runs = Vec::new();
         let mut at = first;
         while at < end {
@@ -59,7 +59,7 @@ impl Strip {
     }
 
     /// Returns the block boundary nearest to the pointer, as a number of blocks from the start.
-    pub(super) fn boundary(&self, pos: Pos2) -> usize {
+    pub(super) fn nearest_boundary(&self, pos: Pos2) -> usize {
         let inside = pos - self.origin - Vec2::new(0.0, self.margin);
         // Positions above or left of the strip become zero.
         let line = ((inside.y + self.gap / 2.0) / (self.block.y + self.gap)).floor() as usize;

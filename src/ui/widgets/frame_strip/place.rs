@@ -8,7 +8,7 @@ pub(super) struct RequiredSpace {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Placed {
+pub(super) struct PlacedPiece {
     pub(super) field: usize,
     /// Index of the piece's first bit within the field.
     pub(super) first: usize,
@@ -20,7 +20,7 @@ pub(super) struct Placed {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct StripPlacement {
-    pub(super) pieces: Vec<Placed>,
+    pub(super) pieces: Vec<PlacedPiece>,
     pub(super) lines: usize,
     pub(super) width: f32,
     /// Width in points of a cell, including the gap after it.
@@ -29,23 +29,23 @@ pub(super) struct StripPlacement {
 
 const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 11.0];
 /// Gap in points after every four bits.
-const GROUP: f32 = 3.0;
+const GROUP_GAP: f32 = 3.0;
 
-impl Placed {
+impl PlacedPiece {
     /// Returns the left edge of bit `at` of the piece. Groups of four bits are counted from the end of the field.
     pub(super) fn offset(&self, at: usize, field_bits: usize, cell: f32) -> f32 {
-        at as f32 * cell + groups(self.first, self.first + at, field_bits) as f32 * GROUP
+        at as f32 * cell + groups_between(self.first, self.first + at, field_bits) as f32 * GROUP_GAP
     }
 }
 
 /// Returns the number of four-bit groups that end between two bits of a field.
-fn groups(from: usize, to: usize, field_bits: usize) -> usize {
+fn groups_between(from: usize, to: usize, field_bits: usize) -> usize {
     let behind = |bit: usize| field_bits.saturating_sub(bit).div_ceil(4);
     behind(from).saturating_sub(behind(to))
 }
 
 /// Places the fields within a width, separated by `gap`. A field longer than a line is split.
-pub(super) fn place(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
+pub(super) fn place_fields(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
     let fewest = CELLS.last().map_or(1, |least| place_with_cell(wants, width, gap, *least).lines);
     let fits =
         CELLS.iter().map(|cell| place_with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
@@ -60,15 +60,15 @@ fn place_with_cell(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> 
         while first < want.bits {
             let rest = want.bits - first;
             let words = if first == 0 { want.words } else { 0.0 };
-            let whole = cells(first, rest, want.bits, cell).max(words);
+            let whole = cells_width(first, rest, want.bits, cell).max(words);
             if left > 0.0 && left + whole > width {
                 (left, line) = (0.0, line + 1);
             }
             // Take whole bytes, as many as fit but at least one.
-            let fit = (1..=rest).rev().find(|bits| cells(first, *bits, want.bits, cell) <= width).unwrap_or(1);
+            let fit = (1..=rest).rev().find(|bits| cells_width(first, *bits, want.bits, cell) <= width).unwrap_or(1);
             let bits = if fit == rest { rest } else { (fit - fit % 8).clamp(8.min(rest), rest) };
-            let own = cells(first, bits, want.bits, cell).max(words);
-            placing.pieces.push(Placed { field, first, bits, line, left, width: own });
+            let own = cells_width(first, bits, want.bits, cell).max(words);
+            placing.pieces.push(PlacedPiece { field, first, bits, line, left, width: own });
             placing.width = placing.width.max(left + own);
             left += own + gap;
             first += bits;
@@ -79,8 +79,8 @@ fn place_with_cell(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> 
 }
 
 /// Returns the width of `bits` bits of a field, starting at `first`.
-fn cells(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
-    bits as f32 * cell + groups(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP
+fn cells_width(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
+    bits as f32 * cell + groups_between(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP_GAP
 }
 
 #[cfg(test)]
@@ -108,7 +108,7 @@ mod tests {
     fn a_frame_is_placed_on_one_line_if_it_fits() {
         // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123
         // together, and seven gaps between fields.
-        let placing = place(&kit(), 1100.0, GAP);
+        let placing = place_fields(&kit(), 1100.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 20.0));
         let expected = 42.0 * 20.0 + 8.0 * 3.0 + 123.0 + 7.0 * 8.0;
         assert!((placing.width - expected).abs() < 0.01, "{}", placing.width);
@@ -117,15 +117,15 @@ mod tests {
     #[test]
     fn cells_shrink_before_the_frame_wraps() {
         // 42 · 13 + 24 + 123 + 56 = 749.
-        let placing = place(&kit(), 749.0, GAP);
+        let placing = place_fields(&kit(), 749.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 13.0));
-        let placing = place(&kit(), 748.0, GAP);
+        let placing = place_fields(&kit(), 748.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 12.0));
     }
 
     #[test]
     fn fields_stay_together_on_their_lines() {
-        let placing = place(&kit(), 420.0, GAP);
+        let placing = place_fields(&kit(), 420.0, GAP);
         assert_eq!(lines(&placing), [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
         assert!(placing.pieces.iter().all(|own| own.left + own.width <= 420.0));
         // With cells one point narrower the lines would be as many: they are as wide as possible.
@@ -136,16 +136,16 @@ mod tests {
     #[test]
     fn a_field_longer_than_a_line_is_split_at_bytes() {
         let wants = [RequiredSpace { bits: 64, words: 50.0 }];
-        let placing = place(&wants, 400.0, GAP);
+        let placing = place_fields(&wants, 400.0, GAP);
         // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
         let parts: Vec<(usize, usize)> = placing.pieces.iter().map(|own| (own.first, own.bits)).collect();
         assert_eq!(parts, [(0, 32), (32, 32)]);
-        assert_eq!(place(&wants, 10.0, GAP).pieces.len(), 8, "eight bits in any case");
+        assert_eq!(place_fields(&wants, 10.0, GAP).pieces.len(), 8, "eight bits in any case");
     }
 
     #[test]
     fn groups_of_four_are_counted_from_the_last_bit() {
-        let piece = Placed { field: 0, first: 0, bits: 17, line: 0, left: 0.0, width: 0.0 };
+        let piece = PlacedPiece { field: 0, first: 0, bits: 17, line: 0, left: 0.0, width: 0.0 };
         // 17 bits: one, then four times four.
         let offsets: Vec<f32> = [0, 1, 4, 5, 16].map(|at| piece.offset(at, 17, 10.0)).into_iter().collect();
         assert_eq!(offsets, [0.0, 13.0, 43.0, 56.0, 172.0]);
@@ -153,9 +153,9 @@ mod tests {
 
     #[test]
     fn an_empty_frame_takes_no_space() {
-        assert_eq!(place(&[], 100.0, GAP).lines, 0);
+        assert_eq!(place_fields(&[], 100.0, GAP).lines, 0);
         let none = [RequiredSpace { bits: 0, words: 10.0 }];
-        assert!(place(&none, f32::NAN, GAP).pieces.is_empty());
-        assert!(!place(&kit(), 0.0, GAP).pieces.is_empty());
+        assert!(place_fields(&none, f32::NAN, GAP).pieces.is_empty());
+        assert!(!place_fields(&kit(), 0.0, GAP).pieces.is_empty());
     }
 }

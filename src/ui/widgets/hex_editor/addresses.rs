@@ -17,8 +17,8 @@ impl HexAddresses {
     /// Formats an address in a range of `len` bytes in upper-case hexadecimal. It has as many digits as the last
     /// address needs, but at least two.
     pub(super) fn text(self, at: usize, len: usize) -> String {
-        match self.parts(at) {
-            (None, at) => format!("0x{at:0digits$X}", digits = digits(len)),
+        match self.bank_and_offset(at) {
+            (None, at) => format!("0x{at:0digits$X}", digits = digit_count(len)),
             (Some(bank), offset) => format!("0x{bank:02X}:0x{offset:02X}"),
         }
     }
@@ -31,7 +31,7 @@ impl HexAddresses {
         self.heading(len.saturating_sub(1), len).len()
     }
 
-    fn parts(self, at: usize) -> (Option<usize>, usize) {
+    fn bank_and_offset(self, at: usize) -> (Option<usize>, usize) {
         match self {
             HexAddresses::Counted => (None, at),
             HexAddresses::Banked { first, size } => {
@@ -42,7 +42,7 @@ impl HexAddresses {
     }
 }
 
-fn digits(len: usize) -> usize {
+fn digit_count(len: usize) -> usize {
     format!("{:X}", len.saturating_sub(1)).len().max(2)
 }
 

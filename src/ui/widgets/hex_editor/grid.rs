@@ -49,7 +49,7 @@ impl Grid {
         Grid { font, glyph, row, width, gap, text_left, hex_left, byte, letter, len }
     }
 
-    pub(super) fn lines(&self) -> usize {
+    pub(super) fn line_count(&self) -> usize {
         self.len.div_ceil(WIDTH)
     }
 
@@ -57,7 +57,7 @@ impl Grid {
         self.row * lines as f32
     }
 
-    pub(super) fn cell(&self, origin: Pos2, column: Column, at: usize) -> Rect {
+    pub(super) fn cell_rect(&self, origin: Pos2, column: Column, at: usize) -> Rect {
         let (line, place) = (at / WIDTH, at % WIDTH);
         let (left, width) = match column {
             Column::Hex if place < WIDTH / 2 => (self.hex_left + self.byte * place as f32, self.byte),
@@ -68,13 +68,13 @@ impl Grid {
     }
 
     pub(super) fn cell_under_pointer(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
-        let (column, at) = self.nearest(origin, pos, Column::Hex, true);
-        (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
+        let (column, at) = self.nearest_byte(origin, pos, Column::Hex, true);
+        (at < self.len && self.cell_rect(origin, column, at).contains(pos)).then_some((column, at))
     }
 
     /// Returns the byte nearest to the pointer. If `free` is set, it may be in either column. Otherwise, it is in the
     /// given column.
-    pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
+    pub(super) fn nearest_byte(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {
             (true, true) => Column::Text,
@@ -84,7 +84,7 @@ impl Grid {
         let last = self.len.saturating_sub(1);
         // A negative number becomes zero.
         let line = (((pos.y - origin.y) / self.row).floor() as usize).min(last / WIDTH);
-        let distance = |place: &usize| (self.cell(origin, column, *place).center().x - pos.x).abs();
+        let distance = |place: &usize| (self.cell_rect(origin, column, *place).center().x - pos.x).abs();
         let place = (0..WIDTH).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default();
         (column, (line * WIDTH + place).min(last))
     }

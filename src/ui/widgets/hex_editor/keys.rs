@@ -17,7 +17,7 @@ struct KeyReaction {
 
 /// Handles the keys of the current frame. This must be called before the widget is announced. Otherwise, Tab cannot
 /// leave the widget.
-pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
+pub(super) fn handle_keys(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !handle_input(event, model, view, &mut reaction)));
     if let Some(text) = reaction.copied {
@@ -35,25 +35,25 @@ fn handle_input(event: &Event, model: &HexModel<'_>, view: &mut HexView, reactio
         _ => return false,
     }
     if let Event::Key { key: Key::Tab, modifiers, .. } = event {
-        return tab(*modifiers, view, reaction);
+        return handle_tab(*modifiers, view, reaction);
     }
     if model.wanted.is_empty() {
         return false;
     }
     match event {
         Event::Key { key, modifiers, .. } => {
-            walk(*key, *modifiers, model, view) || act(*key, *modifiers, model, view, reaction)
+            handle_movement(*key, *modifiers, model, view) || handle_edit_key(*key, *modifiers, model, view, reaction)
         }
         Event::Copy => {
             reaction.copied = model.wanted.get(view.selection()).map(|bytes| clipboard_text(bytes, view.column));
             true
         }
         Event::Text(text) => {
-            change(model, view, reaction, |view, reaction| write(text, model, view, reaction));
+            apply_change(model, view, reaction, |view, reaction| write(text, model, view, reaction));
             true
         }
         Event::Paste(text) => {
-            change(model, view, reaction, |view, reaction| paste(text, model, view, reaction));
+            apply_change(model, view, reaction, |view, reaction| paste_text(text, model, view, reaction));
             true
         }
         _ => false,
@@ -61,7 +61,7 @@ fn handle_input(event: &Event, model: &HexModel<'_>, view: &mut HexView, reactio
 }
 
 /// Handles Tab. It moves from the hex column to the text column and on to the next widget, or backwards.
-fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
+fn handle_tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
     }
@@ -75,7 +75,7 @@ fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> 
     true
 }
 
-fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView) -> bool {
+fn handle_movement(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView) -> bool {
     if modifiers.alt {
         return false;
     }
@@ -97,14 +97,20 @@ fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView
         Key::End => at - at % WIDTH + WIDTH - 1,
         _ => return false,
     };
-    view.go(to, modifiers.shift);
+    view.move_cursor(to, modifiers.shift);
     true
 }
 
-fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
+fn handle_edit_key(
+    key: Key,
+    modifiers: Modifiers,
+    model: &HexModel<'_>,
+    view: &mut HexView,
+    reaction: &mut KeyReaction,
+) -> bool {
     let history = |view: &mut HexView, reaction: &mut KeyReaction, edit: HexEdit| {
-        change(model, view, reaction, |view, reaction| {
-            view.follow(model.wanted);
+        apply_change(model, view, reaction, |view, reaction| {
+            view.move_to_change(model.wanted);
             reaction.edits.push(edit);
         });
     };
@@ -117,13 +123,13 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
         (Key::Z, true, false) => history(view, reaction, HexEdit::Undo),
         (Key::Z, true, true) | (Key::Y, true, false) => history(view, reaction, HexEdit::Redo),
         (Key::Escape | Key::Backspace, false, _) if view.pending.is_some() => view.pending = None,
-        (Key::Backspace, false, _) => change(model, view, reaction, |view, reaction| {
+        (Key::Backspace, false, _) => apply_change(model, view, reaction, |view, reaction| {
             let range = view.selection();
             if range.clone().any(|at| model.is_changed(at)) {
                 reaction.edits.push(HexEdit::Revert { range });
             }
         }),
-        (Key::Delete, false, _) => change(model, view, reaction, |view, reaction| {
+        (Key::Delete, false, _) => apply_change(model, view, reaction, |view, reaction| {
             view.pending = None;
             let range = view.selection();
             reaction.edits.push(HexEdit::Put { address: range.start, bytes: vec![0; range.len()] });
@@ -134,7 +140,7 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
 }
 
 /// Applies a change. Reports the reason if it is not possible.
-fn change(
+fn apply_change(
     model: &HexModel<'_>,
     view: &mut HexView,
     reaction: &mut KeyReaction,
@@ -156,7 +162,7 @@ fn clipboard_text(bytes: &[u8], column: Column) -> String {
 fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) {
     if view.column == Column::Text {
         match ascii_bytes(text) {
-            Ok(bytes) => put(bytes, model, view, reaction, false),
+            Ok(bytes) => write_bytes(bytes, model, view, reaction, false),
             Err(problem) => view.problem = Some(problem),
         }
         return;
@@ -168,16 +174,16 @@ fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Ke
             return;
         };
         match view.pending.take() {
-            Some(high) => put(vec![high << 4 | digit], model, view, reaction, false),
+            Some(high) => write_bytes(vec![high << 4 | digit], model, view, reaction, false),
             None => {
-                view.go(view.selection().start, false);
+                view.move_cursor(view.selection().start, false);
                 view.pending = Some(digit);
             }
         }
     }
 }
 
-fn paste(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) {
+fn paste_text(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) {
     view.pending = None;
     let bytes = match view.column {
         Column::Text => ascii_bytes(text),
@@ -187,7 +193,7 @@ fn paste(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Ke
         }),
     };
     match bytes {
-        Ok(bytes) => put(bytes, model, view, reaction, true),
+        Ok(bytes) => write_bytes(bytes, model, view, reaction, true),
         Err(problem) => view.problem = Some(problem),
     }
 }
@@ -201,7 +207,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
 }
 
 /// Writes bytes at the start of the selection. The written bytes are then selected, or the cursor is after them.
-fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
+fn write_bytes(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);
     if bytes.is_empty() {
@@ -217,7 +223,7 @@ fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
     if select {
         view.select(address..end)
     } else {
-        view.go(end, false)
+        view.move_cursor(end, false)
     }
     reaction.edits.push(HexEdit::Put { address, bytes });
 }

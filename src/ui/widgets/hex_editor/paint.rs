@@ -14,11 +14,11 @@ pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &He
     for place in 0..WIDTH {
         let here = !model.wanted.is_empty() && view.cursor() % WIDTH == place;
         let colour = if here { theme.palette.text } else { theme.palette.muted };
-        let cell = grid.cell(rect.min, Column::Hex, place);
+        let cell = grid.cell_rect(rect.min, Column::Hex, place);
         painter.text(cell.center(), Align2::CENTER_CENTER, format!("{place:X}"), font.clone(), colour.into());
     }
-    let left = grid.cell(rect.min, Column::Text, 0).left_center();
-    let words = theme.say("widget.hex_text");
+    let left = grid.cell_rect(rect.min, Column::Text, 0).left_center();
+    let words = theme.translate("widget.hex_text");
     let caption = FontId::proportional(theme.sizes.caption);
     painter.text(left, Align2::LEFT_CENTER, words, caption, theme.palette.muted.into());
     let y = rect.top() + grid.row + 0.5;
@@ -37,7 +37,7 @@ struct HexPainter<'a> {
 }
 
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
-pub(super) fn lines(
+pub(super) fn paint_lines(
     ui: &Ui,
     theme: &Theme,
     grid: &Grid,
@@ -53,15 +53,15 @@ pub(super) fn lines(
     let line_at = |y: f32| ((y - origin.y) / grid.row).floor().max(0.0) as usize;
     let (first, last) = (line_at(seen.top()), line_at(seen.bottom()) + 1);
     let x = origin.x + grid.text_left - grid.gap;
-    let bottom = origin.y + grid.height_of(grid.lines());
+    let bottom = origin.y + grid.height_of(grid.line_count());
     ui.painter().vline(x.round() + 0.5, origin.y..=bottom, Stroke::new(1.0, theme.palette.line));
-    for line in first..last.min(grid.lines()) {
-        brush.line(line);
+    for line in first..last.min(grid.line_count()) {
+        brush.paint_line(line);
     }
 }
 
 impl HexPainter<'_> {
-    fn line(&self, line: usize) {
+    fn paint_line(&self, line: usize) {
         let start = line * WIDTH;
         let end = (start + WIDTH).min(self.model.wanted.len());
         let here = (start..end).contains(&self.view.cursor());
@@ -74,7 +74,7 @@ impl HexPainter<'_> {
             self.byte(at, *byte);
         }
         for mark in self.model.marks {
-            self.mark(mark, start, end);
+            self.paint_mark(mark, start, end);
         }
         if here {
             self.cursor();
@@ -90,8 +90,8 @@ impl HexPainter<'_> {
         for column in [Column::Hex, Column::Text] {
             let active = self.focused && column == self.view.column;
             let fill = Color32::from(self.theme.palette.accent).gamma_multiply(if active { 0.32 } else { 0.16 });
-            let left = self.grid.cell(self.origin, column, first);
-            let right = self.grid.cell(self.origin, column, last - 1);
+            let left = self.grid.cell_rect(self.origin, column, first);
+            let right = self.grid.cell_rect(self.origin, column, last - 1);
             self.ui.painter().rect_filled(
                 left.union(right).shrink2(Vec2::new(0.0, 1.0)),
                 self.theme.space.inside,
@@ -105,7 +105,8 @@ impl HexPainter<'_> {
         let changed = self.model.is_changed(at);
         let colour = Color32::from(if changed { palette.staged } else { palette.text });
         let painter = self.ui.painter();
-        let (hex, text) = (self.grid.cell(self.origin, Column::Hex, at), self.grid.cell(self.origin, Column::Text, at));
+        let (hex, text) =
+            (self.grid.cell_rect(self.origin, Column::Hex, at), self.grid.cell_rect(self.origin, Column::Text, at));
         if self.hovered == Some(at) {
             for cell in [hex, text] {
                 let cell = cell.shrink2(Vec2::new(0.0, 1.0));
@@ -132,14 +133,14 @@ impl HexPainter<'_> {
     }
 
     /// Draws a bracket below the marked bytes. The bracket is open at an end where the range continues on another line.
-    fn mark(&self, mark: &HexMark<'_>, start: usize, end: usize) {
+    fn paint_mark(&self, mark: &HexMark<'_>, start: usize, end: usize) {
         let (first, last) = (mark.range.start.max(start), mark.range.end.min(end));
         if first >= last {
             return;
         }
         let stroke = Stroke::new(1.0, self.theme.palette.muted);
-        let left = self.grid.cell(self.origin, Column::Hex, first);
-        let right = self.grid.cell(self.origin, Column::Hex, last - 1);
+        let left = self.grid.cell_rect(self.origin, Column::Hex, first);
+        let right = self.grid.cell_rect(self.origin, Column::Hex, last - 1);
         let (x0, x1) = (left.left() + 2.5, right.right() - 2.5);
         let y = left.bottom() - 0.5;
         let painter = self.ui.painter();
@@ -154,7 +155,7 @@ impl HexPainter<'_> {
     }
 
     fn cursor(&self) {
-        let cell = self.grid.cell(self.origin, self.view.column, self.view.cursor());
+        let cell = self.grid.cell_rect(self.origin, self.view.column, self.view.cursor());
         let colour = if self.focused { self.theme.palette.accent } else { self.theme.palette.muted };
         let rect = cell.shrink2(Vec2::new(0.0, 1.0));
         let stroke = Stroke::new(if self.focused { 1.5 } else { 1.0 }, colour);

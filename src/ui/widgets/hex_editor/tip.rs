@@ -17,17 +17,17 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) 
     };
     egui::Grid::new("byte").num_columns(2).min_row_height(theme.space.groups).show(ui, |ui| {
         let address = format!("{} ({at})", model.address(at));
-        row(ui, theme.say("widget.hex_tip_address"), theme.monospace(address));
-        row(ui, theme.say("widget.hex_tip_hex"), theme.monospace(format!("{byte:02X}")));
-        row(ui, theme.say("widget.hex_tip_decimal"), theme.monospace(byte.to_string()));
-        row(ui, theme.say("widget.hex_tip_binary"), theme.monospace(bits::binary_text(byte)));
+        row(ui, theme.translate("widget.hex_tip_address"), theme.monospace(address));
+        row(ui, theme.translate("widget.hex_tip_hex"), theme.monospace(format!("{byte:02X}")));
+        row(ui, theme.translate("widget.hex_tip_decimal"), theme.monospace(byte.to_string()));
+        row(ui, theme.translate("widget.hex_tip_binary"), theme.monospace(bits::binary_text(byte)));
         if let Some(character) = bits::ascii(byte) {
             // The quotation marks show a blank.
-            row(ui, theme.say("widget.hex_tip_character"), theme.monospace(format!("'{character}'")));
+            row(ui, theme.translate("widget.hex_tip_character"), theme.monospace(format!("'{character}'")));
         }
         if let Some(own) = model.device.get(at).filter(|own| **own != byte) {
             let value = theme.monospace(format!("{own:02X}")).color(theme.palette.staged);
-            row(ui, theme.say("widget.hex_tip_as_read"), value);
+            row(ui, theme.translate("widget.hex_tip_as_read"), value);
         }
     });
     for mark in model.marks.iter().filter(|mark| mark.range.contains(&at)) {

@@ -55,7 +55,7 @@ impl HexView {
     }
 
     /// Moves the cursor to the first byte changed by an undo or redo. `before` are the bytes before the change.
-    pub fn follow(&mut self, before: &[u8]) {
+    pub fn move_to_change(&mut self, before: &[u8]) {
         self.pending = None;
         self.before = Some(before.to_vec());
     }
@@ -64,7 +64,7 @@ impl HexView {
     pub(super) fn move_cursor_to_change(&mut self, wanted: &[u8]) {
         let Some(before) = self.before.take().filter(|before| before.len() == wanted.len()) else { return };
         if let Some(at) = before.iter().zip(wanted).position(|(before, now)| before != now) {
-            self.go(at, false);
+            self.move_cursor(at, false);
         }
     }
 
@@ -74,7 +74,7 @@ impl HexView {
     }
 
     /// Adapts the cursor and selection to a new number of bytes, which may be smaller.
-    pub(super) fn fit(&mut self, len: usize) {
+    pub(super) fn adapt_to_len(&mut self, len: usize) {
         self.len = len;
         let last = len.saturating_sub(1);
         if self.cursor > last || self.anchor > last {
@@ -85,7 +85,7 @@ impl HexView {
     }
 
     /// Moves the cursor, extending the selection if `selecting` is set.
-    pub(super) fn go(&mut self, to: usize, selecting: bool) {
+    pub(super) fn move_cursor(&mut self, to: usize, selecting: bool) {
         self.pending = None;
         self.cursor = to.min(self.len.saturating_sub(1));
         if !selecting {

@@ -19,10 +19,10 @@ pub(super) enum Column {
 }
 
 /// A column with its preferred and minimum width.
-type Widths = (Column, f32, f32);
+type ColumnWidth = (Column, f32, f32);
 
 /// Columns of a byte table in display order. The width of the value column depends on its kind.
-const BYTES: [Widths; 8] = [
+const BYTES: [ColumnWidth; 8] = [
     (Column::Marks, 38.0, 34.0),
     (Column::Address, 80.0, 76.0),
     (Column::Name, 118.0, 92.0),
@@ -32,7 +32,7 @@ const BYTES: [Widths; 8] = [
     (Column::Access, 48.0, 40.0),
     (Column::Default, 84.0, 52.0),
 ];
-const NUMBERS: [Widths; 7] = [
+const NUMBERS: [ColumnWidth; 7] = [
     (Column::Marks, 42.0, 40.0),
     (Column::Address, 36.0, 36.0),
     (Column::Name, 172.0, 152.0),
@@ -42,9 +42,9 @@ const NUMBERS: [Widths; 7] = [
     (Column::Default, 84.0, 78.0),
 ];
 /// Columns in the order in which they are hidden if space is short. The tooltip shows hidden values.
-const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
+const HIDING_ORDER: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
 /// Share of the remaining width given to the name column. The meaning column gets the rest.
-const NAME: f32 = 0.45;
+const NAME_SHARE: f32 = 0.45;
 
 /// Visible columns, from left to right.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,13 +57,13 @@ pub(super) struct Columns {
 impl Columns {
     /// Lays out the columns within `width`, with `value` as the width of the value column.
     pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
-        let mut shown = all(kind).to_vec();
+        let mut shown = all_columns(kind).to_vec();
         for (column, usual, least) in &mut shown {
             if *column == Column::Value {
                 (*usual, *least) = (usual.max(value), least.max(value));
             }
         }
-        for least in LEAST {
+        for least in HIDING_ORDER {
             if total(&shown).1 > width {
                 shown.retain(|(column, ..)| *column != least);
             }
@@ -73,18 +73,18 @@ impl Columns {
         let share = if usual > least { ((width - least) / (usual - least)).clamp(0.0, 1.0) } else { 1.0 };
         let spare = (width - usual).max(0.0);
         let mut left = 0.0;
-        let place = |(column, usual, least): Widths| {
+        let place = |(column, usual, least): ColumnWidth| {
             let own = least + ((usual - least) * share).floor();
             let own = match column {
-                Column::Name => own + (spare * NAME).floor(),
-                Column::Meaning => own + spare - (spare * NAME).floor(),
+                Column::Name => own + (spare * NAME_SHARE).floor(),
+                Column::Meaning => own + spare - (spare * NAME_SHARE).floor(),
                 _ => own,
             };
             let range = Rangef::new(left, left + own);
             left = range.max;
             (column, range)
         };
-        let is_narrow = share < 1.0 || shown.len() < all(kind).len();
+        let is_narrow = share < 1.0 || shown.len() < all_columns(kind).len();
         Columns { ranges: shown.into_iter().map(place).collect(), is_narrow }
     }
 
@@ -94,7 +94,7 @@ impl Columns {
 
     /// Returns the horizontal extent of a column, measured from the table's left edge. Returns `None` if the column is
     /// hidden.
-    pub(super) fn range(&self, column: Column) -> Option<Rangef> {
+    pub(super) fn column_range(&self, column: Column) -> Option<Rangef> {
         self.ranges.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
     }
 
@@ -107,7 +107,7 @@ impl Columns {
     }
 }
 
-const fn all(kind: RegisterKind) -> &'static [Widths] {
+const fn all_columns(kind: RegisterKind) -> &'static [ColumnWidth] {
     match kind {
         RegisterKind::Bytes { .. } => &BYTES,
         RegisterKind::Numbers => &NUMBERS,
@@ -115,7 +115,7 @@ const fn all(kind: RegisterKind) -> &'static [Widths] {
 }
 
 /// Returns the total preferred and minimum widths of the given columns.
-fn total(columns: &[Widths]) -> (f32, f32) {
+fn total(columns: &[ColumnWidth]) -> (f32, f32) {
     columns.iter().fold((0.0, 0.0), |sum, (_, usual, least)| (sum.0 + usual, sum.1 + least))
 }
 
@@ -162,9 +162,9 @@ mod tests {
     #[test]
     fn name_and_meaning_take_the_remaining_width() {
         let columns = Columns::new(BYTES, 794.0, 100.0);
-        assert_eq!(columns.range(Column::Name), Some(Rangef::new(118.0, 281.0)));
-        assert_eq!(columns.range(Column::Value), Some(Rangef::new(281.0, 381.0)));
-        assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(477.0, 662.0)));
+        assert_eq!(columns.column_range(Column::Name), Some(Rangef::new(118.0, 281.0)));
+        assert_eq!(columns.column_range(Column::Value), Some(Rangef::new(281.0, 381.0)));
+        assert_eq!(columns.column_range(Column::Meaning), Some(Rangef::new(477.0, 662.0)));
         assert_eq!((columns.width(), Columns::new(BYTES, 100.0, 10.0).width()), (794.0, 346.0));
     }
 }

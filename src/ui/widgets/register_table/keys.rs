@@ -7,7 +7,7 @@ use super::view::{Edit, SelectedRow};
 use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 
 /// Reserves the arrow keys for the table while it has the keyboard focus.
-pub(super) fn hold(ui: &Ui, id: Id) {
+pub(super) fn reserve_keys(ui: &Ui, id: Id) {
     let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
@@ -77,7 +77,7 @@ fn is_typing_event(event: &Event) -> bool {
     }
 }
 
-pub(super) fn listen(
+pub(super) fn handle_keys(
     ui: &Ui,
     table: &RegisterTable<'_>,
     lines: &Lines,
@@ -94,10 +94,11 @@ pub(super) fn listen(
             }
             Event::Key { key, pressed: true, modifiers, .. } => {
                 view.refused = None;
-                let act = walk(*key, *modifiers, lines, view) || fold(*key, *modifiers, table, view);
-                !act && !edit(*key, *modifiers, table, view, &mut event)
+                let act =
+                    handle_movement(*key, *modifiers, lines, view) || handle_fold_key(*key, *modifiers, table, view);
+                !act && !handle_edit_key(*key, *modifiers, table, view, &mut event)
             }
-            Event::Text(text) => text.trim().is_empty() || !begin(table, view, Some(text)),
+            Event::Text(text) => text.trim().is_empty() || !begin_edit(table, view, Some(text)),
             Event::Copy => {
                 copied = view.selected().map(|place| (table.row)(place).value);
                 copied.is_none()
@@ -114,7 +115,7 @@ pub(super) fn listen(
     event
 }
 
-fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) -> bool {
+fn handle_movement(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) -> bool {
     if modifiers.alt || modifiers.shift {
         return false;
     }
@@ -123,8 +124,10 @@ fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) 
     let page = view.page.max(1);
     let to = match (key, at) {
         (Key::ArrowUp | Key::ArrowDown | Key::PageUp | Key::PageDown, None) => 0,
-        (Key::ArrowUp, Some(at)) => return step(at, lines, view, |line| line.checked_sub(1)),
-        (Key::ArrowDown, Some(at)) => return step(at, lines, view, |line| Some(line + 1).filter(|to| *to <= last)),
+        (Key::ArrowUp, Some(at)) => return move_selection(at, lines, view, |line| line.checked_sub(1)),
+        (Key::ArrowDown, Some(at)) => {
+            return move_selection(at, lines, view, |line| Some(line + 1).filter(|to| *to <= last));
+        }
         (Key::PageUp, Some(at)) => at.saturating_sub(page),
         (Key::PageDown, Some(at)) => (at + page).min(last),
         (Key::Home, _) => 0,
@@ -132,19 +135,19 @@ fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) 
         _ => return false,
     };
     if let Some(own) = lines.selection_at(to) {
-        view.go(own);
+        view.select_row(own);
     }
     true
 }
 
 /// Moves to the next selectable line, skipping bit fields.
-fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) -> Option<usize>) -> bool {
+fn move_selection(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) -> Option<usize>) -> bool {
     let mut line = at;
     while let Some(to) = next(line) {
         line = to;
         let own = lines.selection_at(line);
         if own.is_some() && own != view.selected {
-            own.into_iter().for_each(|own| view.go(own));
+            own.into_iter().for_each(|own| view.select_row(own));
             break;
         }
     }
@@ -152,7 +155,7 @@ fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) 
 }
 
 /// Folds with Left and unfolds with Right. Left on a folded register moves to the heading of its group.
-fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
+fn handle_fold_key(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
     let open = match key {
         Key::ArrowLeft => false,
         Key::ArrowRight => true,
@@ -162,18 +165,18 @@ fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut Re
         return false;
     }
     match view.selected {
-        Some(SelectedRow::Group(group)) => view.fold(group, !open),
+        Some(SelectedRow::Group(group)) => view.set_folded(group, !open),
         Some(SelectedRow::Row(place)) if open => {
             view.set_expanded(place, !(table.row)(place).fields.is_empty());
         }
         Some(SelectedRow::Row(place)) if view.open.contains(&place) => view.set_expanded(place, false),
-        Some(SelectedRow::Row(place)) => view.go(SelectedRow::Group(place.group)),
+        Some(SelectedRow::Row(place)) => view.select_row(SelectedRow::Group(place.group)),
         None => {}
     }
     true
 }
 
-fn edit(
+fn handle_edit_key(
     key: Key,
     modifiers: Modifiers,
     table: &RegisterTable<'_>,
@@ -184,8 +187,8 @@ fn edit(
         return false;
     }
     match (key, view.selected) {
-        (Key::Enter | Key::Space, Some(SelectedRow::Group(group))) => view.fold(group, !view.is_folded(group)),
-        (Key::Enter | Key::F2, Some(SelectedRow::Row(_))) => return begin(table, view, None),
+        (Key::Enter | Key::Space, Some(SelectedRow::Group(group))) => view.set_folded(group, !view.is_folded(group)),
+        (Key::Enter | Key::F2, Some(SelectedRow::Row(_))) => return begin_edit(table, view, None),
         (Key::Backspace | Key::Delete, Some(SelectedRow::Row(place))) if (table.row)(place).edited => {
             *event = Some(RegisterEvent::Revert(place));
         }
@@ -195,7 +198,7 @@ fn edit(
 }
 
 /// Starts an edit that replaces the selected value, if editing is allowed.
-pub(super) fn begin(table: &RegisterTable<'_>, view: &mut RegisterView, typed: Option<&str>) -> bool {
+pub(super) fn begin_edit(table: &RegisterTable<'_>, view: &mut RegisterView, typed: Option<&str>) -> bool {
     let Some(place) = view.selected() else { return false };
     begin_at(table, view, place, typed)
 }

@@ -47,7 +47,7 @@ impl Lines {
     }
 
     /// Returns the kind of the line with the given index, counted from zero.
-    pub(super) fn at(&self, line: usize) -> Option<LineKind> {
+    pub(super) fn kind_of(&self, line: usize) -> Option<LineKind> {
         let group = self.group_at(line)?;
         let section = self.sections.get(group)?;
         let Some(mut rest) = line.checked_sub(section.start + 1) else { return Some(LineKind::Group(group)) };
@@ -84,7 +84,7 @@ impl Lines {
 
     /// Returns the item that can be selected on a line. A bit field selects its register.
     pub(super) fn selection_at(&self, line: usize) -> Option<SelectedRow> {
-        Some(match self.at(line)? {
+        Some(match self.kind_of(line)? {
             LineKind::Group(group) => SelectedRow::Group(group),
             LineKind::Row(place) | LineKind::Bits(place, _) => SelectedRow::Row(place),
         })
@@ -113,7 +113,7 @@ mod tests {
         };
         let table = RegisterTable { label: "", groups: &groups, row: &row, kind: RegisterKind::Numbers };
         let mut view = RegisterView::default();
-        view.fold(2, true);
+        view.set_folded(2, true);
         [place(0, 0), place(0, 1), place(3, 3), place(2, 1)].into_iter().for_each(|own| view.set_expanded(own, true));
         let lines = Lines::new(&table, &view);
         let expected = [
@@ -138,7 +138,7 @@ mod tests {
         ];
         assert_eq!(lines.total(), expected.len());
         for (line, kind) in expected.into_iter().enumerate() {
-            assert_eq!(lines.at(line), Some(kind), "{line}");
+            assert_eq!(lines.kind_of(line), Some(kind), "{line}");
             let back = match kind {
                 LineKind::Group(group) => lines.line_index(SelectedRow::Group(group)),
                 LineKind::Row(place) => lines.line_index(SelectedRow::Row(place)),
@@ -146,9 +146,9 @@ mod tests {
             };
             assert_eq!(back, Some(line), "{kind:?}");
         }
-        assert_eq!(lines.at(expected.len()), None);
+        assert_eq!(lines.kind_of(expected.len()), None);
         assert_eq!(lines.line_index(SelectedRow::Row(place(2, 0))), None, "its group is folded");
         assert_eq!(lines.selection_at(4), Some(SelectedRow::Row(place(0, 1))));
-        assert_eq!(Lines::new(&RegisterTable { groups: &[], ..table }, &view).at(0), None);
+        assert_eq!(Lines::new(&RegisterTable { groups: &[], ..table }, &view).kind_of(0), None);
     }
 }

@@ -9,11 +9,11 @@ use super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
 use crate::app::Text;
 use crate::ui::{Theme, icons};
 
-pub(super) const HEADER: f32 = 20.0;
+pub(super) const HEADER_HEIGHT: f32 = 20.0;
 /// Position of the right edge of the caret shown for registers with bit fields.
-pub(super) const CARET: f32 = 16.0;
+pub(super) const CARET_OFFSET: f32 = 16.0;
 /// Spacing between marks.
-const MARK: f32 = 13.0;
+const MARK_SPACING: f32 = 13.0;
 
 #[derive(Clone, Copy)]
 pub(super) struct State {
@@ -22,7 +22,7 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn of(selected: bool, response: &Response) -> Self {
+    pub(super) fn from_response(selected: bool, response: &Response) -> Self {
         State { selected, hovered: response.hovered() }
     }
 
@@ -54,16 +54,16 @@ const fn title(kind: RegisterKind, column: Column) -> &'static str {
 }
 
 pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &Columns) {
-    let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
-    let middle = rect.top() + HEADER / 2.0 - 2.0;
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER_HEIGHT), Sense::hover());
+    let middle = rect.top() + HEADER_HEIGHT / 2.0 - 2.0;
     for (column, range) in columns.iter().filter(|(column, _)| *column != Column::Marks) {
-        let words = theme.caption(theme.say(title(kind, column)));
+        let words = theme.caption(theme.translate(title(kind, column)));
         draw_label(ui, theme, rect, middle, range, words, column == Column::Decimal);
     }
     ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, theme.palette.line));
 }
 
-pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
+pub(super) fn paint_heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
     let painter = ui.painter();
     painter.rect_filled(rect, 2.0, theme.palette.raised);
     state.paint(ui, theme, rect);
@@ -73,8 +73,8 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     let font = FontId::proportional(theme.sizes.caption);
     painter.text(pos2(rect.left() + 4.0, middle), Align2::LEFT_CENTER, caret, font.clone(), palette.muted.into());
     let title = painter.layout_no_wrap(group.title.clone(), theme.bold_font(theme.sizes.body), palette.text.into());
-    let right = rect.left() + CARET + title.size().x;
-    painter.galley(pos2(rect.left() + CARET, middle - title.size().y / 2.0), title, palette.text.into());
+    let right = rect.left() + CARET_OFFSET + title.size().x;
+    painter.galley(pos2(rect.left() + CARET_OFFSET, middle - title.size().y / 2.0), title, palette.text.into());
     let room = Rangef::new(right - rect.left() + theme.space.groups, rect.width());
     draw_label(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
@@ -90,12 +90,12 @@ pub(super) fn row(
     state: State,
 ) {
     state.paint(ui, theme, rect);
-    marks(ui, theme, rect.left_center(), row, open);
+    paint_marks(ui, theme, rect.left_center(), row, open);
     let palette = theme.palette;
     let value = if row.edited { palette.staged } else { palette.text };
     if kind == RegisterKind::Numbers
         && row.read_only.is_none()
-        && let Some(range) = columns.range(Column::Value)
+        && let Some(range) = columns.column_range(Column::Value)
     {
         ui.painter().rect_filled(value_edit_rect(theme, rect, range), 2.0, palette.raised);
     }
@@ -109,7 +109,7 @@ pub(super) fn row(
             Column::Value => (theme.monospace(&row.value), value),
             Column::Decimal => (theme.monospace(&row.decimal), value),
             // The number replaces an empty meaning if the column of the number is hidden.
-            Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
+            Column::Meaning if row.meaning.is_empty() && columns.column_range(Column::Decimal).is_none() => {
                 (theme.monospace(&row.decimal), value)
             }
             Column::Meaning if kind == RegisterKind::Numbers => (egui::RichText::new(&row.meaning), palette.muted),
@@ -125,7 +125,7 @@ pub(super) fn row(
             _ => words,
         };
         let right = column == Column::Decimal;
-        let range = match (column, columns.range(Column::Meaning)) {
+        let range = match (column, columns.column_range(Column::Meaning)) {
             // A text may use the column of the meaning too.
             (Column::Value, Some(meaning)) if row.meaning.is_empty() => Rangef::new(range.min, meaning.max),
             _ => range,
@@ -148,7 +148,7 @@ pub(super) fn value_edit_rect(theme: &Theme, rect: Rect, value: Rangef) -> Rect 
 
 /// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost,
 /// and a disk for storage.
-fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
+fn paint_marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
     let font = FontId::proportional(theme.sizes.caption);
@@ -156,17 +156,17 @@ fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
         ui.painter().text(left + Vec2::new(at, 0.0), Align2::CENTER_CENTER, icon, font.clone(), colour);
     };
     if !row.fields.is_empty() {
-        text(MARK / 2.0, caret, palette.muted.into());
+        text(MARK_SPACING / 2.0, caret, palette.muted.into());
     }
     if row.edited {
-        text(MARK * 1.5, icons::PENCIL_SIMPLE, palette.staged.into());
+        text(MARK_SPACING * 1.5, icons::PENCIL_SIMPLE, palette.staged.into());
     } else if row.changed {
-        ui.painter().circle_filled(left + Vec2::new(MARK * 1.5, 0.0), 3.0, palette.accent);
+        ui.painter().circle_filled(left + Vec2::new(MARK_SPACING * 1.5, 0.0), 3.0, palette.accent);
     }
     if row.cost.is_some() {
-        text(MARK * 2.5, icons::LIGHTNING, palette.warn.into());
+        text(MARK_SPACING * 2.5, icons::LIGHTNING, palette.warn.into());
     } else if row.kept.is_some() {
-        text(MARK * 2.5, icons::FLOPPY_DISK, palette.muted.into());
+        text(MARK_SPACING * 2.5, icons::FLOPPY_DISK, palette.muted.into());
     }
 }
 
@@ -184,7 +184,7 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
         let range = Rangef::new(range.min + inset, range.max);
         draw_label(ui, theme, rect, rect.center().y, range, words.color(ink), false);
     }
-    let x = rect.left() + MARK / 2.0;
+    let x = rect.left() + MARK_SPACING / 2.0;
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
 }
 
@@ -228,9 +228,9 @@ pub(super) fn show_tooltip(ui: &mut Ui, theme: &Theme, (kind, columns): (Registe
         (Column::Default, &row.default),
     ];
     for (column, value) in values {
-        if columns.range(column).is_none() && !value.is_empty() {
+        if columns.column_range(column).is_none() && !value.is_empty() {
             ui.horizontal(|ui| {
-                ui.label(theme.caption(theme.say(title(kind, column))));
+                ui.label(theme.caption(theme.translate(title(kind, column))));
                 ui.label(theme.monospace(value));
             });
         }
@@ -240,16 +240,16 @@ pub(super) fn show_tooltip(ui: &mut Ui, theme: &Theme, (kind, columns): (Registe
     };
     let palette = theme.palette;
     if row.edited {
-        note(ui, icons::PENCIL_SIMPLE, &theme.say("widget.register_edited"), palette.staged.into());
+        note(ui, icons::PENCIL_SIMPLE, &theme.translate("widget.register_edited"), palette.staged.into());
     } else if row.changed {
         let words = match row.before.as_str() {
-            "" => theme.say("widget.register_changed"),
-            before => theme.words(&Text::new("widget.register_changed_from").with("value", before)),
+            "" => theme.translate("widget.register_changed"),
+            before => theme.format_text(&Text::new("widget.register_changed_from").with("value", before)),
         };
         note(ui, icons::INFO, &words, palette.accent.into());
     }
     if row.differs {
-        note(ui, icons::INFO, &theme.say("widget.register_differs"), palette.text.into());
+        note(ui, icons::INFO, &theme.translate("widget.register_differs"), palette.text.into());
     }
     if let Some(cost) = &row.cost {
         note(ui, icons::LIGHTNING, cost, palette.warn.into());

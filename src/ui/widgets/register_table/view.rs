@@ -52,7 +52,7 @@ impl RegisterView {
         }
     }
 
-    pub fn group(&self) -> Option<usize> {
+    pub fn selected_group(&self) -> Option<usize> {
         match self.selected? {
             SelectedRow::Row(place) => Some(place.group),
             SelectedRow::Group(group) => Some(group),
@@ -61,12 +61,12 @@ impl RegisterView {
 
     /// Returns the reason why the edited value was refused, or why the value cannot be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
-        let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.words(problem));
+        let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.format_text(problem));
         typed.or_else(|| self.refused.clone())
     }
 
     /// Returns the register whose value is being entered or was refused.
-    pub fn typed(&self) -> Option<RegisterLocation> {
+    pub fn edited_location(&self) -> Option<RegisterLocation> {
         self.edit.as_ref().map(|edit| edit.place)
     }
 
@@ -78,10 +78,10 @@ impl RegisterView {
     /// Selects a register, unfolds its group and scrolls to the register.
     pub fn select(&mut self, place: RegisterLocation) {
         self.folded.remove(&place.group);
-        self.go(SelectedRow::Row(place));
+        self.select_row(SelectedRow::Row(place));
     }
 
-    pub fn fold(&mut self, group: usize, folded: bool) {
+    pub fn set_folded(&mut self, group: usize, folded: bool) {
         if folded {
             self.folded.insert(group);
         } else {
@@ -95,7 +95,7 @@ impl RegisterView {
 
     /// Adapts to a changed set of registers. The selection and the edit stay with their register. They end if it no
     /// longer exists.
-    pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
+    pub fn follow_registers(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(SelectedRow::Row(place)) => now(place).map(SelectedRow::Row),
             group => group,
@@ -105,7 +105,7 @@ impl RegisterView {
         self.refused = None;
     }
 
-    pub(super) fn go(&mut self, to: SelectedRow) {
+    pub(super) fn select_row(&mut self, to: SelectedRow) {
         self.selected = Some(to);
         self.reveal = true;
     }

@@ -7,11 +7,11 @@ use super::Gauge;
 use crate::ui::{Theme, icons};
 
 /// Minimum width of the scale, and the widths of the parts before it.
-const SCALE: f32 = 96.0;
-const ICON: f32 = 16.0;
-const NAME: f32 = 112.0;
-const VALUE: f32 = 96.0;
-const HEIGHT: f32 = 20.0;
+const MIN_SCALE_WIDTH: f32 = 96.0;
+const ICON_WIDTH: f32 = 16.0;
+const NAME_WIDTH: f32 = 112.0;
+const VALUE_WIDTH: f32 = 96.0;
+const ROW_HEIGHT: f32 = 20.0;
 
 /// Draws each gauge's name, value, scale and limits on one line. If the limits do not fit, they are below.
 pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
@@ -21,30 +21,30 @@ pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     };
     // All scales have the same length.
     let limits = gauges.iter().map(width).fold(0.0, f32::max);
-    let room = ui.available_width() - ICON - NAME - VALUE - theme.space.between * 3.0;
+    let room = ui.available_width() - ICON_WIDTH - NAME_WIDTH - VALUE_WIDTH - theme.space.between * 3.0;
     let beside = room - limits - theme.space.between;
-    let (scale, below) = if beside >= SCALE { (beside, false) } else { (room, true) };
+    let (scale, below) = if beside >= MIN_SCALE_WIDTH { (beside, false) } else { (room, true) };
     ui.scope(|ui| {
         // Displayed values are closer together than controls.
-        ui.spacing_mut().interact_size.y = HEIGHT;
+        ui.spacing_mut().interact_size.y = ROW_HEIGHT;
         for gauge in gauges {
-            gauge_ui(ui, theme, gauge, scale.clamp(SCALE / 2.0, SCALE * 3.0), below);
+            gauge_ui(ui, theme, gauge, scale.clamp(MIN_SCALE_WIDTH / 2.0, MIN_SCALE_WIDTH * 3.0), below);
         }
     });
 }
 
 fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below: bool) {
     let palette = theme.palette;
-    let (icon, ink) = match (gauge.fits(), gauge.value) {
+    let (icon, ink) = match (gauge.is_in_range(), gauge.value) {
         (true, _) if !gauge.is_in_best_range() => (icons::INFO, palette.text),
         (true, _) => (icons::CHECK_CIRCLE, palette.good),
         (false, Some(_)) => (icons::WARNING, palette.warn),
         (false, None) => (icons::QUESTION, palette.muted),
     };
     ui.horizontal(|ui| {
-        column_ui(ui, ICON, RichText::new(icon).color(ink));
-        column_ui(ui, NAME, theme.label(&gauge.name));
-        column_ui(ui, VALUE, theme.monospace(&gauge.shown).color(ink));
+        column_ui(ui, ICON_WIDTH, RichText::new(icon).color(ink));
+        column_ui(ui, NAME_WIDTH, theme.label(&gauge.name));
+        column_ui(ui, VALUE_WIDTH, theme.monospace(&gauge.shown).color(ink));
         scale_ui(ui, theme, gauge, width, ink.into());
         if !limits_below {
             ui.label(theme.caption(&gauge.limits));
@@ -52,14 +52,14 @@ fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below:
     });
     if limits_below {
         ui.horizontal(|ui| {
-            ui.add_space(ICON + theme.space.between);
+            ui.add_space(ICON_WIDTH + theme.space.between);
             ui.label(theme.caption(&gauge.limits));
         });
     }
 }
 
 fn column_ui(ui: &mut Ui, width: f32, words: RichText) {
-    ui.allocate_ui_with_layout(Vec2::new(width, HEIGHT), egui::Layout::left_to_right(egui::Align::Center), |ui| {
+    ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);
         ui.add(egui::Label::new(words).truncate());
     });
@@ -67,7 +67,7 @@ fn column_ui(ui: &mut Ui, width: f32, words: RichText) {
 
 /// Draws the allowed band with a pointer at the value. If the value is beyond the scale, draws an arrow at its end.
 fn scale_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(width, ROW_HEIGHT), Sense::hover());
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Meter, true, &gauge.name);
         info.current_text_value = Some(format!("{} ({})", gauge.shown, gauge.limits));

@@ -206,7 +206,7 @@ fn the_pointer_selects_folds_and_edits() {
 #[test]
 fn a_selected_register_is_scrolled_into_view() {
     let mut harness = table();
-    harness.state_mut().view.fold(0x23, true);
+    harness.state_mut().view.set_folded(0x23, true);
     harness.run();
     harness.state_mut().view.select(place(0x23, 0x3F));
     harness.run();
@@ -267,11 +267,11 @@ fn typed_text_stays_with_its_register_when_lines_change() {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
     };
     assert_eq!(typed(&harness).as_deref(), Some("00:05 register 5"));
-    harness.state_mut().view.follow(|own| Some(RegisterLocation { row: own.row + 1, ..own }));
+    harness.state_mut().view.follow_registers(|own| Some(RegisterLocation { row: own.row + 1, ..own }));
     harness.run();
     assert_eq!(typed(&harness).as_deref(), Some("00:06 register 6"));
     assert_eq!(harness.state().view.selected(), Some(place(0, 6)));
-    harness.state_mut().view.follow(|_| None);
+    harness.state_mut().view.follow_registers(|_| None);
     harness.run();
     assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }

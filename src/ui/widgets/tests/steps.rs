@@ -79,7 +79,7 @@ fn a_value_is_allowed_only_within_its_limits() {
     for (value, fits) in
         [(Some(25.0), true), (Some(40.0), true), (Some(40.1), false), (Some(f64::NAN), false), (None, false)]
     {
-        assert_eq!(gauge(value).fits(), fits, "{value:?}");
+        assert_eq!(gauge(value).is_in_range(), fits, "{value:?}");
     }
     let best = [25.0, 30.0, 35.0, 36.0].map(|value| gauge(Some(value)).is_in_best_range());
     assert_eq!(best, [false, true, true, false]);

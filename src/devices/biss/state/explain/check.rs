@@ -4,14 +4,14 @@ use super::guide::mode;
 use super::{mismatch, name};
 use crate::app::Text;
 use crate::app::check::CheckLine;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::biss::procedures::check::{BissStepResult, CheckFinding, CheckStep};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::sheet;
 
 pub fn check(lines: &[BissStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
+    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -29,7 +29,7 @@ fn step(step: CheckStep) -> Text {
 
 fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
-        CheckFinding::Name(name) => plain(name),
+        CheckFinding::Name(name) => literal_text(name),
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
         CheckFinding::Firmware(firmware) => TEXTS.text("check.firmware").with("firmware", firmware),
         CheckFinding::Mismatch(found) => mismatch(found),

@@ -58,8 +58,8 @@ mod tests {
             Damage::Inconsistent,
         ];
         for found in cases {
-            assert_eq!(damage_text(&found).words(Language::English), found.to_string());
-            assert_ne!(damage_text(&found).words(Language::German), found.to_string());
+            assert_eq!(damage_text(&found).to_string_in(Language::English), found.to_string());
+            assert_ne!(damage_text(&found).to_string_in(Language::German), found.to_string());
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::devices::biss::state::TEXTS;
 
 pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
     match flaw {
-        DescriptionErrorKind::Form(words) => general::plain(words),
+        DescriptionErrorKind::Form(words) => general::literal_text(words),
         DescriptionErrorKind::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", byte(*address)),
         DescriptionErrorKind::Banked { bank, offset } => {
             TEXTS.text("biss_flaw.banked").with("bank", byte(*bank)).with("offset", byte(*offset))

@@ -228,8 +228,8 @@ mod tests {
     fn modes_have_protocol_names_and_german_names() {
         for byte in 0..=255 {
             let own = DeviceMode::new(byte);
-            assert_eq!(mode(own).words(English), own.to_string());
-            assert_ne!(mode(own).words(German), own.to_string());
+            assert_eq!(mode(own).to_string_in(English), own.to_string());
+            assert_ne!(mode(own).to_string_in(German), own.to_string());
         }
     }
 
@@ -243,7 +243,8 @@ mod tests {
             lowest_ccw: PulseVoltage::new(53),
         };
         let report = WiegandReport { result, saved: false, clockwise: None, counterclockwise: None };
-        let words: Vec<String> = outcome(&Outcome::Tested(report)).iter().map(|text| text.words(English)).collect();
+        let words: Vec<String> =
+            outcome(&Outcome::Tested(report)).iter().map(|text| text.to_string_in(English)).collect();
         assert!(words[0].contains("failed"), "{words:?}");
         assert!(words[1].contains("6.3") && words[1].contains("5.4") && words[1].contains("above"), "{words:?}");
         assert!(words[2].contains("5.3") && words[2].contains("not above"), "{words:?}");
@@ -257,14 +258,16 @@ mod tests {
     fn a_stored_preset_value_is_shown_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();
         let texts = outcome(&Outcome::PresetStored { value, singleturn_bits: 17 });
-        assert_eq!(texts[0].words(English), "Preset value saved: 270.000° (step 98304), turn 2.");
-        assert!(texts[0].words(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
+        assert_eq!(texts[0].to_string_in(English), "Preset value saved: 270.000° (step 98304), turn 2.");
+        assert!(texts[0].to_string_in(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
     }
 
     #[test]
     fn skipped_operations_are_named() {
         let report = report(&Op::Calibrate, &Outcome::Skipped { after: None });
         let [(Severity::Note, text)] = report.as_slice() else { panic!("{report:?}") };
-        assert!(text.words(English).contains("Calibration") && text.words(German).contains("Kalibrierung"));
+        assert!(
+            text.to_string_in(English).contains("Calibration") && text.to_string_in(German).contains("Kalibrierung")
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::app::explain::{assert_in_both_languages, document, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::biss::procedures::{Station, Transport};
 use crate::devices::biss::profile::BissProfile;
@@ -43,6 +43,6 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), BissProfile::FORMATS).unwrap_err();
-        assert_in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&profile_error_text(&error, KINDS), &error);
     }
 }

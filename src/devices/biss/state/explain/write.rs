@@ -6,7 +6,7 @@ use std::path::Path;
 use super::encoder;
 use super::guide::{blocker_text, mode, speed_range_text, step, task, temperature_range_text};
 use super::plan::procedure_kind_text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
@@ -40,7 +40,7 @@ pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
             changes: runs(registers),
         },
         Op::StorePreset { from, to } => {
-            OperationTexts::one(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
+            OperationTexts::single(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
         }
         Op::FirePreset { parts, value } => {
             let new = match parts {
@@ -48,23 +48,25 @@ pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
                 PresetParts::Singleturn => preset_text("biss_op.singleturn", *value, bits),
                 PresetParts::Multiturn => preset_text("biss_op.multiturn", *value, bits),
             };
-            OperationTexts::one(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
+            OperationTexts::single(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
         }
-        Op::SelectFilter { from, to } => OperationTexts::one(TEXTS.text("biss_op.filter"), filter(*from), filter(*to)),
-        Op::Calibrate => OperationTexts::one(
+        Op::SelectFilter { from, to } => {
+            OperationTexts::single(TEXTS.text("biss_op.filter"), filter(*from), filter(*to))
+        }
+        Op::Calibrate => OperationTexts::single(
             TEXTS.text("guide.calibration"),
             TEXTS.text("biss_op.present_table"),
             TEXTS.text("biss_op.new_table"),
         ),
-        Op::WiegandTest { save } => OperationTexts::one(
+        Op::WiegandTest { save } => OperationTexts::single(
             TEXTS.text("guide.wiegand"),
             TEXTS.text("biss_op.last_result"),
             TEXTS.text(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
         ),
-        Op::WriteRegister { address, old, new, .. } => OperationTexts::one(
+        Op::WriteRegister { address, old, new, .. } => OperationTexts::single(
             TEXTS.text("biss_op.register").with("address", address),
-            old.map_or_else(|| TEXTS.text("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
-            plain(format!("{new:02X}")),
+            old.map_or_else(|| TEXTS.text("biss_op.not_readable"), |old| literal_text(format!("{old:02X}"))),
+            literal_text(format!("{new:02X}")),
         ),
     }
 }
@@ -74,7 +76,7 @@ fn runs(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
         let (old, new): (Vec<u8>, Vec<u8>) = own.map(|own| (own.old, own.new)).unzip();
-        ChangeTexts { part: Some(plain(range)), old: plain(hex(&old)), new: plain(hex(&new)) }
+        ChangeTexts { part: Some(literal_text(range)), old: literal_text(hex(&old)), new: literal_text(hex(&new)) }
     };
     RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
@@ -207,7 +209,7 @@ pub fn failure(failure: &Failure) -> Text {
                 |first, second| TEXTS.text("biss_failure.both").with_text("first", first).with_text("second", second);
             let why = blockers.iter().map(|own| blocker_text(*own)).reduce(both);
             let text = TEXTS.text("biss_failure.not_ready").with_text("task", task(*requested));
-            text.with_text("why", why.unwrap_or_else(|| plain("")))
+            text.with_text("why", why.unwrap_or_else(|| literal_text("")))
         }
         Failure::NotVerified { item, expected, got } => {
             TEXTS.text("biss_failure.not_verified").with("item", item).with("expected", expected).with("got", got)
@@ -260,7 +262,7 @@ mod tests {
 
     fn interruption_texts(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {
         let texts = interruption_text(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
-        let words = |language| texts.iter().map(|text| text.words(language)).collect();
+        let words = |language| texts.iter().map(|text| text.to_string_in(language)).collect();
         (words(English), words(German))
     }
 
@@ -270,7 +272,7 @@ mod tests {
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &Interrupted, kind| {
             let text = interruption_text(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
-            assert!(text.terminal_text().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
+            assert!(text.terminal_text().contains("b.ron") && text.to_string_in(German).contains("b.ron"), "{text:?}");
             text.terminal_text()
         };
         let lost = || Failure::Device(Error::NeverSilent);
@@ -299,7 +301,10 @@ mod tests {
         let cases = [(CalibrationStatus::Speed, "300…700"), (CalibrationStatus::Temperature, "25…40 °C")];
         for (status, limits) in cases {
             let text = failure(&Failure::Calibration { run: Run::CalibrationClockwise, status });
-            assert!(text.words(English).contains(limits) && text.words(German).contains(limits), "{text:?}");
+            assert!(
+                text.to_string_in(English).contains(limits) && text.to_string_in(German).contains(limits),
+                "{text:?}"
+            );
         }
     }
 
@@ -323,7 +328,10 @@ mod tests {
                 unknown.terminal_text(),
                 format!("First return the encoder to operation. {}", found.terminal_text())
             );
-            assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
+            assert!(
+                unknown.to_string_in(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "),
+                "{unknown:?}"
+            );
             assert_eq!(weight(&unknown), weight(&found));
         }
     }
@@ -408,7 +416,7 @@ mod tests {
             (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),
         ];
         for (cause, fact) in cases {
-            let (english, german) = (failure(&cause).words(English), failure(&cause).words(German));
+            let (english, german) = (failure(&cause).to_string_in(English), failure(&cause).to_string_in(German));
             assert!(english.contains(fact), "{english}");
             for words in [&english, &german] {
                 assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "what to do: {words}");

@@ -1,8 +1,8 @@
 //! Entries of the axis set-up: pitch and resolution, the reference position and both limits, with their results.
 
 use super::{DriveFacts, words};
-use crate::app::number::within;
-use crate::app::texts::signed;
+use crate::app::number::parse_in_range;
+use crate::app::texts::localize_number;
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -55,7 +55,7 @@ impl Entries {
 
     /// Returns the entries with the decimal separator of a language.
     pub fn shown(&self, language: Language) -> Self {
-        let shown = |text: &String| signed(text, language);
+        let shown = |text: &String| localize_number(text, language);
         Entries {
             pitch: shown(&self.pitch),
             resolution: shown(&self.resolution),
@@ -136,14 +136,14 @@ pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
 }
 
 fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
-    let millimetres = within(TEXTS.text(what), text, 0.001, most)?;
+    let millimetres = parse_in_range(TEXTS.text(what), text, 0.001, most)?;
     // The result is between a thousand and a thousand million.
     Ok(Length { nanometres: (millimetres * 1e6).round() as u64 })
 }
 
 fn position(what: &'static str, text: &str, ruler: Option<Ruler>) -> Result<i32, Text> {
     let ruler = ruler.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
-    let value = within(TEXTS.text(what), text, -1e6, 1e6)?;
+    let value = parse_in_range(TEXTS.text(what), text, -1e6, 1e6)?;
     ruler.steps(value, PositionUnit::Millimetres).map_err(|why| match why {
         PositionRangeError::NoPitch => TEXTS.text("hd_axis.unread"),
         PositionRangeError::Bits { least, most } => TEXTS

@@ -90,7 +90,7 @@ impl Page {
     /// Writes a text, wrapped to as many lines as required.
     fn line(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
-        for word in text.words(self.language).split_whitespace() {
+        for word in text.to_string_in(self.language).split_whitespace() {
             let width = indent.chars().count() + line.chars().count() + word.chars().count();
             if !line.is_empty() && width >= COLUMNS {
                 self.end(indent, &line);

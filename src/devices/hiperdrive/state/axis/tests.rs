@@ -140,7 +140,7 @@ fn rewritten_parameters_are_reported_once() {
     let mut axis = run();
     axis.changes =
         vec![AxisChange::Parameter(158, 9), AxisChange::Parameter(160, 10_050), AxisChange::Parameter(160, 250)];
-    let said = words::changes(&axis).words(Language::English);
+    let said = words::changes(&axis).to_string_in(Language::English);
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
@@ -428,12 +428,12 @@ fn every_step_has_instructions_and_a_result() {
         let found = words::found(&axis, step, &seen).unwrap();
         for text in texts.iter().chain([&found]) {
             for language in [Language::English, Language::German] {
-                let said = text.words(language);
+                let said = text.to_string_in(language);
                 assert!(said != text.id() && !said.contains('{'), "{said}");
             }
         }
     }
-    let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
+    let found = |step| words::found(&axis, step, &seen).unwrap().to_string_in(Language::English);
     assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256 (400 steps per turn).");
     assert_eq!(
         found(AxisStep::Confirm),

@@ -3,14 +3,14 @@
 use super::names::{error, state, variant};
 use crate::app::Text;
 use crate::app::check::CheckLine;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, HiperdriveStepResult};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
 pub fn check(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
+    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
 }
 
 pub(super) fn step(step: CheckStep) -> Text {
@@ -37,7 +37,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Replies { requested, slowest_ms, late } => {
             TEXTS.text("hd_check.replies").with("asked", requested).with("slowest", slowest_ms).with("late", late)
         }
-        CheckFinding::Category(words) | CheckFinding::Version(words) => plain(words),
+        CheckFinding::Category(words) | CheckFinding::Version(words) => literal_text(words),
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
         CheckFinding::Supply(tenths) => TEXTS.text("hd_check.supply").with_number("volts", *tenths as f64 / 10.0, 1),
         CheckFinding::Temperature(celsius) => TEXTS.text("hd_check.celsius").with("celsius", celsius),

@@ -3,7 +3,7 @@
 use super::names::parameter;
 use super::status;
 use crate::app::Text;
-use crate::app::explain::{link, plain};
+use crate::app::explain::{link_error_text, literal_text};
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
 use crate::devices::hiperdrive::procedures::{Damage, Error, LateReplyError, Refusal, RequestedItem, WrongLength};
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 pub fn device(error: &Error) -> Text {
     match error {
-        Error::Link(error) => link(error),
+        Error::Link(error) => link_error_text(error),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::NeverSilent => TEXTS.text("hd_said.never_silent"),
         Error::NoReply { requested: what, tries, late: None } => {
@@ -96,7 +96,7 @@ pub fn range(range: Range) -> Text {
         Range::WithinOr(low, high, also) => {
             TEXTS.text("hd_range.within_or").with("low", low).with("high", high).with("also", also)
         }
-        Range::OneOf(values) => Text::new("plain.words").with_list("words", values.iter().map(plain)),
+        Range::OneOf(values) => Text::new("plain.words").with_list("words", values.iter().map(literal_text)),
     }
 }
 

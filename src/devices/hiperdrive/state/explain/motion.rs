@@ -1,7 +1,7 @@
 //! Messages about motion: why a drive may not move, why a request was refused, how a motion ended.
 
 use super::names::{parameter, state};
-use crate::app::explain::link;
+use crate::app::explain::link_error_text;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::MotionSnapshot;
 use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, ParameterReading, ParameterResult};
@@ -130,7 +130,7 @@ pub const LOST: [&str; 6] =
 pub fn lost(lost: Option<&ConnectionLoss>) -> Text {
     match lost {
         Some(ConnectionLoss::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),
-        Some(ConnectionLoss::Port(error)) => TEXTS.text("hd_lost.port").with_text("why", link(error)),
+        Some(ConnectionLoss::Port(error)) => TEXTS.text("hd_lost.port").with_text("why", link_error_text(error)),
         Some(ConnectionLoss::DoesNotStand(drive)) => TEXTS.text("hd_lost.does_not_stand").with("drive", drive.get()),
         Some(ConnectionLoss::Session) => TEXTS.text("hd_lost.session"),
         Some(ConnectionLoss::Failed) => TEXTS.text("hd_lost.failed"),

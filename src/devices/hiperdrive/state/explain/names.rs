@@ -1,7 +1,7 @@
 //! Names of a HIPERDRIVE: states, bits of its words, errors with cause and remedy, parameters.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::hiperdrive::protocol::drive_parameter::{NEWEST_ERROR, OLDEST_ERROR};
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -109,7 +109,7 @@ pub fn parameter(number: ParameterNumber) -> Text {
 
 pub fn variant(variant: Variant) -> Text {
     match variant.row() {
-        Some(row) => plain(row.name),
+        Some(row) => literal_text(row.name),
         None if variant == Variant::NONE => TEXTS.text("hd_variant.none"),
         None => TEXTS.text("hd_variant.other").with("number", format!("{:04X}", variant.number())),
     }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{assert_in_both_languages, document, setting, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, setting, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
@@ -50,7 +50,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
-        assert_in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&profile_error_text(&error, KINDS), &error);
     }
     // The window calls a parameter by its own name.
     for (from, to, german) in [
@@ -58,7 +58,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("{158: 5}", "{186: 300}", "300"),
     ] {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
-        let words = document(&error, KINDS).words(German);
+        let words = profile_error_text(&error, KINDS).to_string_in(German);
         assert!(words.contains(german) && !words.contains(" not ") && !words.contains(" must "), "{words}");
     }
 }

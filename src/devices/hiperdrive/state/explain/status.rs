@@ -1,7 +1,7 @@
 //! Names of EtherNet/IP status codes, and messages about invalid packets or values.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus, PacketError, PacketField, Structure};
 use crate::devices::hiperdrive::procedures::Refusal;
 use crate::devices::hiperdrive::protocol::ValueError;
@@ -30,7 +30,7 @@ pub(super) fn refusal(refusal: &Refusal) -> Text {
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
         ([], _) => return status,
         ([first, ..], Some(row)) => vec![code_and_name_text(format!("0x{first:04X}"), connection(row.code))],
-        (words, None) => words.iter().map(|word| plain(format!("0x{word:04X}"))).collect(),
+        (words, None) => words.iter().map(|word| literal_text(format!("0x{word:04X}"))).collect(),
     };
     let words = Text::new("plain.words").with_list("words", words);
     TEXTS.text("hd_status_name.followed").with_text("status", status).with_text("words", words)
@@ -177,8 +177,8 @@ mod tests {
 
     #[track_caller]
     fn assert_in_both_languages(text: &Text, error: &dyn std::fmt::Display) {
-        assert_eq!(text.words(English), error.to_string());
-        assert_ne!(text.words(German), text.words(English));
+        assert_eq!(text.to_string_in(English), error.to_string());
+        assert_ne!(text.to_string_in(German), text.to_string_in(English));
     }
 
     fn refused(status: u8, extended: Vec<u16>) -> Refusal {
@@ -202,10 +202,10 @@ mod tests {
             assert_in_both_languages(&refusal(&refused), &refused);
         }
         // One name per row, and none for other rows.
-        let unknown = TEXTS.text(UNKNOWN).words(German);
+        let unknown = TEXTS.text(UNKNOWN).to_string_in(German);
         let mut names: Vec<String> =
-            GENERAL_STATUS.iter().map(|row| general_status_text(row.code).words(German)).collect();
-        names.extend(ENCAPSULATION_STATUS.iter().map(|row| frame(row.code).words(German)));
+            GENERAL_STATUS.iter().map(|row| general_status_text(row.code).to_string_in(German)).collect();
+        names.extend(ENCAPSULATION_STATUS.iter().map(|row| frame(row.code).to_string_in(German)));
         assert!(names.iter().all(|name| !name.contains(&unknown)), "{names:?}");
     }
 

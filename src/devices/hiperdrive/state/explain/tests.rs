@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{device, ended, lock, plan, warning, weight, wrong_length};
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::{Language, Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
 use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRefusal};
@@ -24,7 +24,7 @@ fn number(number: u16) -> ParameterNumber {
 /// Sentences, with nothing left open in them.
 #[track_caller]
 fn assert_complete(text: &Text, sentences: usize) {
-    for words in [text.words(Language::English), text.words(Language::German), text.terminal_text()] {
+    for words in [text.to_string_in(Language::English), text.to_string_in(Language::German), text.terminal_text()] {
         assert!(!words.contains(['{', '}']), "{words}");
         assert!(words.ends_with('.') && words.matches(['.', ':', ';', '?']).count() >= sentences, "{words}");
     }
@@ -32,7 +32,7 @@ fn assert_complete(text: &Text, sentences: usize) {
 
 #[test]
 fn invalid_input_names_cause_and_remedy() {
-    let english = |text: &Text| text.words(Language::English);
+    let english = |text: &Text| text.to_string_in(Language::English);
     let out = OutOfRange { number: number(166), name: "maximum speed", value: 351, range: Range::Within(5, 350) };
     assert_eq!(
         english(&device(&Error::OutOfRange(out))),
@@ -46,7 +46,7 @@ fn invalid_input_names_cause_and_remedy() {
         english(&device(&Error::NotRequested { drive: ONE })),
         "Drive 1 rejected the request because its parameter 152 (Requested) is 0. Set this parameter to 1 first."
     );
-    let switch = ended(ActionEnd::NotStarted, plain);
+    let switch = ended(ActionEnd::NotStarted, literal_text);
     assert!(english(&switch).contains("S3 of the hub is at 0"), "{}", english(&switch));
     let master = device(&Error::OtherMaster { extended: 0x0106 });
     assert!(
@@ -104,13 +104,17 @@ fn errors_name_cause_and_remedy() {
             "Der Wert von Parameter 107 (Istposition) wurde ignoriert, weil er die falsche Länge hat (Bytes empfangen: 2, erwartet: 4)",
         ),
     ] {
-        assert!(wrong_length(&length).words(language).starts_with(said), "{}", wrong_length(&length).words(language));
+        assert!(
+            wrong_length(&length).to_string_in(language).starts_with(said),
+            "{}",
+            wrong_length(&length).to_string_in(language)
+        );
     }
     // If more time may help, the command line tells how to set it, and the window does not mention a link.
     for late in [None, Some(late)] {
         let text = device(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
         assert!(text.terminal_text().contains("timeout=2000 in the link"), "{}", text.terminal_text());
-        assert!(!text.words(Language::English).contains("timeout="));
+        assert!(!text.to_string_in(Language::English).contains("timeout="));
     }
     for status in 0..=0x30 {
         assert_complete(&device(&Error::Refused { requested, refusal: refusal(status) }), 2);
@@ -168,11 +172,11 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
     ];
     locks.iter().for_each(|own| assert_complete(&lock(*own), 2));
     for own in bad.into_iter().chain(refusals.map(ActionEnd::Refused)).chain(locks.map(ActionEnd::Locked)) {
-        assert_complete(&ended(own, plain), 2);
+        assert_complete(&ended(own, literal_text), 2);
         assert!(weight(own) >= Severity::Warning, "{own:?}");
     }
     for own in [ActionEnd::Done, ActionEnd::Arrived, ActionEnd::Stopped, ActionEnd::Replaced] {
-        assert_complete(&ended(own, plain), 1);
+        assert_complete(&ended(own, literal_text), 1);
         assert_eq!(weight(own), Severity::Note, "nobody has to do anything");
     }
 }

@@ -6,7 +6,7 @@ use super::check::{source, switch};
 use super::error::{device, out_of_range};
 use super::names::{parameter, variant};
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::review::OperationTexts;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
 use crate::devices::hiperdrive::procedures::write::{Interrupted, WrittenChanges};
@@ -44,8 +44,8 @@ pub fn service(service: Service) -> Text {
 pub fn op(op: &Op) -> OperationTexts {
     match op {
         Op::Write { number, old, new } => {
-            let old = old.map_or_else(|| TEXTS.text("hd_op.unknown"), plain);
-            OperationTexts::one(item(Item(*number)), old, plain(new))
+            let old = old.map_or_else(|| TEXTS.text("hd_op.unknown"), literal_text);
+            OperationTexts::single(item(Item(*number)), old, literal_text(new))
         }
         Op::Service(own) => {
             let (before, after) = match own {
@@ -55,9 +55,9 @@ pub fn op(op: &Op) -> OperationTexts {
                 Service::Reset => ("hd_op.as_now", "hd_op.restarted"),
                 Service::Acknowledge(_) => ("hd_op.fault", "hd_op.acknowledged"),
             };
-            OperationTexts::one(service(*own), TEXTS.text(before), TEXTS.text(after))
+            OperationTexts::single(service(*own), TEXTS.text(before), TEXTS.text(after))
         }
-        Op::Network { from, to } => OperationTexts::one(TEXTS.text("hd_op.network"), network(from), network(to)),
+        Op::Network { from, to } => OperationTexts::single(TEXTS.text("hd_op.network"), network(from), network(to)),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton, Axi
 use crate::devices::hiperdrive::state::{Motor, TEXTS};
 use crate::devices::hiperdrive::views::jog::jog_button_ui;
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{button_with_reason, entry, paragraph, problem, row, text_entry};
+use crate::ui::controls::{button_with_reason, entry, paragraph, problem_ui, row, text_entry};
 use crate::ui::widgets::HoldButton;
 use crate::ui::{Theme, icons};
 
@@ -62,7 +62,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
         }
     }
     if step != AxisStep::Lower {
-        let word = theme.words(&words::button(step));
+        let word = theme.format_text(&words::button(step));
         shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == AxisStep::Request {
@@ -84,8 +84,8 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
             for own in TestTarget::ALL {
                 let Some(outcome) = shown.axis.outcome(own) else { continue };
                 let ink = if outcome.is_good() { theme.palette.good } else { theme.palette.bad };
-                let place = theme.words(&words::place(own));
-                let words = theme.words(&words::outcome(&outcome, shown.seen));
+                let place = theme.format_text(&words::place(own));
+                let words = theme.format_text(&words::outcome(&outcome, shown.seen));
                 row(ui, theme, &place, RichText::new(words).color(ink));
             }
         }
@@ -124,13 +124,13 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     }
     if let Some(status) = shown.unit.current_or_last_request(shown.axis.drive()) {
         let ink = if status.is_well { theme.palette.muted } else { theme.palette.warn };
-        paragraph(ui, RichText::new(theme.words(&status.words)).color(ink));
+        paragraph(ui, RichText::new(theme.format_text(&status.words)).color(ink));
     }
 }
 
 fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
-    let caption = theme.words(&words::effort("hd_axis.jog_hold"));
+    let caption = theme.format_text(&words::effort("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
@@ -158,16 +158,21 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     }
     let preview = match entries.preview(shown.seen) {
         Ok(preview) => preview,
-        Err(why) => return problem(ui, theme, Some(&why)),
+        Err(why) => return problem_ui(ui, theme, Some(&why)),
     };
     let ruler = Some(preview.ruler);
     let range = |low: Text, high: Text| TEXTS.text("hd_axis.range").with_text("low", low).with_text("high", high);
     let mm = |steps: i32| words::millimetres(ruler, steps.into());
     let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
     row(ui, theme, &say(theme, "hd_axis.preview_scale"), theme.monospace(scale));
-    row(ui, theme, &say(theme, "hd_axis.preview_steps"), theme.monospace(theme.plain(preview.scale.steps_per_turn())));
-    row(ui, theme, &say(theme, "hd_axis.preview_grain"), theme.monospace(theme.words(&mm(64))));
-    let whole = theme.words(&range(mm(preview.lower), mm(preview.upper)));
+    row(
+        ui,
+        theme,
+        &say(theme, "hd_axis.preview_steps"),
+        theme.monospace(theme.format_plain(preview.scale.steps_per_turn())),
+    );
+    row(ui, theme, &say(theme, "hd_axis.preview_grain"), theme.monospace(theme.format_text(&mm(64))));
+    let whole = theme.format_text(&range(mm(preview.lower), mm(preview.upper)));
     row(ui, theme, &say(theme, "hd_axis.preview_range"), theme.monospace(whole));
     if let (Some((low, high)), true) = (preview.unchanged, shown.seen.scale != Some(preview.scale)) {
         let value = |own: f64| TEXTS.text("hd_axis.millimetres").with_number("value", own, 0);
@@ -177,7 +182,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
             ui,
             theme,
             &say(theme, "hd_axis.preview_unchanged"),
-            RichText::new(theme.words(&text)).color(theme.palette.warn),
+            RichText::new(theme.format_text(&text)).color(theme.palette.warn),
         );
     }
 }
@@ -185,7 +190,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
 fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
-        theme.words(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
+        theme.format_text(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
     };
     ui.label(theme.value(shown.seen.limits.map_or_else(|| say(theme, "hd_axis.none"), range)));
     ui.add_space(theme.space.inside);
@@ -203,17 +208,17 @@ fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Ent
         Ok(own) if own.asked != own.becomes => {
             let text =
                 TEXTS.text("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
-            paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
+            paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         }
         Ok(_) => {}
-        Err(why) => problem(ui, theme, Some(&why)),
+        Err(why) => problem_ui(ui, theme, Some(&why)),
     }
 }
 
 fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
-    let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
+    let mm = |steps: i32| theme.format_text(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {
-        let word = theme.words(&words::place(own));
+        let word = theme.format_text(&words::place(own));
         entry(ui, theme, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
             let go = format!("{} {}", say(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
@@ -239,7 +244,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
 /// Draws the control of the supply. A virtual device is switched here, a real one by hand.
 fn supply_switch_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = theme.words(&words::button(AxisStep::PowerCycle));
+        let word = theme.format_text(&words::button(AxisStep::PowerCycle));
         shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
         let word = say(theme, "hd_axis.give");
         shown.button(ui, theme, AxisButton::Give, (icons::PLUGS, &word), actions);

@@ -3,7 +3,7 @@
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::Motor;
 use crate::app::Text;
-use crate::app::number::{MOST_PERIODS, whole, within};
+use crate::app::number::{MAX_PERIODS, parse_in_range, parse_integer};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
@@ -151,8 +151,8 @@ impl Form {
     }
 
     fn current_and_time_limits(&self) -> (Result<f64, Text>, Result<f64, Text>) {
-        let current = within(TEXTS.text("commutation.current"), &self.current_a, 0.001, 1000.0);
-        (current, within(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
+        let current = parse_in_range(TEXTS.text("commutation.current"), &self.current_a, 0.001, 1000.0);
+        (current, parse_in_range(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
     /// Checks that all steps before energising the motor are confirmed and all limits are entered.
@@ -182,7 +182,7 @@ impl Form {
             Vector::UAgainstBoth => Ok(0.0),
             Vector::UAgainstV => Ok(-30.0),
             Vector::UAgainstW => Ok(30.0),
-            Vector::Other => within(TEXTS.text("commutation.vector_angle"), &self.vector_deg, -360.0, 360.0),
+            Vector::Other => parse_in_range(TEXTS.text("commutation.vector_angle"), &self.vector_deg, -360.0, 360.0),
         }
     }
 
@@ -192,7 +192,7 @@ impl Form {
     /// # Errors
     /// Returns an error if the entry is invalid.
     pub fn second_vector_turns(&self) -> Result<f64, Text> {
-        Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
+        Ok(parse_in_range(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
     /// Returns the typed position within a period.
@@ -214,7 +214,7 @@ impl Form {
             Slot::OtherSide => other,
             Slot::Second => second,
         };
-        within(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
+        parse_in_range(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
     /// Returns the typed number of signal periods per revolution, or that of the encoder type if the entry is empty.
@@ -225,7 +225,7 @@ impl Form {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
             (true, Some(Geometry::Rotary { periods, .. })) => Ok(periods.max(1)),
-            _ => whole(TEXTS.text("commutation.periods"), &self.periods, 1, MOST_PERIODS),
+            _ => parse_integer(TEXTS.text("commutation.periods"), &self.periods, 1, MAX_PERIODS),
         }
     }
 
@@ -241,7 +241,7 @@ impl Form {
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
-        let pole_pairs = whole(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
+        let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
         let periods = self.periods(geometry)?;
         Ok(OffsetInputs {
             motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing("commutation.pole_pairs"))?,
@@ -249,7 +249,7 @@ impl Form {
             pole_pairs,
             reversed: self.reversed,
             vector_turns: self.vector_deg()? / 360.0,
-            limit_deg: within(TEXTS.text("commutation.limit"), &self.limit_deg, 0.1, 90.0)?,
+            limit_deg: parse_in_range(TEXTS.text("commutation.limit"), &self.limit_deg, 0.1, 90.0)?,
         })
     }
 }
@@ -259,6 +259,6 @@ fn missing(what: &'static str) -> Text {
 }
 
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
-    let periods = within(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
+    let periods = parse_in_range(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
     Phase::from_periods(periods).ok_or_else(|| missing("commutation.phase"))
 }

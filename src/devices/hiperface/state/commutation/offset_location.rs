@@ -3,7 +3,7 @@
 
 use super::{Commutation, Storage};
 use crate::app::Text;
-use crate::app::number::whole;
+use crate::app::number::parse_integer;
 use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::{StagedEdits, TEXTS, rules};
@@ -35,7 +35,7 @@ impl Commutation {
             let free = || candidates().find_map(|field| first(field, is_filler));
             return kept.or_else(free).ok_or_else(no_room);
         }
-        let address = whole(TEXTS.text("commutation.address"), &form.address, 0, 127)? as usize;
+        let address = parse_integer(TEXTS.text("commutation.address"), &form.address, 0, 127)? as usize;
         let field = form.field.or_else(|| writable().next().map(|field| field.number));
         let field = field.ok_or_else(no_room)?;
         Ok(OffsetLocation { field, address })

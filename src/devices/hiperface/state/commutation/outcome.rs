@@ -6,7 +6,7 @@ use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::{ElectricalAngle, preset_position};
 use crate::analysis::quality::Verdict;
 use crate::app::Text;
-use crate::app::number::whole;
+use crate::app::number::parse_integer;
 use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordError};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{Allowed, StagedEdits, TEXTS};
@@ -196,7 +196,7 @@ impl Commutation {
         let steps = u64::from(STEPS_PER_PERIOD);
         let periods = geometry.and_then(Geometry::range).map_or(u64::from(inputs.periods), |range| range / steps);
         let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);
-        let period = whole(TEXTS.text("commutation.period"), &self.form.period, 0, last)?;
+        let period = parse_integer(TEXTS.text("commutation.period"), &self.form.period, 0, last)?;
         let value = preset_position(period, phase).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let remaining = angle(f64::from(period) + phase.to_periods(), &inputs);
         let remaining = remaining.ok_or_else(|| TEXTS.text("commutation.not_there"))?.to_degrees();

@@ -116,6 +116,6 @@ fn rejected_entries_name_the_allowed_values() {
         change(&mut form);
         let text = form.url().unwrap_err();
         assert_eq!(text.id(), id, "{form:?}");
-        assert!(text.words(Language::English).contains(words), "{}", text.words(Language::English));
+        assert!(text.to_string_in(Language::English).contains(words), "{}", text.to_string_in(Language::English));
     }
 }

@@ -4,13 +4,13 @@ use super::encoder;
 use super::words::{field_status, position, raw_position_text, status_with_number};
 use crate::app::Text;
 use crate::app::check::CheckLine;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::hiperface::procedures::LineQuality;
 use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
 use crate::devices::hiperface::state::TEXTS;
 
 pub fn check(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
+    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -41,8 +41,8 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Code(code) => status_with_number(*code),
         CheckFinding::Position(found) => position(*found),
         CheckFinding::RawPosition(raw) => raw_position_text(*raw),
-        CheckFinding::Name(name) => plain(name),
-        CheckFinding::SerialNumber(number) => plain(number),
+        CheckFinding::Name(name) => literal_text(name),
+        CheckFinding::SerialNumber(number) => literal_text(number),
         CheckFinding::Limit { channel, value, limit } => {
             let channel = format!("{channel:02X}h");
             TEXTS.text("check.limit").with("channel", channel).with("value", value).with("limit", limit)
@@ -98,7 +98,7 @@ mod tests {
         ];
         for (found, terminal, german) in cases {
             assert_eq!(finding_text(&found).terminal_text(), terminal);
-            assert_eq!(finding_text(&found).words(Language::German), german);
+            assert_eq!(finding_text(&found).to_string_in(Language::German), german);
         }
     }
 }

@@ -38,8 +38,8 @@ mod tests {
     #[test]
     fn commands_have_their_protocol_names() {
         for row in COMMANDS {
-            assert_eq!(command(row.command).words(Language::English), row.name);
-            assert_ne!(command(row.command).words(Language::German), row.name);
+            assert_eq!(command(row.command).to_string_in(Language::English), row.name);
+            assert_ne!(command(row.command).to_string_in(Language::German), row.name);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{command, field_status, line_settings, status_with_number};
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::bits::hex;
 use crate::devices::hiperface::protocol::{
     Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, FrameDetail, LineSettings, Reply,
@@ -114,7 +114,7 @@ fn type_label(label: &TypeLabel) -> Text {
         .text("frame.type_label")
         .with_text("settings", settings_byte_text(label.settings))
         .with("type", number(label.encoder_type))
-        .with_text("name", name.map_or_else(|| TEXTS.text("frame.unknown_type"), |row| plain(&row.name)))
+        .with_text("name", name.map_or_else(|| TEXTS.text("frame.unknown_type"), |row| literal_text(&row.name)))
         .with("bytes", label.eeprom_bytes())
         .with("options", number(label.options))
 }
@@ -191,7 +191,7 @@ mod tests {
             ("40 41 01", "Adresse 40h: unbekannter Befehl (41h)|keine gültige Anfrage: 41h ist kein Befehl"),
         ];
         for (bytes, expected) in cases {
-            let words: Vec<String> = texts(bytes).iter().map(|text| text.words(Language::German)).collect();
+            let words: Vec<String> = texts(bytes).iter().map(|text| text.to_string_in(Language::German)).collect();
             assert_eq!(words.join("|"), expected);
         }
     }

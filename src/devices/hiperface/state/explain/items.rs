@@ -1,7 +1,7 @@
 //! Names of encoder items, and messages about refused profile entries.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::hiperface::procedures::ReadBackValue;
 use crate::devices::hiperface::profile::{EntryError, FieldRange, Item, PlanItem};
 use crate::devices::hiperface::state::TEXTS;
@@ -40,7 +40,7 @@ pub fn plan_item_text(own: &PlanItem) -> Text {
 
 pub fn read_back(read: &ReadBackValue) -> Text {
     match read {
-        ReadBackValue::Value(value) => plain(value),
+        ReadBackValue::Value(value) => literal_text(value),
         ReadBackValue::AnotherStatus => TEXTS.text("hf_item.another_status"),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::words::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::app::review::OperationTexts;
 use crate::bits::hex;
 use crate::devices::hiperface::profile::Op;
@@ -13,29 +13,31 @@ use crate::devices::hiperface::state::TEXTS;
 pub fn op(op: &Op) -> OperationTexts {
     match op {
         Op::Define { field, from, to } => define(*field, *from, *to),
-        Op::Store { field, address, old, new, .. } => OperationTexts::one(
+        Op::Store { field, address, old, new, .. } => OperationTexts::single(
             bytes(*field, usize::from(*address), new.len()),
-            old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| plain(hex(old))),
-            plain(hex(new)),
+            old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| literal_text(hex(old))),
+            literal_text(hex(new)),
         ),
-        Op::ChangeCode { number, .. } => OperationTexts::one(
+        Op::ChangeCode { number, .. } => OperationTexts::single(
             TEXTS.text("op.access_code").with("number", number),
             TEXTS.text("op.present_code"),
             TEXTS.text("op.changed_code"),
         ),
         Op::SetPosition { from, to, synchronise } => {
             let item = if *synchronise { "op.synchronise" } else { "op.position" };
-            OperationTexts::one(TEXTS.text(item), plain(from), plain(to))
+            OperationTexts::single(TEXTS.text(item), literal_text(from), literal_text(to))
         }
         Op::SetAddress { from, to } => {
-            OperationTexts::one(TEXTS.text("op.address"), plain(format!("{from:02X}h")), plain(to))
+            OperationTexts::single(TEXTS.text("op.address"), literal_text(format!("{from:02X}h")), literal_text(to))
         }
         Op::Configure { from, to } => {
-            OperationTexts::one(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to))
+            OperationTexts::single(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to))
         }
-        Op::ClearCounter { from } => OperationTexts::one(TEXTS.text("op.counter"), plain(from), plain(0)),
+        Op::ClearCounter { from } => {
+            OperationTexts::single(TEXTS.text("op.counter"), literal_text(from), literal_text(0))
+        }
         Op::IncrementCounter { from } => {
-            OperationTexts::one(TEXTS.text("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
+            OperationTexts::single(TEXTS.text("op.counter"), literal_text(from), literal_text((from + 1) & 0x00FF_FFFF))
         }
     }
 }
@@ -55,14 +57,14 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
     let item = TEXTS.text("op.field").with("field", field);
     match from {
         Some(from) if from.exists() && !to.exists() => {
-            OperationTexts::one(item, field_status(from), TEXTS.text("op.deleted"))
+            OperationTexts::single(item, field_status(from), TEXTS.text("op.deleted"))
         }
         Some(from) if from.exists() => {
             let (old, new) = changed_status_properties(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
             let parts = |texts: Vec<Text>| TEXTS.text("op.parts").with_list("parts", texts);
-            OperationTexts::one(item, parts(old), parts(new))
+            OperationTexts::single(item, parts(old), parts(new))
         }
-        _ => OperationTexts::one(item, TEXTS.text("op.not_there"), field_status(to)),
+        _ => OperationTexts::single(item, TEXTS.text("op.not_there"), field_status(to)),
     }
 }
 
@@ -109,11 +111,11 @@ mod tests {
             (Op::IncrementCounter { from: 0x00FF_FFFF }, "counter: 16777215 → 0"),
         ];
         for (operation, english) in cases {
-            let words: Vec<String> = op(&operation).texts().map(|text| text.words(English)).collect();
+            let words: Vec<String> = op(&operation).texts().map(|text| text.to_string_in(English)).collect();
             let [item, old, new] = words.as_slice() else { panic!("{words:?}") };
             assert_eq!(format!("{item}: {old} → {new}"), english);
         }
-        let words: Vec<String> = op(&define(Some(0xE8), 0xA9)).texts().map(|text| text.words(German)).collect();
+        let words: Vec<String> = op(&define(Some(0xE8), 0xA9)).texts().map(|text| text.to_string_in(German)).collect();
         assert_eq!(words, ["Datenfeld 1", "16 Bytes, beschreibbar", "32 Bytes, schreibgeschützt"]);
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{assert_in_both_languages, document, setting, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, setting, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperface::procedures::{ReadBackValue, Station};
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, PlanItem};
@@ -90,7 +90,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperfaceProfile::FORMATS).unwrap_err();
-        assert_in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&profile_error_text(&error, KINDS), &error);
     }
 }
 
@@ -112,7 +112,7 @@ fn items_checked_by_a_write_are_named_in_both_languages() {
     ];
     for (item, german) in cases {
         assert_in_both_languages(&plan_item_text(&item), &item);
-        assert_eq!(plan_item_text(&item).words(German), german);
+        assert_eq!(plan_item_text(&item).to_string_in(German), german);
     }
     assert_in_both_languages(&read_back(&ReadBackValue::AnotherStatus), &ReadBackValue::AnotherStatus);
 }

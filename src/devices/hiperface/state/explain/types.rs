@@ -2,7 +2,7 @@
 //! this reason.
 
 use crate::app::Text;
-use crate::app::explain::{self as general, syntax};
+use crate::app::explain::{self as general, syntax_error_text};
 use crate::devices::hiperface::jobs::TypeTableFileError;
 use crate::devices::hiperface::protocol::{GeometryEntry, TypeTableError};
 use crate::devices::hiperface::state::TEXTS;
@@ -11,13 +11,13 @@ use crate::worker::OpenError;
 
 /// Explains why a user-defined table of encoder types cannot be used.
 pub fn store(error: &StoreError) -> Text {
-    let StoreError::Refused(cause) = error else { return general::store(error) };
+    let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<TypeTableFileError>() {
         Some(TypeTableFileError { path, cause }) => TEXTS
             .text("store.encoder_types")
             .with("path", path.display())
             .with_text("why", type_table_error_text(cause)),
-        None => general::store(error),
+        None => general::store_error_text(error),
     }
 }
 
@@ -30,7 +30,9 @@ pub fn open(error: &OpenError) -> Text {
 
 fn type_table_error_text(error: &TypeTableError) -> Text {
     match error {
-        TypeTableError::Syntax { line, column, problem: what } => syntax(*line, *column, general::plain(what)),
+        TypeTableError::Syntax { line, column, problem: what } => {
+            syntax_error_text(*line, *column, general::literal_text(what))
+        }
         TypeTableError::Range { code, entry, range } => TEXTS
             .text("detail.range")
             .with("code", format!("{code:02X}h"))
@@ -60,13 +62,13 @@ mod tests {
         let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
         let cause = EncoderTypes::parse(zero).unwrap_err();
         let why = type_table_error_text(&cause);
-        assert_eq!(why.words(English), cause.to_string());
+        assert_eq!(why.to_string_in(English), cause.to_string());
         assert_eq!(why.terminal_text(), cause.to_string());
-        assert_eq!(why.words(German), "Typ 01h: periods (Perioden) muss zwischen 1 und 134217728 liegen");
+        assert_eq!(why.to_string_in(German), "Typ 01h: periods (Perioden) muss zwischen 1 und 134217728 liegen");
         let broken = TypeTableFileError { path: "own.ron".into(), cause };
         let error = StoreError::Refused(Cause::new(broken)).into();
         assert_eq!(
-            open(&error).words(English),
+            open(&error).to_string_in(English),
             "The table of encoder types in own.ron cannot be used: type 01h: periods must be between 1 and 134217728. \
              Correct or remove the file."
         );

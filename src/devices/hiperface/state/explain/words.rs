@@ -119,28 +119,31 @@ mod tests {
     fn codes_have_their_protocol_names() {
         for byte in 0..=0xFF {
             let code = StatusCode::new(byte);
-            assert_eq!(status(code).words(Language::English), code.text());
+            assert_eq!(status(code).to_string_in(Language::English), code.text());
             assert_eq!(status_with_number(code).terminal_text(), code.to_string());
         }
         let code = status_with_number(StatusCode::TEMPERATURE);
-        assert_eq!(code.words(Language::German), "1Eh kritische Gebertemperatur");
+        assert_eq!(code.to_string_in(Language::German), "1Eh kritische Gebertemperatur");
     }
 
     #[test]
     fn properties_have_their_protocol_names() {
         for byte in 0..=0xFF {
             let (field, line) = (DataFieldStatus::from_byte(byte), LineSettings::from_byte(byte));
-            assert_eq!(field_status(field).words(Language::English), field.to_string());
-            assert_eq!(line_settings(line).words(Language::English), line.to_string());
+            assert_eq!(field_status(field).to_string_in(Language::English), field.to_string());
+            assert_eq!(line_settings(line).to_string_in(Language::English), line.to_string());
         }
         let rotary = |periods, turns| Geometry::Rotary { periods, turns };
         let linear = |period_nm| Geometry::Linear { period_nm, periods: 0 };
         for shape in [rotary(128, 1), rotary(128, 4096), linear(4_000_000), linear(1_500_000), linear(820)] {
-            assert_eq!(geometry(shape).words(Language::English), shape.to_string());
-            assert_eq!(position(shape.position(919_857)).words(Language::English), shape.position(919_857).to_string());
+            assert_eq!(geometry(shape).to_string_in(Language::English), shape.to_string());
+            assert_eq!(
+                position(shape.position(919_857)).to_string_in(Language::English),
+                shape.position(919_857).to_string()
+            );
         }
         for known in Parity::ALL {
-            assert_eq!(parity(known).words(Language::English), known.word());
+            assert_eq!(parity(known).to_string_in(Language::English), known.word());
         }
     }
 
@@ -157,7 +160,7 @@ mod tests {
             (parity(Parity::Odd), "ungerade"),
         ];
         for (text, german) in cases {
-            assert_eq!(text.words(Language::German), german);
+            assert_eq!(text.to_string_in(Language::German), german);
         }
     }
 }

@@ -26,7 +26,7 @@ fn watched(microseconds: u64, value: i64) -> Sample {
 }
 
 fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
-    record.track.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
+    record.track.recorder.series().iter().find(|line| line.heading == heading).unwrap()
 }
 
 /// Returns the time in nanoseconds, value in the samples' own unit, flags.

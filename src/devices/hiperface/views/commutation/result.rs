@@ -10,7 +10,7 @@ use crate::devices::hiperface::state::commutation::{CommutationAction as Assista
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    button_with_reason, card, choice, enabled_button, entry, folding_card, paragraph, primary_button, row, verdict_ui,
+    button_with_reason, card, dropdown, enabled_button, entry, folding_card, paragraph, primary_button, row, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -19,7 +19,8 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
     card(ui, theme, TEXTS.text("commutation.offset"), |ui| {
         let offset = encoder.commutation.offset(encoder.geometry());
         let values = offset.as_ref().ok();
-        let degrees = |id, degrees, decimals| theme.words(&TEXTS.text(id).with_number("degrees", degrees, decimals));
+        let degrees =
+            |id, degrees, decimals| theme.format_text(&TEXTS.text(id).with_number("degrees", degrees, decimals));
         let angle = values.map(|offset| degrees("commutation.offset_value", offset.angle.to_degrees(), 4));
         ui.label(theme.value(angle.unwrap_or_else(|| "–".to_owned())));
         let resolution = values.and_then(|offset| offset.resolution_deg);
@@ -32,7 +33,7 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
         ui.add(egui::Label::new(theme.monospace(&parts)).truncate().selectable(true)).on_hover_text(parts);
         let is_confirmed = encoder.commutation.is_confirmed(encoder.geometry());
         let message = match &offset {
-            Err(why) => theme.label(theme.words(why)),
+            Err(why) => theme.label(theme.format_text(why)),
             Ok(_) if is_confirmed => RichText::new(say(theme, "commutation.confirmed")).color(theme.palette.good),
             Ok(_) => RichText::new(say(theme, "commutation.unconfirmed")).color(theme.palette.warn),
         };
@@ -48,7 +49,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
         paragraph(ui, theme.label(say(theme, "commutation.method_one_words")));
         entry(ui, theme, &say(theme, "commutation.storage"), |ui| {
             let ways = [(Storage::Record, "commutation.record"), (Storage::Number, "commutation.number")];
-            choice(
+            dropdown(
                 ui,
                 &say(theme, "commutation.storage"),
                 &mut form.storage,
@@ -63,7 +64,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
             let fields = encoder.staged.device().iter().map(|field| (Some(field.number), field.number.to_string()));
             let shown = form.field.or(place.map(|place| place.field));
             let mut chosen = shown;
-            choice(ui, &say(theme, "commutation.field"), &mut chosen, fields);
+            dropdown(ui, &say(theme, "commutation.field"), &mut chosen, fields);
             if chosen != shown {
                 form.field = chosen;
             }
@@ -94,7 +95,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
             }
         });
         if let (Err(why), true) = (&bytes, encoder.commutation.offset(encoder.geometry()).is_ok()) {
-            paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));
+            paragraph(ui, RichText::new(theme.format_text(why)).color(theme.palette.bad));
         }
     });
 }
@@ -115,7 +116,7 @@ fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
             (false, true) => theme.palette.staged,
             (false, false) => theme.palette.text,
         };
-        ui.label(RichText::new(theme.words(&text)).color(colour));
+        ui.label(RichText::new(theme.format_text(&text)).color(colour));
         if found.edited {
             ui.label(RichText::new(say(theme, "commutation.found_edited")).color(theme.palette.staged).underline());
         }
@@ -130,7 +131,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
                 .text("commutation.step_value")
                 .with_number("mechanical", inputs.motor.mechanical_step_deg(), 4)
                 .with_number("electrical", inputs.motor.electrical_step_deg(), 2);
-            row(ui, theme, &say(theme, "commutation.step"), theme.monospace(theme.words(&text)));
+            row(ui, theme, &say(theme, "commutation.step"), theme.monospace(theme.format_text(&text)));
         }
         number_ui(ui, theme, "commutation.period", &mut form.period, "0");
         let setting = encoder.commutation.setting(encoder.geometry());
@@ -139,7 +140,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
                 let value = format!("{} = {:X}h", setting.value, setting.value);
                 row(ui, theme, &say(theme, "commutation.position"), theme.monospace(value));
                 let left = TEXTS.text("commutation.remaining_value").with_number("degrees", setting.remaining_deg, 2);
-                row(ui, theme, &say(theme, "commutation.remaining"), theme.monospace(theme.words(&left)));
+                row(ui, theme, &say(theme, "commutation.remaining"), theme.monospace(theme.format_text(&left)));
                 if setting.verdict == Verdict::Warn {
                     verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.weak"));
                 }
@@ -162,7 +163,7 @@ pub(super) fn report_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         .commutation
         .report(&encoder.session.name(), encoder.geometry())
         .iter()
-        .map(|line| theme.words(line))
+        .map(|line| theme.format_text(line))
         .collect();
     folding_card(ui, theme, TEXTS.text("commutation.report"), |ui| {
         for line in &lines {

@@ -119,7 +119,7 @@ mod tests {
         let scale = Scale::degrees(8192.0, 1000).unwrap();
         let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
-        let says = |text: Text| text.words(Language::English);
+        let says = |text: Text| text.to_string_in(Language::English);
         assert_eq!(
             says(layout(&table)),
             "Pulses read: 3. The columns are separated by semicolons, and the first line contains their names."
@@ -131,7 +131,7 @@ mod tests {
         let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° lower), stop 10.000° → step 1228 \
                        (0.0195° higher)";
         assert_eq!(says(rounding_text(&table.rows[0], &scale)), rounded);
-        let german = rounding_text(&table.rows[0], &scale).words(Language::German);
+        let german = rounding_text(&table.rows[0], &scale).to_string_in(Language::German);
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
     }
 
@@ -141,7 +141,7 @@ mod tests {
         let scale = Scale::default();
         let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
         let table = options.read("name;start;stop\nglue;10,05;20\n");
-        let says = rounding_text(&table.rows[0], &scale).words(Language::English);
+        let says = rounding_text(&table.rows[0], &scale).to_string_in(Language::English);
         assert!(says.contains("start 10.05 → step 10 (0.05 lower)"), "{says}");
     }
 
@@ -149,7 +149,7 @@ mod tests {
     fn each_problem_is_one_sentence() {
         let options = TableOptions { scale: Scale::default(), range: 1000, program: ProgramNumber::new(1).unwrap() };
         let table = options.read("program;cam;start;stop\n9;0;1;2\n1;8;1;2\n1;0;1000;2\n1;1;1\n1;2;1;2\n1;2;3;4\n");
-        let told: Vec<String> = table.problems.iter().map(|own| problem(own).words(Language::English)).collect();
+        let told: Vec<String> = table.problems.iter().map(|own| problem(own).to_string_in(Language::English)).collect();
         let expected = [
             "Line 2, column 1: Cam program \"9\" does not exist. Choose 1 to 8.",
             "Line 3, column 2: Cam \"8\" does not exist. Choose 0 to 7.",

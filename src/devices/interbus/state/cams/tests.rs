@@ -67,7 +67,7 @@ fn simulated_outputs_are_compared_with_the_encoders() {
     assert!(!lamps[3].differs() && lamps[5].differs() && lamps[5].effective_state() == Some(true));
     assert_eq!(chart.lamps(None, None)[0], OutputState { simulated: None, own: None });
     assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
-    let says = |lamp| words::lamp(lamp).words(Language::English);
+    let says = |lamp| words::lamp(lamp).to_string_in(Language::English);
     assert_eq!(says(lamps[5]), "Encoder: on, simulation: off");
     assert_eq!(says(chart.lamps(None, None)[0]), "unknown");
 }
@@ -213,7 +213,7 @@ fn a_lane_describes_its_cam_and_its_problems() {
     let chart = Chart::of(&own, program()).unwrap();
     let lane = chart.lane(cam(3)).unwrap();
     let degrees = Scale::degrees(1000.0, 0).unwrap();
-    let says = |text: crate::app::Text| text.words(Language::English);
+    let says = |text: crate::app::Text| text.to_string_in(Language::English);
     assert_eq!(says(words::cam(lane)), "Cam 3 · glue");
     assert_eq!(says(words::edge(lane, Edge::Stop)), "Cam 3: stop");
     let expected = "On from 900 (324.0°) to 20 (7.2°) across the end of the range, 121 steps";

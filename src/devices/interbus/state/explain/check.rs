@@ -8,7 +8,7 @@ use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
 
 pub fn check(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
+    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {

@@ -1,7 +1,7 @@
 //! Names of items as part of a sentence.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::interbus::profile::{Direction, Edge};
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ReadOutNumber, StartupMode};
 use crate::devices::interbus::state::TEXTS;
@@ -21,7 +21,7 @@ pub fn parameter(parameter: Parameter) -> Text {
 pub(super) fn number(parameter: Parameter, number: u32) -> Text {
     match Direction::from_code(number) {
         Some(own) if parameter == Parameter::Direction => direction(own),
-        _ => plain(number),
+        _ => literal_text(number),
     }
 }
 
@@ -35,7 +35,7 @@ pub fn direction(direction: Direction) -> Text {
 pub(super) fn cams(mask: u8) -> Text {
     let on: Vec<String> =
         CamNumber::all().map(CamNumber::get).filter(|cam| mask >> cam & 1 != 0).map(|cam| cam.to_string()).collect();
-    if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(on.join(", ")) }
+    if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { literal_text(on.join(", ")) }
 }
 
 pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {

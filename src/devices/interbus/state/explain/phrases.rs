@@ -1,6 +1,6 @@
 //! Tests of the texts for errors of the lower layers, in both languages.
 
-use crate::app::explain::{assert_in_both_languages, document};
+use crate::app::explain::{assert_in_both_languages, profile_error_text};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::interbus::procedures::Exception;
 use crate::devices::interbus::profile::InterbusProfile;
@@ -34,7 +34,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
-        assert_in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&profile_error_text(&error, KINDS), &error);
     }
 }
 

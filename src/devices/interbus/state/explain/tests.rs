@@ -30,12 +30,12 @@ fn program(number: u8) -> StartupMode {
 #[track_caller]
 fn assert_explains(text: &Text, facts: &[&str]) {
     for language in [English, German] {
-        let words = text.words(language);
+        let words = text.to_string_in(language);
         assert!(facts.iter().all(|fact| words.contains(fact)), "{facts:?}: {words}");
         assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
         assert!(!words.contains('{') && words.ends_with('.'), "{words}");
     }
-    assert_ne!(text.words(English), text.words(German));
+    assert_ne!(text.to_string_in(English), text.to_string_in(German));
 }
 
 #[test]
@@ -102,7 +102,10 @@ fn gateway_exceptions_are_explained_with_their_code() {
         let exception = Exception::new(code);
         let text = encoder(&Error::Exception { requested, exception });
         assert_explains(&text, &[&format!("0x{code:02X}"), "2048", "0x40000000"]);
-        assert!(text.words(English).contains(exception.name()) && !text.words(German).contains(exception.name()));
+        assert!(
+            text.to_string_in(English).contains(exception.name())
+                && !text.to_string_in(German).contains(exception.name())
+        );
     }
 }
 
@@ -146,7 +149,7 @@ fn plan_refusals_name_both_limits() {
         let text = plan(&error);
         assert_explains(&text, &facts);
         assert!(option.is_none_or(|option| text.terminal_text().contains(option)), "{}", text.terminal_text());
-        assert!(option.is_none_or(|option| !text.words(English).contains(option)), "no options in the window");
+        assert!(option.is_none_or(|option| !text.to_string_in(English).contains(option)), "no options in the window");
     }
     let worn = job(&JobError::NotStarted(NotStarted::Worn { seen: 448, cost: 2, limit: 449 }));
     assert_explains(&worn[0], &["448", "2"]);
@@ -162,7 +165,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
         let unfinished = Some(Op::Program(ProgramChange { program, cams: Vec::new(), mask: None, shift }));
         let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, end_state: left };
         let texts = write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind);
-        assert!(texts.iter().all(|text| text.words(English) != text.words(German)), "{texts:?}");
+        assert!(texts.iter().all(|text| text.to_string_in(English) != text.to_string_in(German)), "{texts:?}");
         texts.iter().map(Text::terminal_text).collect()
     };
     for (kind, what) in [
@@ -196,7 +199,10 @@ fn completing_a_write_is_advised_after_leading_back() {
             unknown.terminal_text(),
             format!("First return the encoder to operation. {}", found.terminal_text())
         );
-        assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
+        assert!(
+            unknown.to_string_in(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "),
+            "{unknown:?}"
+        );
         assert_eq!(write::weight(&unknown), write::weight(&found));
     }
 }
@@ -215,10 +221,10 @@ fn operations_are_described_one_by_one() {
     let words = |op: &Op| {
         let own = super::op(op);
         let one = |change: &crate::app::review::ChangeTexts| {
-            let part = change.part.as_ref().map(|part| part.words(English) + ": ").unwrap_or_default();
-            format!("{part}{} → {}", change.old.words(English), change.new.words(English))
+            let part = change.part.as_ref().map(|part| part.to_string_in(English) + ": ").unwrap_or_default();
+            format!("{part}{} → {}", change.old.to_string_in(English), change.new.to_string_in(English))
         };
-        (own.item.words(English), own.changes.iter().map(one).collect::<Vec<_>>())
+        (own.item.to_string_in(English), own.changes.iter().map(one).collect::<Vec<_>>())
     };
     let turned = ParameterChange { parameter: Parameter::Direction, from: 3, to: 4 };
     let expected = vec!["direction: clockwise → counterclockwise".to_owned()];

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::encoder;
 use super::item::{cams, edge, number, parameter};
-use crate::app::explain::{self, plain};
+use crate::app::explain::{self, literal_text};
 use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
@@ -46,9 +46,9 @@ pub fn op(op: &Op) -> OperationTexts {
             changes: program(change),
         },
         Op::FirePreset { value } => {
-            OperationTexts::one(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), plain(value))
+            OperationTexts::single(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), literal_text(value))
         }
-        Op::Default => OperationTexts::one(
+        Op::Default => OperationTexts::single(
             TEXTS.text("ib_op.default"),
             TEXTS.text("ib_op.as_set"),
             TEXTS.text("ib_op.as_delivered"),
@@ -61,18 +61,22 @@ fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
     // Both edges of a cam are on one line.
     let of_cam = |own: &[CamChange]| match own {
         [start @ CamChange { edge: Edge::Start, .. }, stop] => {
-            let edges = |start: Value, stop: Value| plain(format!("{}…{}", start.get(), stop.get()));
+            let edges = |start: Value, stop: Value| literal_text(format!("{}…{}", start.get(), stop.get()));
             let cam = TEXTS.text("ib_item.cam").with("cam", start.cam.get());
             vec![words(cam, edges(start.from, stop.from), edges(start.to, stop.to))]
         }
         own => {
-            let each = |own: &CamChange| words(edge(own.cam, own.edge), plain(own.from.get()), plain(own.to.get()));
+            let each = |own: &CamChange| {
+                words(edge(own.cam, own.edge), literal_text(own.from.get()), literal_text(own.to.get()))
+            };
             own.iter().map(each).collect()
         }
     };
     let of_cams = change.cams.chunk_by(|one, other| one.cam == other.cam).flat_map(of_cam);
     let mask = change.mask.map(|(old, new)| words(TEXTS.text("ib_item.mask"), cams(old), cams(new)));
-    let shift = change.shift.map(|(old, new)| words(TEXTS.text("ib_item.shift"), plain(old.get()), plain(new.get())));
+    let shift = change
+        .shift
+        .map(|(old, new)| words(TEXTS.text("ib_item.shift"), literal_text(old.get()), literal_text(new.get())));
     of_cams.chain(mask).chain(shift).collect()
 }
 
@@ -110,7 +114,7 @@ pub fn plan(error: &PlanError) -> Text {
             .with("high", error.high),
         PlanError::MountingLeft { item, value, low, high } => TEXTS
             .text("ib_plan.mounting_left")
-            .with_text("item", item.parameter().map_or_else(|| plain(item), parameter))
+            .with_text("item", item.parameter().map_or_else(|| literal_text(item), parameter))
             .with("value", value)
             .with("low", low)
             .with("high", high),
@@ -182,7 +186,7 @@ pub(super) fn interruption_text(
     texts.push(if untouched || unclear.is_empty() {
         state
     } else {
-        let items = TEXTS.text("ib_left.unclear").with_list("items", unclear.iter().map(plain));
+        let items = TEXTS.text("ib_left.unclear").with_list("items", unclear.iter().map(literal_text));
         TEXTS.text("ib_left.both").with_text("state", state).with_text("unclear", items)
     });
     let what_next = match kind {

@@ -172,7 +172,7 @@ fn edits_can_be_undone_and_redone() {
     assert_eq!(cam_edges(&staged, 3), (320, 350));
     staged.edit(&edge(1, 3, Edge::Start, 0)).unwrap();
     assert!(!staged.redo(), "another way was taken");
-    staged.revert();
+    staged.discard_all();
     assert!(!staged.is_dirty());
     assert!(staged.undo());
     assert_eq!(cam_edges(&staged, 3), (0, 350));

@@ -7,7 +7,9 @@ use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{button, entry, icon_button, icon_menu, name, paragraph, show_error_below, text_entry};
+use crate::ui::controls::{
+    entry, icon_button, icon_menu, labelled_button, name, paragraph, show_error_below, text_entry,
+};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -38,7 +40,7 @@ pub(super) fn bar_ui(
             let text = RichText::new(own.get().to_string()).color(ink);
             let response = ui.add(egui::Button::selectable(own == program, text).min_size([30.0, 28.0].into()));
             let word = TEXTS.text("ib_startup.program").with("program", own.get());
-            if name(response, true, &theme.words(&word)).clicked() {
+            if name(response, true, &theme.format_text(&word)).clicked() {
                 view.program = Some(own);
             }
         }
@@ -54,7 +56,7 @@ fn reread_button_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: Prog
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
     let button = icon_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_again"));
-    if button.on_hover_text(theme.words(&cost)).clicked() {
+    if button.on_hover_text(theme.format_text(&cost)).clicked() {
         actions.push(Action::device(encoder.session.id, Interbus::ReadPrograms(vec![program])));
     }
 }
@@ -76,20 +78,20 @@ fn program_menu_ui(
             for to in ProgramNumber::all().filter(|to| *to != program) {
                 let word = to.get().to_string();
                 let text = TEXTS.text("ib_cams.copy_to").with("program", to.get());
-                if name(ui.button(&word), true, &theme.words(&text)).clicked() {
+                if name(ui.button(&word), true, &theme.format_text(&text)).clicked() {
                     put(Edit::Copy { from: program, to });
                 }
             }
         });
         ui.add_space(theme.space.inside);
         ui.label(theme.heading(say(theme, "ib_cams.move")));
-        if button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &say(theme, "ib_cams.mirror")).clicked() {
+        if labelled_button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &say(theme, "ib_cams.mirror")).clicked() {
             put(Edit::Mirror(program));
         }
         let word = say(theme, "ib_cams.by");
         entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.by, 80.0, &word, "-100");
-            if button(ui, icons::CHECK, &say(theme, "ib_cams.rotate")).clicked() {
+            if labelled_button(ui, icons::CHECK, &say(theme, "ib_cams.rotate")).clicked() {
                 match forms::offset(&view.by) {
                     Ok(by) => {
                         view.refused = None;
@@ -108,15 +110,15 @@ fn tables_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumb
     let id = encoder.session.id;
     icon_menu(ui, icons::TABLE, &say(theme, "ib_cams.tables"), |ui| {
         ui.set_max_width(300.0);
-        if button(ui, icons::FOLDER_OPEN, &say(theme, "ib_table.open")).clicked() {
+        if labelled_button(ui, icons::FOLDER_OPEN, &say(theme, "ib_table.open")).clicked() {
             actions.push(Action::device(id, Interbus::AskTable(program)));
             ui.close();
         }
-        if button(ui, icons::COPY, &say(theme, "ib_table.paste")).clicked() {
+        if labelled_button(ui, icons::COPY, &say(theme, "ib_table.paste")).clicked() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
             ui.close();
         }
-        if button(ui, icons::FLOPPY_DISK, &say(theme, "ib_table.save")).clicked() {
+        if labelled_button(ui, icons::FLOPPY_DISK, &say(theme, "ib_table.save")).clicked() {
             actions
                 .push(Action::device(id, Interbus::AskSaveTable { decimal_comma: theme.language == Language::German }));
             ui.close();

@@ -54,7 +54,7 @@ pub(super) fn card_ui(
     let mut event = None;
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
     card_with_trailing(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
-        let label = theme.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
+        let label = theme.format_text(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
         // Without polling, the last reading is old and must not be shown as the present one.
         let reading = encoder.record.last().filter(|_| encoder.session.is_polling());
         let sends = reading.filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
@@ -79,7 +79,7 @@ pub(super) fn card_ui(
         });
         if sends.is_some() {
             output_comparison_ui(ui, theme, &encoder.preview);
-        } else if reading.is_none() && encoder.session.line().is_some() {
+        } else if reading.is_none() && encoder.session.live_session().is_some() {
             paragraph(ui, theme.caption(say(theme, "ib_cams.not_live")));
         }
         paragraph(ui, theme.caption(say(theme, "ib_cams.chart_words")));
@@ -106,7 +106,7 @@ fn output_comparison_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
     let Some(last) = last else {
         if *same > 0 {
             let text = TEXTS.text("ib_cams.agree").with("words", same);
-            paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.good));
+            paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.good));
         }
         return;
     };
@@ -118,5 +118,5 @@ fn output_comparison_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
         .with("position", last.position)
         .with("own", bits(last.own))
         .with("expected", bits(last.expected));
-    paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
+    paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
 }

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::{table_words, words};
 use crate::devices::interbus::state::{Encoder, Import, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{button, card, paragraph, primary_button};
+use crate::ui::controls::{card, labelled_button, paragraph, primary_button};
 use crate::ui::{Theme, icons};
 
 const LIST: f32 = 200.0;
@@ -35,17 +35,17 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
             .with_text("origin", origin.clone())
             .with("rows", table.rows.len())
             .with("programs", programs);
-        paragraph(ui, theme.words(&text));
-        paragraph(ui, theme.caption(theme.words(&table_words::layout(table))));
+        paragraph(ui, theme.format_text(&text));
+        paragraph(ui, theme.caption(theme.format_text(&table_words::layout(table))));
         egui::ScrollArea::vertical().id_salt("table").max_height(LIST).show(ui, |ui| {
             for problem in &table.problems {
-                line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&table_words::problem(problem)));
+                line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.format_text(&table_words::problem(problem)));
             }
             for note in &table.notes {
-                line_ui(ui, icons::INFO, theme.palette.accent, theme.words(&table_words::note(note)));
+                line_ui(ui, icons::INFO, theme.palette.accent, theme.format_text(&table_words::note(note)));
             }
             for row in table.rounded() {
-                let words = theme.words(&table_words::rounding_text(row, &encoder.scale));
+                let words = theme.format_text(&table_words::rounding_text(row, &encoder.scale));
                 line_ui(ui, icons::RULER, theme.palette.muted, words);
             }
             if table.problems.is_empty() && table.rounded().next().is_none() {
@@ -55,7 +55,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
         for filled in table.filled() {
             if encoder.staged.program(filled.program).is_none() && encoder.profile().is_none() {
                 let unread = crate::devices::interbus::state::EditError::NotRead(filled.program);
-                line_ui(ui, icons::WARNING, theme.palette.warn, theme.words(&words::refused(&unread)));
+                line_ui(ui, icons::WARNING, theme.palette.warn, theme.format_text(&words::refused(&unread)));
             }
         }
         // A table with problems is not added, since the cam of an omitted line would be switched off.
@@ -70,7 +70,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
             {
                 actions.push(Action::device(id, Interbus::TakeTable(true)));
             }
-            if button(ui, icons::X, &say(theme, "ib_table.leave")).clicked() {
+            if labelled_button(ui, icons::X, &say(theme, "ib_table.leave")).clicked() {
                 actions.push(Action::device(id, Interbus::TakeTable(false)));
             }
         });

@@ -7,7 +7,7 @@ use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{choice, committed_entry, entry, folding_card, paragraph, show_error_below};
+use crate::ui::controls::{committed_entry, dropdown, entry, folding_card, paragraph, show_error_below};
 
 /// Typed text that has not been applied yet.
 #[derive(Default)]
@@ -38,7 +38,7 @@ pub(super) fn card_ui(
                 (Unit::Degrees, "ib_scale.degrees"),
                 (Unit::Millimetres, "ib_scale.millimetres"),
             ];
-            if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(theme, id)))) {
+            if dropdown(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(theme, id)))) {
                 set(forms::default_scale(unit, scale.zero(), range));
             }
         });
@@ -51,7 +51,7 @@ pub(super) fn card_ui(
                 },
             );
             entry(ui, theme, &word, |ui| {
-                committed_entry(ui, &mut view.steps, &theme.plain(steps), NUMBER, &word, |text| {
+                committed_entry(ui, &mut view.steps, &theme.format_plain(steps), NUMBER, &word, |text| {
                     set(forms::scale(scale.unit(), text, scale.zero())?);
                     Ok(())
                 });

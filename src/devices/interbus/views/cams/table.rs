@@ -12,7 +12,7 @@ use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 use crate::devices::interbus::state::cams::{Chart, Lane, words};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, forms};
-use crate::ui::controls::{card, committed_entry, name, paragraph, problem};
+use crate::ui::controls::{card, committed_entry, name, paragraph, problem_ui};
 use crate::ui::{Theme, icons};
 
 /// Typed text that has not been applied yet.
@@ -60,7 +60,7 @@ pub(super) fn card_ui(
         for lane in &chart.lanes {
             for column in [Column::Name, Column::Start, Column::Stop] {
                 let draft = view.drafts.get(&(chart.program, lane.cam, column));
-                problem(ui, theme, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
+                problem_ui(ui, theme, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
             }
         }
         paragraph(ui, theme.caption(say(theme, "ib_cams.table_words")));
@@ -90,14 +90,14 @@ fn row_ui(
     let ink = if lane.edited { theme.palette.staged } else { theme.palette.text };
     let mut on = lane.on;
     let response = cell(ui, CAM, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));
-    if name(response, true, &theme.words(&words::bare(cam))).clicked() {
+    if name(response, true, &theme.format_text(&words::bare(cam))).clicked() {
         put(Edit::Switch { program, cam, on });
     }
     let word = TEXTS.text("ib_cams.name_of").with("cam", cam.get());
     let draft = view.drafts.entry((program, cam, Column::Name)).or_default();
     let shown = lane.name.as_deref().unwrap_or_default();
     cell(ui, NAME, |ui| {
-        committed_entry(ui, draft, shown, NAME - MARGIN, &theme.words(&word), |text| {
+        committed_entry(ui, draft, shown, NAME - MARGIN, &theme.format_text(&word), |text| {
             put(Edit::Name { program, cam, name: text.to_owned() });
             Ok(())
         })
@@ -106,7 +106,7 @@ fn row_ui(
         let draft = view.drafts.entry((program, cam, column)).or_default();
         let shown =
             chart.edge(cam, edge).map_or_else(String::new, |own| forms::typed(own, &encoder.scale, chart.range));
-        let word = theme.words(&words::edge(lane, edge));
+        let word = theme.format_text(&words::edge(lane, edge));
         cell(ui, NUMBER, |ui| {
             committed_entry(ui, draft, &shown, NUMBER - MARGIN, &word, |text| {
                 let to = forms::position(text, &encoder.scale, chart.range)?;
@@ -120,11 +120,11 @@ fn row_ui(
         });
     }
     for trouble in words::troubles(chart, lane) {
-        ui.label(RichText::new(icons::WARNING).color(theme.palette.warn)).on_hover_text(theme.words(&trouble));
+        ui.label(RichText::new(icons::WARNING).color(theme.palette.warn)).on_hover_text(theme.format_text(&trouble));
     }
     if wide && let Some(edges) = lane.edges {
         let text = words::stretch(edges, &encoder.scale, chart.range);
-        let ink = if lane.on { theme.label(theme.words(&text)) } else { theme.caption(theme.words(&text)) };
+        let ink = if lane.on { theme.label(theme.format_text(&text)) } else { theme.caption(theme.format_text(&text)) };
         ui.add(egui::Label::new(ink).truncate());
     }
 }

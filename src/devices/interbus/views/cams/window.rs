@@ -8,7 +8,7 @@ use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus,
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{WordLayout, word_layout};
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, folding_card, paragraph};
+use crate::ui::controls::{dropdown, entry, folding_card, paragraph};
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("ib_window.title"), |ui| {
@@ -18,14 +18,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         let mut wanted = own;
         entry(ui, theme, &word, |ui| {
             let shifts = (0..=25).filter_map(WindowShift::new).map(|own| (own, own.get().to_string()));
-            if choice(ui, &word, &mut wanted, shifts) {
+            if dropdown(ui, &word, &mut wanted, shifts) {
                 let edit = Box::new(Edit::Shift(wanted));
                 actions.push(Action::device(encoder.session.id, Interbus::Edit(edit)));
             }
             let before = encoder.shift();
             if let Some(before) = before.filter(|before| Some(*before) != known) {
                 let was = TEXTS.text("ib_set.was").with("value", before.get());
-                ui.label(egui::RichText::new(theme.words(&was)).color(theme.palette.staged));
+                ui.label(egui::RichText::new(theme.format_text(&was)).color(theme.palette.staged));
             }
         });
         let label = say(theme, "ib_window.label");

@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 use crate::devices::interbus::state::cams::{self, Chart, DragTarget, SnapSettings, VisibleRange, words};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::widgets::series;
+use crate::ui::widgets::series_colour;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CamChart<'a> {
@@ -54,7 +54,7 @@ pub(super) struct Drag {
 }
 
 pub(super) fn display_colour(theme: &Theme, cam: CamNumber) -> Color32 {
-    series(theme, usize::from(cam.get()))
+    series_colour(theme, usize::from(cam.get()))
 }
 
 impl CamChart<'_> {
@@ -171,9 +171,9 @@ impl CamChart<'_> {
         let at = self.chart.edge(cam, edge)?;
         let last = self.chart.last();
         response.widget_info(|| {
-            let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), theme.words(label));
+            let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), theme.format_text(label));
             info.role = Role::Slider;
-            info.current_text_value = Some(theme.words(&words::position(at, self.scale, self.chart.range)));
+            info.current_text_value = Some(theme.format_text(&words::position(at, self.scale, self.chart.range)));
             info
         });
         if !self.movable {
@@ -214,10 +214,10 @@ impl CamChart<'_> {
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-            ui.label(theme.words(&words::cam(lane)));
-            ui.label(theme.words(&words::lane(lane, self.scale, self.chart.range)));
+            ui.label(theme.format_text(&words::cam(lane)));
+            ui.label(theme.format_text(&words::lane(lane, self.scale, self.chart.range)));
             for trouble in words::troubles(self.chart, lane) {
-                ui.label(egui::RichText::new(theme.words(&trouble)).color(theme.palette.bad));
+                ui.label(egui::RichText::new(theme.format_text(&trouble)).color(theme.palette.bad));
             }
             if self.movable {
                 let hint = match hold {
@@ -239,7 +239,7 @@ impl CamChart<'_> {
             DragTarget::Whole(_) | DragTarget::New(_) => words::stretch(to, self.scale, range),
         };
         let font = FontId::proportional(theme.sizes.caption);
-        let galley = painter.layout_no_wrap(theme.words(&words), font, theme.palette.on_accent.into());
+        let galley = painter.layout_no_wrap(theme.format_text(&words), font, theme.palette.on_accent.into());
         let size = galley.size() + Vec2::new(theme.space.between, 4.0);
         let room = painter.clip_rect();
         let left = (near.x - size.x / 2.0).min(room.right() - size.x).max(room.left());

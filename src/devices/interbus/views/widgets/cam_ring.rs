@@ -238,7 +238,7 @@ impl Ring<'_> {
             let at = |radius| dial.at(tick.position, radius);
             painter
                 .line_segment([at(dial.radius * INNER), at(dial.radius + 3.0)], Stroke::new(1.0, theme.palette.line));
-            let words = theme.words(&words::tick(tick.value, tick.decimals, scale.unit()));
+            let words = theme.format_text(&words::tick(tick.value, tick.decimals, scale.unit()));
             let galley =
                 painter.layout_no_wrap(words, FontId::monospace(theme.sizes.caption), theme.palette.muted.into());
             // The label is outside the circle.

@@ -20,7 +20,7 @@ use crate::devices::interbus::protocol::{CamBit, CamOutput, Value, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::widgets::{BitCell, series};
+use crate::ui::widgets::{BitCell, series_colour};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WordLayout<'a> {
@@ -72,8 +72,8 @@ impl Kind {
         match self {
             Kind::Invalid => theme.palette.bad.into(),
             Kind::Zero => theme.palette.muted.into(),
-            Kind::Window => series(theme, 1),
-            Kind::Cams => series(theme, 2),
+            Kind::Window => series_colour(theme, 1),
+            Kind::Cams => series_colour(theme, 2),
         }
     }
 }
@@ -209,7 +209,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     for bit in (0..BITS).rev() {
         word_bit(ui, theme, layout, bit, cells.word(bit));
         let own = ui.interact(cells.word(bit), base.with(bit), Sense::hover());
-        own.on_hover_text(theme.words(&layout.says(bit)));
+        own.on_hover_text(theme.format_text(&layout.says(bit)));
     }
     for (group, words) in layout.groups().into_iter().zip(&values) {
         name(ui, theme, layout, &cells, group);
@@ -228,7 +228,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
 
 /// Describes a group, its location in the word and, if there is a word, its bits.
 fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
-    let name = theme.words(&layout.name(group));
+    let name = theme.format_text(&layout.name(group));
     let place = if group.high == group.low {
         TEXTS.text("cams.word_place").with("bit", group.high)
     } else {
@@ -236,7 +236,7 @@ fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
     };
     let bits: Option<String> =
         (group.low..=group.high).rev().map(|bit| layout.is_set(bit).map(|set| if set { '1' } else { '0' })).collect();
-    let place = theme.words(&place);
+    let place = theme.format_text(&place);
     match bits {
         Some(bits) => format!("{name}, {place}: {bits}"),
         None => format!("{name}, {place}"),
@@ -269,7 +269,7 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group
     }
     let Some(run) = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width())) else { return };
     let font = FontId::proportional(theme.sizes.caption);
-    let words = theme.words(&layout.name(group));
+    let words = theme.format_text(&layout.name(group));
     let galley = painter.layout_no_wrap(words, font, theme.palette.muted.into());
     if galley.size().x <= run.width() {
         let at = pos2(run.center().x - galley.size().x / 2.0, run.bottom() + 5.0);

@@ -3,12 +3,12 @@
 use super::finding_text as said;
 use crate::app::Text;
 use crate::app::check::CheckLine;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::ssi::procedures::check::{CheckFinding, CheckStep, SsiStepResult};
 use crate::devices::ssi::state::TEXTS;
 
 pub fn check(lines: &[SsiStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
+    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -24,7 +24,7 @@ fn step(step: CheckStep) -> Text {
 
 fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
-        CheckFinding::Adapter(name, firmware) => plain(format!("{name} {firmware}")),
+        CheckFinding::Adapter(name, firmware) => literal_text(format!("{name} {firmware}")),
         CheckFinding::Clock { asked, got } if asked == got => {
             TEXTS.text("ssi_check.clock").with_number("khz", f64::from(*got) / 1000.0, 0)
         }

@@ -152,8 +152,8 @@ mod tests {
         let obstacles = obstacles.map(ExportText::Obstacle);
         let values = values.map(|value| ExportText::Setting(2, value));
         for text in others.iter().chain(&codes).chain(&obstacles).chain(&values) {
-            assert_eq!(export(text).words(English), english(text));
-            let german = export(text).words(German);
+            assert_eq!(export(text).to_string_in(English), english(text));
+            let german = export(text).to_string_in(German);
             assert!(!german.contains('{') && !german.is_empty(), "{german}");
         }
     }

@@ -2,7 +2,7 @@
 
 use super::refused::settings_reason;
 use crate::app::Text;
-use crate::app::explain::{self as general, plain, syntax};
+use crate::app::explain::{self as general, literal_text, syntax_error_text};
 use crate::devices::ssi::protocol::{Family, FamilyError, FamilyProblem};
 use crate::devices::ssi::state::TEXTS;
 use crate::store::StoreError;
@@ -14,18 +14,19 @@ pub fn note(family: &Family, words: &str) -> Text {
 
 /// Returns the message about the file of a family that cannot be read or used.
 pub fn store(error: &StoreError) -> Text {
-    let StoreError::Refused(cause) = error else { return general::store(error) };
+    let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<FamilyError>() {
-        Some(FamilyError { file, line, column, problem: what }) => {
-            TEXTS.text("store.ssi_family").with("path", file).with_text("why", syntax(*line, *column, problem(what)))
-        }
-        None => general::store(error),
+        Some(FamilyError { file, line, column, problem: what }) => TEXTS
+            .text("store.ssi_family")
+            .with("path", file)
+            .with_text("why", syntax_error_text(*line, *column, problem(what))),
+        None => general::store_error_text(error),
     }
 }
 
 fn problem(problem: &FamilyProblem) -> Text {
     match problem {
-        FamilyProblem::Parser(words) => plain(words),
+        FamilyProblem::Parser(words) => literal_text(words),
         FamilyProblem::Key(key) => TEXTS.text("ssi_family.key").with("key", format!("{key:?}")),
         FamilyProblem::German(english) => TEXTS.text("ssi_family.german").with("english", format!("{english:?}")),
         FamilyProblem::Delivered(error) => TEXTS.text("ssi_family.delivered").with_text("why", settings_reason(error)),
@@ -43,12 +44,12 @@ mod tests {
         for family in Families::built_in().iter() {
             for words in family.notes.iter().chain([&family.source]) {
                 let text = note(family, words);
-                assert_eq!(text.words(Language::English), *words);
-                assert_ne!(text.words(Language::German), *words);
+                assert_eq!(text.to_string_in(Language::English), *words);
+                assert_ne!(text.to_string_in(Language::German), *words);
             }
         }
         // A user's family without German texts uses those of its file.
         let family = Families::built_in().iter().next().cloned().unwrap();
-        assert_eq!(note(&family, "Own words").words(Language::German), "Own words");
+        assert_eq!(note(&family, "Own words").to_string_in(Language::German), "Own words");
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{assert_in_both_languages, document, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
@@ -64,7 +64,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), SsiProfile::FORMATS).unwrap_err();
-        assert_in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&profile_error_text(&error, KINDS), &error);
     }
 }
 
@@ -85,7 +85,7 @@ fn nested_phrases_are_translated_to_german() {
         ),
     ];
     for (error, german) in cases {
-        let words = layout(&error).words(German);
+        let words = layout(&error).to_string_in(German);
         assert!(words.contains(german), "{words}");
     }
 }

@@ -1,7 +1,7 @@
 //! Messages about impossible layouts in both languages, for errors of a frame, a family or a format string.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::literal_text;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
     BurstError, ClockUse, CodeError, FormatError, FrameTextError, LayoutError, RangeError, RepeatedPart, SettingName,
@@ -58,7 +58,7 @@ pub fn format(error: &FormatError) -> Text {
         FormatError::Cannot(what) => {
             let what = match what {
                 UnsupportedProperty::GrayOver => TEXTS.text("ssi_lc.gray_over"),
-                UnsupportedProperty::GrayExcess | UnsupportedProperty::Bcd => plain(what),
+                UnsupportedProperty::GrayExcess | UnsupportedProperty::Bcd => literal_text(what),
                 UnsupportedProperty::Between => TEXTS.text("ssi_lc.between"),
                 UnsupportedProperty::Inverted => TEXTS.text("ssi_lc.inverted"),
             };
@@ -204,7 +204,7 @@ fn clock_use_text(taker: &ClockUse) -> Text {
     match taker {
         ClockUse::Position => TEXTS.text("ssi_reason.position"),
         ClockUse::Parity => TEXTS.text("ssi_reason.parity"),
-        ClockUse::Error(name) => plain(name),
+        ClockUse::Error(name) => literal_text(name),
     }
 }
 

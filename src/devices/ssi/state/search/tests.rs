@@ -154,7 +154,7 @@ fn what_is_no_recording_of_clock_and_data_says_why_and_what_to_do() {
         let why = of(&text, 27).unwrap_err();
         assert_eq!(why.id(), id, "{text}");
         for language in [crate::app::Language::English, crate::app::Language::German] {
-            let words = why.words(language);
+            let words = why.to_string_in(language);
             let sentences = words.matches(". ").count() + words.matches(": ").count();
             assert!(sentences > 0 && words.ends_with('.') && !words.contains('{'), "{words}");
         }

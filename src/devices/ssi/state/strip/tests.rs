@@ -126,12 +126,12 @@ proptest! {
         prop_assert_eq!(next, layout.clocks() + 1);
         prop_assert_eq!(strip.cells().len(), usize::from(layout.clocks()));
         for clock in 1..=layout.clocks() {
-            let words = cell(&strip, clock).words(Language::English);
+            let words = cell(&strip, clock).to_string_in(Language::English);
             prop_assert!(words.starts_with(&format!("Clock {clock}: ")) && !words.contains('{'), "{}", words);
         }
         for own in strip.strip_handles() {
             for text in [handle(&strip, *own), value(&strip, *own), hint(*own)] {
-                let words = text.words(Language::German);
+                let words = text.to_string_in(Language::German);
                 prop_assert!(words != text.id() && !words.contains('{'), "{}", words);
             }
         }
@@ -148,8 +148,11 @@ fn frames_are_divided_into_fields() {
     assert_eq!(tree.strip_handles()[5..], [Handle::FrameEnd]);
     assert_eq!(tree.position(), Some((5, 20)));
     // MT is 5 to 12, so that its fourth bit from below is on clock 9.
-    assert_eq!(cell(&tree, 9).words(Language::English), "Clock 9: bit MT3 of the turns (number of turn bits: 8)");
-    assert_eq!(short(&tree, &tree.fields()[2]).words(Language::German), "ST 8");
+    assert_eq!(
+        cell(&tree, 9).to_string_in(Language::English),
+        "Clock 9: bit MT3 of the turns (number of turn bits: 8)"
+    );
+    assert_eq!(short(&tree, &tree.fields()[2]).to_string_in(Language::German), "ST 8");
 
     let twice = Layout::new(FrameDescriptor {
         clocks: 20,
@@ -161,8 +164,8 @@ fn frames_are_divided_into_fields() {
     let fields =
         [(Kind::Steps, 1, 8), (Kind::Parity, 9, 9), (Kind::Gap, 10, 10), (Kind::Again, 11, 19), (Kind::After, 20, 20)];
     assert_eq!(kinds(&twice), fields);
-    assert_eq!(cell(&twice, 9).words(Language::German), "Takt 9: ungerade Parität über die Takte 1 bis 8");
-    assert_eq!(cell(&twice, 13).words(Language::English), "Clock 13: repeats the bit of clock 3");
+    assert_eq!(cell(&twice, 9).to_string_in(Language::German), "Takt 9: ungerade Parität über die Takte 1 bis 8");
+    assert_eq!(cell(&twice, 13).to_string_in(Language::English), "Clock 13: repeats the bit of clock 3");
 }
 
 /// AHS36 with 14 bits, its error bit on clock 15; then with 12.

@@ -24,7 +24,7 @@ fn micros(seconds: f64) -> f64 {
 }
 
 fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
-    diagram.spans().iter().map(|span| diagram.words(span).words(Language::English)).collect()
+    diagram.spans().iter().map(|span| diagram.words(span).to_string_in(Language::English)).collect()
 }
 
 /// Reference section 1: 33 bits at 400 kHz take 82.5 µs, tm is 15 to 25 µs.
@@ -76,15 +76,16 @@ fn a_long_pause_is_drawn_with_a_marked_break() {
     // The burst, the events after it up to 25 µs and two fifths of a burst; the same before the next burst.
     let pieces: Vec<_> = diagram.pieces().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
     assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
-    assert_eq!(skipped_operations(diagram.broken(0)).words(Language::German), "82,41 ms ausgelassen");
+    assert_eq!(skipped_operations(diagram.broken(0)).to_string_in(Language::German), "82,41 ms ausgelassen");
     assert_eq!(diagram.broken(1), 0.0);
 }
 
 #[test]
 fn a_point_in_time_is_described() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
-    let told =
-        |at: f64| diagram.texts_at(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
+    let told = |at: f64| {
+        diagram.texts_at(at * 1e-6).iter().map(|text| text.to_string_in(Language::English)).collect::<Vec<_>>()
+    };
     assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: bit MT11 of the turns (number of turn bits: 12)"]);
     assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs to 25 µs"]);
     assert_eq!(told(0.5), ["500 ns after the first edge"]);
@@ -105,7 +106,7 @@ fn times_have_four_significant_figures() {
         (2.0, "2 s"),
         (1234.5, "1234 s"),
     ] {
-        assert_eq!(time(seconds).words(Language::English), words);
+        assert_eq!(time(seconds).to_string_in(Language::English), words);
     }
 }
 
@@ -120,8 +121,8 @@ fn frequencies_are_said_and_read_in_their_unit() {
         (1.5e6, "1.5 MHz", "1,5 MHz"),
         (2e6, "2 MHz", "2 MHz"),
     ] {
-        assert_eq!(frequency(hertz).words(Language::English), english);
-        assert_eq!(frequency(hertz).words(Language::German), german);
+        assert_eq!(frequency(hertz).to_string_in(Language::English), english);
+        assert_eq!(frequency(hertz).to_string_in(Language::German), german);
     }
     for (text, hertz) in [
         ("400000", 400_000),

@@ -146,7 +146,7 @@ impl StripContext<'_> {
 
     /// Returns the accessible label of a cell with its bit.
     fn says(&self, clock: u8) -> String {
-        let words = self.theme.words(&strip::cell(self.shown, clock));
+        let words = self.theme.format_text(&strip::cell(self.shown, clock));
         match self.cell_state_at(clock) {
             Some(cell) => format!("{words} = {}", u8::from(cell.bit)),
             None => words,
@@ -197,8 +197,8 @@ impl StripContext<'_> {
             let (run, _) = names::widest_run(self.rows, field);
             let rect = tag.rect(self.rows, Rows::lane(run)).union(Rows::lane(run));
             let response = self.ui.interact(rect, self.base.with("field").with(tag.field), Sense::hover());
-            let name = self.theme.words(&strip::field(self.shown, field));
-            let place = self.theme.words(&strip::clocks(field));
+            let name = self.theme.format_text(&strip::field(self.shown, field));
+            let place = self.theme.format_text(&strip::clocks(field));
             response.widget_info(|| {
                 let mut info = WidgetInfo::labeled(Role::Group, true, format!("{name}, {place}"));
                 let bits = (field.first..=field.last).filter_map(|clock| self.cell_state_at(clock));

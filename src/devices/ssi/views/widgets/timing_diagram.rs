@@ -60,7 +60,7 @@ pub(crate) fn timing_diagram(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'
 fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let diagram = model.diagram;
     let caption = |text: &Text, colour: Color32| {
-        ui.painter().layout_no_wrap(theme.words(text), FontId::proportional(theme.sizes.caption), colour)
+        ui.painter().layout_no_wrap(theme.format_text(text), FontId::proportional(theme.sizes.caption), colour)
     };
     let (text, muted) = (Color32::from(theme.palette.text), Color32::from(theme.palette.muted));
     let lines = ["ssi.timing_clock", "ssi.timing_data"].map(|id| caption(&TEXTS.text(id), muted));
@@ -88,7 +88,7 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let count = |put: &[LabelPlacement]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
     let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
     let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
-    let values: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
+    let values: Vec<String> = diagram.spans().iter().map(|span| theme.format_text(&diagram.words(span))).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, model.label);
         info.current_text_value = Some(values.join(", "));
@@ -118,7 +118,7 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     if let Some(at) = under {
         response.on_hover_ui_at_pointer(|ui| {
             for (number, text) in diagram.texts_at(at).iter().enumerate() {
-                let words = theme.words(text);
+                let words = theme.format_text(text);
                 if number == 0 {
                     ui.label(theme.caption(words))
                 } else {
@@ -239,7 +239,7 @@ impl Picture<'_> {
         for field in diagram.strip().fields() {
             let (from, to) = diagram.field(field);
             let (from, to) = (self.x(from), self.x(to));
-            let words = [self.theme.words(&short(diagram.strip(), field)), bare(diagram.strip(), field)];
+            let words = [self.theme.format_text(&short(diagram.strip(), field)), bare(diagram.strip(), field)];
             let font = FontId::proportional(self.theme.sizes.caption);
             let ink = self.theme.palette.muted;
             let galley = |words: String| self.painter.layout_no_wrap(words, font.clone(), ink.into());

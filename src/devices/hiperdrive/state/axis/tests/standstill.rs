@@ -54,7 +54,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     let (mut axis, mut seen) = at_standstill();
     read(&mut seen, 10_020, 128, STANDS);
     axis.look(&seen);
-    let why = words::invalidated_step(axis.invalidated_step().unwrap()).words(Language::English);
+    let why = words::invalidated_step(axis.invalidated_step().unwrap()).to_string_in(Language::English);
     assert!(why.contains("changed while the axis was at rest"), "{why}");
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
 }
@@ -109,7 +109,7 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
     let (mut axis, mut seen) = again(2000 - 348);
     assert_eq!(axis.invalidated_step(), None, "it may have been moved");
     let told = |axis: &Axis, seen: &DriveFacts| {
-        words::unexplained_change_text(axis, seen).map(|text| text.words(Language::English))
+        words::unexplained_change_text(axis, seen).map(|text| text.to_string_in(Language::English))
     };
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
     // No reference was set or confirmed yet: nothing counts by it.

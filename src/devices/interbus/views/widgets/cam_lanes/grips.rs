@@ -85,11 +85,11 @@ impl LanePainter<'_> {
 
     fn describe(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
         response.widget_info(|| {
-            let label = self.theme.words(&words::cam(lane));
+            let label = self.theme.format_text(&words::cam(lane));
             let mut info = WidgetInfo::labeled(Role::Slider, self.ui.is_enabled(), label);
             info.value = lane.edges.map(|cam| f64::from(cam.start.get()));
             info.current_text_value =
-                Some(self.theme.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
+                Some(self.theme.format_text(&words::lane(lane, self.model.scale, self.model.chart.range)));
             info
         });
         response.gained_focus().then_some(CamEvent::Selected(lane.cam))

@@ -36,7 +36,7 @@ impl LanePainter<'_> {
         let sense = if can { Sense::click() } else { Sense::hover() };
         let response = ui.interact(square, self.base.with("switch").with(lane.cam), sense);
         let label = TEXTS.text("cams.works_of").with_text("cam", words::bare(lane.cam));
-        let label = self.theme.words(&label);
+        let label = self.theme.format_text(&label);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can, lane.on, label.clone()));
         let painter = ui.painter();
         let palette = self.theme.palette;
@@ -99,13 +99,13 @@ impl LanePainter<'_> {
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-            ui.label(theme.words(&words::cam(lane)));
-            ui.label(theme.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
+            ui.label(theme.format_text(&words::cam(lane)));
+            ui.label(theme.format_text(&words::lane(lane, self.model.scale, self.model.chart.range)));
             if lane.edited {
                 ui.label(egui::RichText::new(say(theme, "cams.edited")).color(palette.staged));
             }
             for trouble in words::troubles(self.shown, lane) {
-                ui.label(egui::RichText::new(theme.words(&trouble)).color(palette.bad));
+                ui.label(egui::RichText::new(theme.format_text(&trouble)).color(palette.bad));
             }
         });
         clicked
@@ -115,8 +115,8 @@ impl LanePainter<'_> {
         let (theme, palette) = (self.theme, self.theme.palette);
         let rect = Rect::from_min_max(pos2(head.right() - LAMP, head.top()), head.max);
         let response = self.ui.interact(rect, self.base.with("lamp").with(lane.cam), Sense::hover());
-        let label = theme.words(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
-        let value = theme.words(&words::lamp(lamp));
+        let label = theme.format_text(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
+        let value = theme.format_text(&words::lamp(lamp));
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Image, true, label.clone());
             info.current_text_value = Some(value.clone());
@@ -138,7 +138,7 @@ impl LanePainter<'_> {
             }
         }
         if lamp.differs() {
-            let (icon, colour) = controls::verdict(theme, crate::analysis::quality::Verdict::Warn);
+            let (icon, colour) = controls::verdict_badge(theme, crate::analysis::quality::Verdict::Warn);
             let font = FontId::proportional(theme.sizes.body);
             painter.text(pos2(rect.left() + 7.0, middle.y), Align2::CENTER_CENTER, icon, font, colour.into());
         }

@@ -72,7 +72,7 @@ impl LanePainter<'_> {
         let is_above = ruler.bottom() <= self.place.plot.top() + 1.0;
         let (edge, align) = if is_above { (ruler.bottom(), -1.0) } else { (ruler.top(), 1.0) };
         painter.vline(x, egui::Rangef::point(edge).expand(2.0), Stroke::new(1.0, theme.palette.muted));
-        let words = theme.words(&words::tick(tick.value, tick.decimals, unit));
+        let words = theme.format_text(&words::tick(tick.value, tick.decimals, unit));
         let font = FontId::monospace(theme.sizes.caption);
         let middle = pos2(x, ruler.center().y + align);
         painter.text(middle, Align2::CENTER_CENTER, words, font, theme.palette.muted.into());

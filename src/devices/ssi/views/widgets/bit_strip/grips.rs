@@ -27,10 +27,10 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
         let turns = matches!(handle, Handle::Error(_) | Handle::Parity);
         let response = ui.interact(rect, id, if turns { Sense::click_and_drag() } else { Sense::drag() });
         response.widget_info(|| {
-            let label = view.theme.words(&strip::handle(model.strip, *handle));
+            let label = view.theme.format_text(&strip::handle(model.strip, *handle));
             let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), label);
             info.role = Role::Slider;
-            info.current_text_value = Some(view.theme.words(&strip::value(model.strip, *handle)));
+            info.current_text_value = Some(view.theme.format_text(&strip::value(model.strip, *handle)));
             info
         });
         if response.clicked() {
@@ -192,11 +192,11 @@ fn show_tooltip(view: &StripContext<'_>, response: Response, handle: Handle) {
     response.on_hover_ui(|ui| {
         ui.set_max_width(280.0);
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-        let name = view.theme.words(&strip::handle(view.model.strip, handle));
-        let value = view.theme.words(&strip::value(view.model.strip, handle));
+        let name = view.theme.format_text(&strip::handle(view.model.strip, handle));
+        let value = view.theme.format_text(&strip::value(view.model.strip, handle));
         ui.label(format!("{name}: {value}"));
-        ui.label(view.theme.caption(view.theme.words(&strip::hint(handle))));
+        ui.label(view.theme.caption(view.theme.format_text(&strip::hint(handle))));
         let reach = strip::reach_text(view.model.strip, handle, view.model.following);
-        ui.label(view.theme.caption(view.theme.words(&reach)));
+        ui.label(view.theme.caption(view.theme.format_text(&reach)));
     });
 }

@@ -124,7 +124,7 @@ pub(super) fn name_tags(
         let size = theme.sizes.caption;
         let (font, words) = match meaning_of(own) {
             Some(meaning) => {
-                (theme.bold_font(size), format!("{} {words}", controls::verdict(theme, verdict(meaning)).0))
+                (theme.bold_font(size), format!("{} {words}", controls::verdict_badge(theme, verdict(meaning)).0))
             }
             None => (FontId::proportional(size), words),
         };
@@ -136,7 +136,7 @@ pub(super) fn name_tags(
     let mut narrow = Vec::new();
     for (index, own) in strip.fields().iter().enumerate() {
         let (run, line) = widest_run(rows, own);
-        let words = [theme.words(&name(strip, own)), theme.words(&short(strip, own)), bare(strip, own)];
+        let words = [theme.format_text(&name(strip, own)), theme.format_text(&short(strip, own)), bare(strip, own)];
         let fits = words.into_iter().map(|words| galley(own, words)).find(|own| own.size().x <= run.width() + 2.0);
         match fits {
             Some(galley) => {

@@ -8,23 +8,23 @@ use super::rows::Rows;
 use super::{Drag, StripContext, tells};
 use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
-use crate::ui::widgets::{BitCell, focus_ring, series};
+use crate::ui::widgets::{BitCell, focus_ring, series_colour};
 use crate::ui::{Theme, controls};
 
 /// Returns the colour of a field. Zeros have a muted colour.
 pub(crate) fn display_colour(theme: &Theme, kind: Kind) -> Color32 {
     match kind {
         Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => theme.palette.muted.into(),
-        Kind::Turns => series(theme, 0),
-        Kind::Steps | Kind::Position => series(theme, 1),
-        Kind::Error(_) => series(theme, 5),
-        Kind::Parity => series(theme, 6),
-        Kind::Again => series(theme, 7),
+        Kind::Turns => series_colour(theme, 0),
+        Kind::Steps | Kind::Position => series_colour(theme, 1),
+        Kind::Error(_) => series_colour(theme, 5),
+        Kind::Parity => series_colour(theme, 6),
+        Kind::Again => series_colour(theme, 7),
     }
 }
 
 fn colour(theme: &Theme, meaning: Meaning) -> Color32 {
-    controls::verdict(theme, verdict(meaning)).1.into()
+    controls::verdict_badge(theme, verdict(meaning)).1.into()
 }
 
 impl StripContext<'_> {
@@ -143,7 +143,7 @@ fn draw_drag_ghost(view: &StripContext<'_>, handle: Handle) {
         Some(edge) => pos2(edge.center().x, edge.top() - 8.0),
         None => view.rows.number(clock),
     };
-    let words = theme.words(&strip::value(view.shown, handle));
+    let words = theme.format_text(&strip::value(view.shown, handle));
     let font = FontId::proportional(theme.sizes.caption);
     let galley = painter.layout_no_wrap(words, font, theme.palette.on_accent.into());
     let size = galley.size() + Vec2::new(theme.space.between, 2.0);

@@ -36,7 +36,8 @@ fn the_accessible_value_lists_the_times() {
             });
             let picture = harness.get_by_label("Burst");
             let value = picture.value().unwrap();
-            let words: Vec<String> = diagram.spans().iter().map(|span| theme().words(&diagram.words(span))).collect();
+            let words: Vec<String> =
+                diagram.spans().iter().map(|span| theme().format_text(&diagram.words(span))).collect();
             assert_eq!(value, words.join(", "));
             assert!(picture.rect().width() <= width, "{}", picture.rect());
         }
