@@ -46,12 +46,12 @@ impl MaskedBytes {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
 
-    pub fn hidden(count: usize) -> Self {
+    pub fn fully_masked(count: usize) -> Self {
         MaskedBytes(vec![None; count])
     }
 
     /// Creates bytes and masks those at the positions in `secret`.
-    pub fn masked(bytes: &[u8], secret: &[usize]) -> Self {
+    pub fn with_masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
     }
@@ -69,7 +69,7 @@ impl MaskedBytes {
         self.0.iter().copied().collect()
     }
 
-    pub fn filled(&self, stand_in: u8) -> Vec<u8> {
+    pub fn with_stand_in(&self, stand_in: u8) -> Vec<u8> {
         self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
     }
 
@@ -78,12 +78,12 @@ impl MaskedBytes {
         (MaskedBytes(head.to_vec()), MaskedBytes(tail.to_vec()))
     }
 
-    pub fn extend(&mut self, more: MaskedBytes) {
+    pub fn append(&mut self, more: MaskedBytes) {
         self.0.extend(more.0);
     }
 
     /// Returns whether all bytes that are not masked equal those in `bytes`. The lengths must be equal too.
-    pub fn matches(&self, bytes: &[u8]) -> bool {
+    pub fn matches_visible(&self, bytes: &[u8]) -> bool {
         self.0.len() == bytes.len() && self.0.iter().zip(bytes).all(|(own, byte)| own.is_none_or(|own| own == *byte))
     }
 }
@@ -207,7 +207,7 @@ pub struct TypedRow {
 }
 
 /// Interprets the beginning of `bytes` as every kind, in the order of [`TypedKind::ALL`].
-pub fn typed(bytes: &[u8]) -> Vec<TypedRow> {
+pub fn interpret(bytes: &[u8]) -> Vec<TypedRow> {
     let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
     TypedKind::ALL.into_iter().map(row).collect()
 }
@@ -269,12 +269,12 @@ mod tests {
 
     #[test]
     fn masked_bytes_match_any_value() {
-        let masked = MaskedBytes::masked(&[0x40, 0x4F, 0x02, 0x55, 0x66, 0x3E], &[3, 4, 5]);
+        let masked = MaskedBytes::with_masked(&[0x40, 0x4F, 0x02, 0x55, 0x66, 0x3E], &[3, 4, 5]);
         assert_eq!(masked.to_string(), "40 4F 02 ** ** **");
         assert_eq!("40 4f 02 ** ** **".parse(), Ok(masked.clone()));
-        assert!(masked.matches(&[0x40, 0x4F, 0x02, 1, 2, 3]));
-        assert!(!masked.matches(&[0x40, 0x4F, 0x03, 1, 2, 3]));
-        assert!(!masked.matches(&[0x40, 0x4F, 0x02, 1, 2]));
+        assert!(masked.matches_visible(&[0x40, 0x4F, 0x02, 1, 2, 3]));
+        assert!(!masked.matches_visible(&[0x40, 0x4F, 0x03, 1, 2, 3]));
+        assert!(!masked.matches_visible(&[0x40, 0x4F, 0x02, 1, 2]));
         assert_eq!(masked.to_bytes(), None);
         assert_eq!(MaskedBytes::clear(&[1, 2]).to_bytes(), Some(vec![1, 2]));
     }
@@ -329,7 +329,7 @@ mod tests {
             (&[], [("", ""); 9]),
         ];
         for (bytes, rows) in table {
-            for (row, (little, big)) in typed(bytes).into_iter().zip(rows) {
+            for (row, (little, big)) in interpret(bytes).into_iter().zip(rows) {
                 let shown = (row.little.unwrap_or_default(), row.big.unwrap_or_default());
                 assert_eq!(shown, (little.to_owned(), big.to_owned()), "{} as {:?}", hex(bytes), row.kind);
             }
@@ -338,7 +338,7 @@ mod tests {
 
     #[test]
     fn special_floats_are_named() {
-        let big = |bytes: [u8; 4]| typed(&bytes)[6].big.clone().unwrap();
+        let big = |bytes: [u8; 4]| interpret(&bytes)[6].big.clone().unwrap();
         assert_eq!(big([0x7F, 0x80, 0, 0]), "inf");
         assert_eq!(big([0x7F, 0xC0, 0, 0]), "NaN");
         assert_eq!(big([0x80, 0, 0, 0]), "-0");

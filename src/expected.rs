@@ -209,12 +209,12 @@ impl AllowedValues {
     }
 
     /// Creates a range of whole numbers.
-    pub const fn between(low: i128, high: i128) -> Self {
+    pub const fn whole_range(low: i128, high: i128) -> Self {
         AllowedValues::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
     }
 
     /// Creates a range of numbers without a unit.
-    pub fn number(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
+    pub fn number_range(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         AllowedValues::range(Quantity::Number, low, high)
     }
 }

@@ -1,33 +1,34 @@
 //! Parameters of a link and settings of a virtual device as keys with values. The `parameters!` macro creates a struct
 //! with one line per parameter. The parameters are then parsed, validated, printed and offered in a form. The allowed
-//! values are a type that implements [`Values`].
+//! values are a type that implements [`ParameterValues`].
 
 mod values;
 
 use crate::expected::AllowedValues;
 
 pub use values::{
-    ANY, Checked, Decimal, Milliseconds, Millivolts, OptionalValue, SWITCH, Values, Whole, Words, number,
+    ANY, CustomNotation, DecimalNumbers, Keywords, Milliseconds, Millivolts, OptionalValue, ParameterValues, SWITCH,
+    WholeNumbers, parse_whole,
 };
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refused {
+pub struct RejectedParameter {
     pub key: String,
     /// The refused value as typed.
     pub value: String,
     pub allowed: AllowedValues,
 }
 
-impl Refused {
+impl RejectedParameter {
     /// Creates the error for a refused value. `allowed` describes the accepted values.
     pub fn new(key: &str, value: impl ToString, allowed: AllowedValues) -> Self {
-        Refused { key: key.to_owned(), value: value.to_string(), allowed }
+        RejectedParameter { key: key.to_owned(), value: value.to_string(), allowed }
     }
 
     /// Replaces a secret value by asterisks.
     #[must_use]
     pub fn masked(self) -> Self {
-        Refused { value: "**".to_owned(), ..self }
+        RejectedParameter { value: "**".to_owned(), ..self }
     }
 }
 
@@ -44,12 +45,12 @@ pub struct Entry {
 }
 
 /// Returns the entries with these keys, in the order of `keys`.
-pub fn chosen(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
+pub fn select_entries(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
     keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
 }
 
 /// A group of parameters, declared with `parameters!`. Parameters without a value have their defaults.
-pub trait Parameters: Default {
+pub trait ParameterGroup: Default {
     /// The error returned when a value is refused.
     type Error;
 
@@ -62,7 +63,7 @@ pub trait Parameters: Default {
     ///
     /// # Errors
     /// Returns an error if the key does not accept the value.
-    fn set(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
+    fn set_value(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
 
     /// Returns the entries that a user can fill in, in order of declaration.
     fn entries() -> Vec<Entry>;
@@ -74,7 +75,7 @@ pub trait Parameters: Default {
     fn read(pairs: &[(String, String)]) -> Result<Self, Self::Error> {
         let mut own = Self::default();
         for (key, value) in pairs {
-            own.set(key, value)?;
+            own.set_value(key, value)?;
         }
         Ok(own)
     }
@@ -93,22 +94,22 @@ pub trait Parameters: Default {
 /// }
 /// ```
 ///
-/// Each line has a field, its type, its default, a key and [`Values`]. For a form, the label of the entry follows, with
+/// Each line has a field, its type, its default, a key and [`ParameterValues`]. For a form, the label of the entry follows, with
 /// an example after `like` if the default says little. A line without a key declares a field that is not a parameter.
 /// The value of a key preceded by `secret` is neither displayed nor stored.
 #[macro_export]
 macro_rules! parameters {
     (@hint $values:expr, $default:expr) => {
-        ($values).print(&$default)
+        ($values).format_example(&$default)
     };
     (@hint $values:expr, $default:expr, $example:literal) => {
         $example.to_owned()
     };
     (@take $key:ident, $value:ident, $values:expr) => {
-        ($values).take($key, $value)
+        ($values).parse_value($key, $value)
     };
     (@take $key:ident, $value:ident, $values:expr, secret) => {
-        ($values).take($key, $value).map_err($crate::parameter::Refused::masked)
+        ($values).parse_value($key, $value).map_err($crate::parameter::RejectedParameter::masked)
     };
     (@secret secret $key:literal) => {
         $key
@@ -140,16 +141,16 @@ macro_rules! parameters {
             $vis const KEYS: &'static [&'static str] = &[$($($key,)?)*];
         }
 
-        impl $crate::parameter::Parameters for $name {
+        impl $crate::parameter::ParameterGroup for $name {
             type Error = $error;
 
             const KEYS: &'static [&'static str] = $name::KEYS;
 
             const SECRETS: &'static [&'static str] = &[$($($($crate::parameters!(@secret $secret $key),)?)?)*];
 
-            fn set(&mut self, key: &str, value: &str) -> Result<bool, $error> {
+            fn set_value(&mut self, key: &str, value: &str) -> Result<bool, $error> {
                 #[allow(unused_imports, reason = "some have values of their own alone")]
-                use $crate::parameter::Values as _;
+                use $crate::parameter::ParameterValues as _;
                 match key {
                     $($($key => self.$field = $crate::parameters!(@take key, value, $values $(, $secret)?)?,)?)*
                     _ => return Ok(false),
@@ -159,7 +160,7 @@ macro_rules! parameters {
 
             fn entries() -> Vec<$crate::parameter::Entry> {
                 #[allow(unused_imports, reason = "some have no entries")]
-                use $crate::parameter::Values as _;
+                use $crate::parameter::ParameterValues as _;
                 vec![$($($($crate::parameter::Entry {
                     key: $key,
                     label: $label,

@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::{Add, Sub};
 use std::time::Duration;
 
-use crate::parameter::Words;
+use crate::parameter::Keywords;
 
 /// A point in time since the start of a clock. Moments of different clocks cannot be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,7 +23,7 @@ impl Moment {
     }
 
     /// Returns the time elapsed since `earlier`. Returns zero if `earlier` is later.
-    pub fn since(self, earlier: Moment) -> Duration {
+    pub fn duration_since(self, earlier: Moment) -> Duration {
         self.0.saturating_sub(earlier.0)
     }
 }
@@ -85,10 +85,11 @@ impl Parity {
     pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
 
     /// Parity names used in link URLs and JSON.
-    pub const WORDS: Words<Parity> = Words(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
+    pub const KEYWORDS: Keywords<Parity> =
+        Keywords(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
 
     /// Returns the name used in link URLs and JSON.
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             Parity::None => "none",
             Parity::Even => "even",
@@ -108,7 +109,7 @@ impl Parity {
 
 impl fmt::Display for Parity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.word())
+        f.write_str(self.keyword())
     }
 }
 
@@ -161,6 +162,6 @@ mod tests {
     fn moments_saturate_instead_of_wrapping() {
         let start = Moment::START;
         assert_eq!(start - Duration::from_secs(1), start);
-        assert_eq!(start.since(start + Duration::from_secs(1)), Duration::ZERO);
+        assert_eq!(start.duration_since(start + Duration::from_secs(1)), Duration::ZERO);
     }
 }

@@ -42,12 +42,12 @@ fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let mut link = SimLink::connect(bus(settings), clock.clone());
     link.set_format(station.format).unwrap();
     let types = EncoderTypes::built_in();
-    let mut session = Session::new(Box::new(link), clock.clone(), station, Store::at(folder.path()), types, true);
+    let mut session = Session::new(Box::new(link), clock.clone(), station, Store::at_root(folder.path()), types, true);
     session.run_inline(HiperfaceJob::Position(None)).unwrap();
     let cycle = |_| {
         let before = clock.now();
         session.run_inline(HiperfaceJob::Position(None)).unwrap();
-        clock.now().since(before).as_secs_f64() * 1e3
+        clock.now().duration_since(before).as_secs_f64() * 1e3
     };
     median((0..count).map(cycle).collect())
 }
@@ -63,7 +63,7 @@ fn naive(settings: u8, clock: &dyn Clock, owned: Arc<dyn Clock>, wait_ms: f64, c
         let mut reply = Vec::new();
         link.receive(clock.now(), &mut reply).unwrap();
         assert_eq!(reply.len(), 7);
-        clock.now().since(before).as_secs_f64() * 1e3
+        clock.now().duration_since(before).as_secs_f64() * 1e3
     };
     median((0..count).map(cycle).collect())
 }

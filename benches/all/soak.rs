@@ -91,7 +91,7 @@ pub(crate) fn run(parts: &[String]) {
 
 /// Returns a window in which all virtual devices are polled.
 fn connected(folder: &Path) -> Screen {
-    let environment = StudioEnvironment::production(Store::at(folder), program().studio);
+    let environment = StudioEnvironment::production(Store::at_root(folder), program().studio);
     let mut studio = Studio::new(environment, Arc::new(|| {}));
     studio.start_with(None, None);
     let mut screen: Screen = Harness::builder().with_size([1280.0, 800.0]).build_eframe(|cc| {

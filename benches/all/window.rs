@@ -134,7 +134,7 @@ fn stream() {
             install_fonts(&cc.egui_ctx);
             let ctx = cc.egui_ctx.clone();
             let mut studio = Studio::new(
-                StudioEnvironment::production(Store::at(&folder), program().studio),
+                StudioEnvironment::production(Store::at_root(&folder), program().studio),
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
             studio.handle_action(Action::ShowTab(Tab::named("Biss")));
@@ -224,8 +224,10 @@ fn plot() {
         }
     }
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
-    let mut studio =
-        Studio::new(StudioEnvironment::production(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
+    let mut studio = Studio::new(
+        StudioEnvironment::production(Store::at_root(&folder), program().studio),
+        std::sync::Arc::new(|| {}),
+    );
     studio.start_with(None, None);
     studio.handle_action(Action::tool(signals::SignalsAction::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {

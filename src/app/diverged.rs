@@ -49,7 +49,7 @@ pub enum ConflictResolution {
 impl Row {
     /// Returns the location of the entry in the profile.
     pub fn location(&self) -> String {
-        self.change.place()
+        self.change.location()
     }
 
     /// Returns the value in a version, or `None` if the version does not contain it.
@@ -70,7 +70,7 @@ impl ProfileConflict {
             true => Ok(found),
             false => Err(ReadError::Profile(found.body.wrong_kind_error(kind))),
         };
-        let is_known = |found: Box<ProfileDocument>| found.known().map(Box::new).map_err(ReadError::Profile);
+        let is_known = |found: Box<ProfileDocument>| found.check_schema().map(Box::new).map_err(ReadError::Profile);
         let document = document.and_then(is_of_kind).and_then(is_known);
         let base = saving.opened.as_ref().and_then(|opened| ProfileDocument::parse(&opened.text, formats).ok());
         let rows = match (&base, &document) {
@@ -123,7 +123,7 @@ impl ProfileConflict {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
         let changes: Vec<Change> = mine.map(|row| row.change.clone()).collect();
-        theirs.changed(&changes, kinds.formats).map_err(|error| match error {
+        theirs.with_changes(&changes, kinds.formats).map_err(|error| match error {
             Some(error) => read_error(&self.saving.path, &ReadError::Profile(error), kinds),
             None => Text::new("diverged.unfit"),
         })

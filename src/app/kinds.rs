@@ -58,7 +58,7 @@ impl KindRegistry {
         let query: Vec<String> =
             url.query.without(&secrets).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
         let question = if query.is_empty() { "" } else { "?" };
-        format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
+        format!("{}:{}{question}{}", url.scheme.keyword(), url.target, query.join("&"))
     }
 
     /// Returns the first tab of a device, or of a tool if there are no devices.

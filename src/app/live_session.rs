@@ -64,7 +64,7 @@ impl<D: Kind> LiveSession<D> {
 
     /// Returns the polling interval, or `None` if polling is off.
     pub fn polling_interval(&self) -> Option<Duration> {
-        self.worker.polling()
+        self.worker.polling_interval()
     }
 
     pub(crate) fn poll(&mut self, interval: Option<Duration>) {
@@ -73,7 +73,7 @@ impl<D: Kind> LiveSession<D> {
 
     /// Starts to read the given values in addition to the samples.
     pub(crate) fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
-        self.worker.watch(watched);
+        self.worker.watch_values(watched);
     }
 
     pub(crate) fn stop(&mut self) {

@@ -227,9 +227,10 @@ fn open<D: Kind>(
         .map_err(|error| Box::new(OpenFailure::Link(error)))?;
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
-    let trace: Ring<TraceEntry> = Ring::bounded(FRAMES, FRAME_BYTES, |entry| entry.bytes.len() + size_of_val(entry));
+    let trace: Ring<TraceEntry> =
+        Ring::with_byte_limit(FRAMES, FRAME_BYTES, |entry| entry.bytes.len() + size_of_val(entry));
     let (ring, last) = (trace.clone(), WakeOnDrop(wake.clone()));
-    session.watch(move |entry| {
+    session.add_watcher(move |entry| {
         let _ = &last;
         ring.push(entry.clone());
     });

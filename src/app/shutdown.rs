@@ -13,8 +13,8 @@ use super::session::{JobCompletion, Kind};
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Wire};
-use crate::worker::stream::End;
-use crate::worker::{Ending, JobId, Worker};
+use crate::worker::stream::StreamEnd;
+use crate::worker::{EndingWorker, JobId, Worker};
 
 /// Maximum waiting times when sessions or the window are closed, and when a link is opened whose connection is still in
 /// use.
@@ -62,13 +62,13 @@ pub(crate) trait ClosingWorker: Send + Sync {
     fn job_completions(&self) -> Vec<JobCompletion>;
 }
 
-impl<D: Kind> ClosingWorker for Ending<D> {
+impl<D: Kind> ClosingWorker for EndingWorker<D> {
     fn is_finished(&self) -> bool {
-        Ending::is_finished(self)
+        EndingWorker::is_finished(self)
     }
 
     fn wait_for_end(&self, patience: Duration) -> bool {
-        Ending::wait(self, patience)
+        EndingWorker::wait_for_end(self, patience)
     }
 
     fn job_completions(&self) -> Vec<JobCompletion> {
@@ -76,13 +76,13 @@ impl<D: Kind> ClosingWorker for Ending<D> {
     }
 }
 
-impl ClosingWorker for End {
+impl ClosingWorker for StreamEnd {
     fn is_finished(&self) -> bool {
         self.has_ended()
     }
 
     fn wait_for_end(&self, patience: Duration) -> bool {
-        End::wait(self, patience)
+        StreamEnd::wait_for_end(self, patience)
     }
 
     fn job_completions(&self) -> Vec<JobCompletion> {
@@ -107,7 +107,7 @@ impl Services {
     }
 
     /// Releases a stream that belongs to no session.
-    pub(crate) fn close_stream(&mut self, end: End, url: LinkUrl) {
+    pub(crate) fn close_stream(&mut self, end: StreamEnd, url: LinkUrl) {
         let info = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
         self.close_session_thread(Arc::new(end), info, None);
     }

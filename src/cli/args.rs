@@ -61,8 +61,8 @@ pub struct CommonArgs {
 
 impl CommonArgs {
     /// Returns the values of the options that the kinds of device add.
-    pub(super) fn given(&self) -> Result<TypeMap, Failure> {
-        self.commands.devices().iter().try_fold(TypeMap::default(), |given, device| device.given(&self.own, given))
+    pub(super) fn given_values(&self) -> Result<TypeMap, Failure> {
+        self.commands.devices().iter().try_fold(TypeMap::default(), |given, device| device.add_given(&self.own, given))
     }
 }
 

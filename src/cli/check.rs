@@ -3,7 +3,7 @@
 use serde_json::{Value as Json, json};
 
 use super::output::{Lines, Output};
-use super::{Done, Failure, Result};
+use super::{Failure, Result, Success};
 use crate::analysis::check::Verdict;
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict_text};
@@ -21,13 +21,13 @@ pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&
     let (mut list, mut results) = (Vec::new(), Vec::new());
     let mut text = Lines::default();
     for line in lines {
-        let (step, word) = (line.step.terminal_text(), word(line.verdict));
+        let (step, word) = (line.step.terminal_text(), verdict_keyword(line.verdict));
         let verdict = verdict_text(line.verdict).terminal_text();
         let found = findings(line);
         // A full stop is only at the end of the line, not between two findings.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
         let found = found.join("; ");
-        text.add(&step, format!("{verdict:9}  {found}").trim_end());
+        text.add_line(&step, format!("{verdict:9}  {found}").trim_end());
         results.push(json!({"name": step, "verdict": word, "text": found}));
         list.push(json!({"step": step, "verdict": verdict, "findings": findings(line)}));
     }
@@ -36,10 +36,14 @@ pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&
         object.insert("line_quality".to_owned(), line_quality(quality));
     }
     output.show(&json, &text.text())?;
-    if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()])) }
+    if good {
+        Ok(Success::Well)
+    } else {
+        Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()]))
+    }
 }
 
-fn word(verdict: Verdict) -> &'static str {
+fn verdict_keyword(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Skipped => "skipped",
         Verdict::Good => "good",

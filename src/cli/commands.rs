@@ -8,7 +8,7 @@ use clap::{Arg, ArgMatches, FromArgMatches, ValueEnum};
 
 use super::args::{Command, CommonArgs, DecodeArgs, Restore, SimulateArgs};
 use super::output::Output;
-use super::simulate::Simulated;
+use super::simulate::ServableDevice;
 use super::{Failure, Result};
 use crate::app::{Text, TypeMap};
 use crate::profile::Body;
@@ -86,15 +86,15 @@ pub trait DeviceCommands: ProfileCommands {
     fn name(&self) -> &'static str;
 
     /// Returns a one-sentence description for the help text.
-    fn about(&self) -> &'static str;
+    fn description(&self) -> &'static str;
 
     /// Returns additional sentences for the program's help text.
-    fn note(&self) -> Option<&'static str> {
+    fn help_note(&self) -> Option<&'static str> {
         None
     }
 
     /// Returns the help text of a command for this kind, with items, values and formats.
-    fn help(&self, _command: CommandId) -> Option<String> {
+    fn command_help(&self, _command: CommandId) -> Option<String> {
         None
     }
 
@@ -112,12 +112,12 @@ pub trait DeviceCommands: ProfileCommands {
     ///
     /// # Errors
     /// Returns an error if a value is invalid.
-    fn given(&self, _options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
+    fn add_given(&self, _options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
         Ok(given)
     }
 
     /// Returns the actions of `do` with their help. Several kinds may share an action.
-    fn actions(&self) -> Vec<PossibleValue> {
+    fn action_values(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
@@ -151,7 +151,7 @@ pub trait DeviceCommands: ProfileCommands {
     fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result>;
 
     /// Creates the virtual device to serve.
-    fn simulated(&self, output: &Output, simulate: &SimulateArgs) -> Result<Box<dyn Simulated>>;
+    fn create_simulated(&self, output: &Output, simulate: &SimulateArgs) -> Result<Box<dyn ServableDevice>>;
 }
 
 /// Commands that restore profiles and read a device for comparison.
@@ -161,10 +161,10 @@ pub trait ProfileCommands: Sync {
 
     /// Reads a device for comparison with a profile. Without a profile, everything is read. With one, at least its
     /// items are read.
-    fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
+    fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
     /// Returns a note that applies to every use of a profile.
-    fn remark(&self, _profile: &Body) -> Option<Text> {
+    fn profile_note(&self, _profile: &Body) -> Option<Text> {
         None
     }
 
@@ -189,10 +189,10 @@ pub trait ProtocolDecoder: Sync {
     fn name(&self) -> &'static str;
 
     /// Returns a one-sentence description for the help text.
-    fn about(&self) -> &'static str;
+    fn description(&self) -> &'static str;
 
     /// Returns the help text of `decode` for this protocol.
-    fn help(&self) -> &'static str;
+    fn help_text(&self) -> &'static str;
 
     /// Explains captured bytes.
     fn decode(&self, output: &Output, decode: &DecodeArgs) -> Result;
@@ -239,7 +239,7 @@ impl Commands {
     }
 
     /// Returns an explanation for an option that the chosen kind of device does not have.
-    pub(super) fn refusal(self, option: &str, chosen: &str) -> String {
+    pub(super) fn option_rejection(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
@@ -248,13 +248,13 @@ impl Commands {
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
-            given.has(option.get_id().as_str()) && own.iter().all(|other| other.get_id() != option.get_id())
+            given.is_given(option.get_id().as_str()) && own.iter().all(|other| other.get_id() != option.get_id())
         })?;
-        Some(self.refusal(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
+        Some(self.option_rejection(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
     }
 
     /// Returns the commands that are not part of the core.
-    pub(super) fn own(self) -> impl Iterator<Item = &'static dyn CliCommand> {
+    pub(super) fn kind_commands(self) -> impl Iterator<Item = &'static dyn CliCommand> {
         let of_devices = self.devices.iter().flat_map(|device| device.extra_commands());
         of_devices.chain(self.further).copied()
     }
@@ -279,7 +279,7 @@ impl Commands {
         };
         let foreign = self.devices.iter().flat_map(|device| device.options(command)).find(|option| {
             let is_own = self.devices.iter().any(|device| device.name() == chosen && has(&device, option.get_id()));
-            !is_own && given.has(option.get_id().as_str())
+            !is_own && given.is_given(option.get_id().as_str())
         })?;
         let owners: Vec<_> = self.devices.iter().filter(|device| has(device, foreign.get_id())).collect();
         let option = format!("--{}", foreign.get_long().unwrap_or_default());
@@ -303,7 +303,7 @@ impl KindOptions {
     }
 
     /// Returns whether an option was given. Defaults do not count.
-    pub(super) fn has(&self, id: &str) -> bool {
+    pub(super) fn is_given(&self, id: &str) -> bool {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
 
@@ -316,7 +316,7 @@ pub(crate) fn parse<O: FromArgMatches>(matches: &ArgMatches) -> Result<O> {
     O::from_arg_matches(matches).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
+pub(crate) fn arg_list<O: clap::Args>() -> Vec<Arg> {
     O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
 }
 

@@ -4,8 +4,8 @@ use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
 
 use super::args::ConsentArgs;
-use super::output::{Output, say};
-use super::runner::{JobFailure, Runs};
+use super::output::{Output, write_stderr};
+use super::runner::{CliDevice, JobFailure};
 use super::{Failure, Result};
 use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, PlannedWrite};
@@ -34,8 +34,8 @@ pub fn confirm_plan<P: PlannedWrite>(
     shown: &[&str],
 ) -> Result<ApprovedPlan<P>> {
     for text in shown.iter().filter(|_| !consent.yes) {
-        output.remark(text.trim_end());
-        if !ask("Write? [y/N] ") {
+        output.print_message(text.trim_end());
+        if !ask_yes_no("Write? [y/N] ") {
             return Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]));
         }
     }
@@ -47,7 +47,7 @@ pub fn confirm_plan<P: PlannedWrite>(
 /// happens before consent is requested.
 pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl PlannedWrite) -> Result<()>
 where
-    D: Runs,
+    D: CliDevice,
     D::Error: From<NotStarted>,
 {
     let cost = prepared.plan().write_cycles();
@@ -56,7 +56,7 @@ where
 }
 
 /// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal the file
-/// is replaced, as other tools do. [`ReplacementNotice::report`] then says so.
+/// is replaced, as other tools do. [`ReplacementNotice::report_replaced`] then says so.
 pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<ReplacementNotice> {
     // A pipe or a device file has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
@@ -67,7 +67,7 @@ pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<Replacemen
     if !can_prompt() {
         return Ok(ReplacementNotice { message: Some(format!("{name} already existed and was replaced.")) });
     }
-    if ask(&format!("{name} already exists. Replace it? [y/N] ")) {
+    if ask_yes_no(&format!("{name} already exists. Replace it? [y/N] ")) {
         return Ok(ReplacementNotice { message: None });
     }
     Err(Failure::Failed(vec![format!("Not confirmed; {name} was not changed.")]))
@@ -79,20 +79,20 @@ pub(super) struct ReplacementNotice {
 
 impl ReplacementNotice {
     /// Reports that a file was replaced, unless the user was asked before.
-    pub(super) fn report(&self, output: &Output) {
+    pub(super) fn report_replaced(&self, output: &Output) {
         if let Some(message) = &self.message {
-            output.remark(message);
+            output.print_message(message);
         }
     }
 }
 
-pub(crate) fn ask(question: &str) -> bool {
-    matches!(answer(question).as_str(), "y" | "Y" | "yes")
+pub(crate) fn ask_yes_no(question: &str) -> bool {
+    matches!(read_answer(question).as_str(), "y" | "Y" | "yes")
 }
 
 /// Asks the user at the terminal. The answer is empty if the terminal cannot be read.
-pub(crate) fn answer(question: &str) -> String {
-    say(question);
+pub(crate) fn read_answer(question: &str) -> String {
+    write_stderr(question);
     let mut answer = String::new();
     match stdin().read_line(&mut answer) {
         Ok(_) => answer.trim().to_owned(),

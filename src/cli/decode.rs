@@ -4,7 +4,7 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::output::Output;
-use super::{Done, Failure, Result};
+use super::{Failure, Result, Success};
 use crate::bits::parse_hex;
 
 pub(crate) struct FrameExplanation {
@@ -43,7 +43,7 @@ pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     }
     output.show(&json!({ "frames": list }), &text)?;
     if broken.is_empty() {
-        return Ok(Done::Well);
+        return Ok(Success::Well);
     }
     let more = broken.len().saturating_sub(3);
     if more > 1 {
@@ -54,7 +54,7 @@ pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
 }
 
 /// Parses hex bytes. An argument of three bytes or more is a frame. Shorter arguments are combined into one frame.
-pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
+pub(crate) fn parse_frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {
         return Err(Failure::Usage("no bytes to decode were given".to_owned()));

@@ -7,8 +7,8 @@ use serde_json::{Value as Json, json};
 
 use super::args::LogArgs;
 use super::output::{Output, count};
-use super::runner::failed;
-use super::{Done, Failure, Result};
+use super::runner::to_failure;
+use super::{Failure, Result, Success};
 use crate::app::explain;
 use crate::store::{Entry, EntryFilter, Logbook, Outcome, Store};
 
@@ -29,21 +29,21 @@ pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
     };
     let entries = entries(&filter, *limit)?;
     if entries.is_empty() && !output.is_json() {
-        output.print("no entries\n")?;
+        output.write_stdout("no entries\n")?;
     }
     for entry in &entries {
         output.show(&entry_json(entry), &entry_text(entry))?;
     }
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn entries(filter: &EntryFilter, limit: u32) -> std::result::Result<Vec<Entry>, Failure> {
-    let path = Store::for_user().map_err(|error| failed(&explain::store_error_text(&error)))?.logbook_path();
+    let path = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
         return Ok(Vec::new());
     }
     let entries = Logbook::open(&path).and_then(|logbook| logbook.entries(filter, limit));
-    entries.map_err(|error| failed(&explain::logbook_unreadable(&error)))
+    entries.map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
 }
 
 fn entry_json(entry: &Entry) -> Json {
@@ -64,12 +64,12 @@ fn entry_json(entry: &Entry) -> Json {
         "type": entry.device.device_type,
         "serial_number": entry.device.serial_number,
         "virtual": entry.device.is_virtual,
-        "what": entry.kind.word(),
+        "what": entry.kind.keyword(),
         "text": entry.description,
         "items": items,
-        "result": outcome.map(Outcome::word),
+        "result": outcome.map(Outcome::keyword),
         "failure": failure,
-        "write_cycles": entry.cycles(),
+        "write_cycles": entry.write_cycles(),
         "user": entry.origin.user,
         "bench": entry.origin.bench,
         "version": entry.origin.version,
@@ -86,15 +86,15 @@ fn entry_text(entry: &Entry) -> String {
         device.kind,
         device.device_type,
         device.serial_number,
-        entry.kind.word()
+        entry.kind.keyword()
     );
     if entry.planned_cycles > 0 || entry.conclusion.is_some() {
         let result = match entry.conclusion.as_ref().map(|end| &end.outcome) {
             Some(Outcome::Failed(why)) => format!("failed: {why}"),
-            Some(outcome) => outcome.word().to_owned(),
+            Some(outcome) => outcome.keyword().to_owned(),
             None => "without a result".to_owned(),
         };
-        let cycles = count(usize::try_from(entry.cycles()).unwrap_or(usize::MAX), "write cycle");
+        let cycles = count(usize::try_from(entry.write_cycles()).unwrap_or(usize::MAX), "write cycle");
         text.push_str(&format!(", {result}, {cycles}"));
     }
     text.push('\n');

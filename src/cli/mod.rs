@@ -29,11 +29,11 @@ pub use args::{
 pub use commands::{CliCommand, CommandId, Commands, DeviceCommands, KindOptions, ProfileCommands, ProtocolDecoder};
 pub use consent::{check_wear, confirm_plan, require_consent};
 pub use output::{Lines, Output};
-pub use positions::{readings, try_readings};
+pub use positions::{print_readings, try_readings};
 pub use profiles::{UnrestoredItems, profile_to_restore, restore_options, save_profile, write_restore};
-pub use runner::{JobFailure, Runner, Runs, failed, unexpected_output};
-pub use simulate::{Simulated, settings};
-pub use slow_reply_notice::Pace;
+pub use runner::{CliDevice, JobFailure, Runner, to_failure, unexpected_output};
+pub use simulate::{ServableDevice, settings};
+pub use slow_reply_notice::ReplyTiming;
 
 use crate::app::TypeMap;
 use crate::link::LinkUrl;
@@ -41,7 +41,7 @@ use crate::profile::ProfileFormats;
 
 /// Ways in which a command can succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Done {
+pub enum Success {
     /// The command found no errors and no differences. The exit status is 0.
     Well,
     /// `diff` or `verify` has found differences. The exit status is 3.
@@ -58,7 +58,7 @@ pub enum Failure {
     NobodyReads,
 }
 
-pub type Result<T = Done> = std::result::Result<T, Failure>;
+pub type Result<T = Success> = std::result::Result<T, Failure>;
 
 /// Action that the program arguments request.
 pub enum Invocation {
@@ -86,33 +86,35 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: ProfileFormats, c
     let Arguments { common, profile, command } = arguments;
     match command {
         Some(_) if profile.is_some() => {
-            Invocation::Command(end(Err(usage_error("--profile is for the window, without a command"))))
+            Invocation::Command(exit_code(Err(usage_error("--profile is for the window, without a command"))))
         }
         Some(command) => {
             output::log_to_stderr();
-            Invocation::Command(end(call(&common, command, &Output::new(common.json, formats, commands))))
+            Invocation::Command(exit_code(run_command(&common, command, &Output::new(common.json, formats, commands))))
         }
-        None => window(common, profile),
+        None => open_window(common, profile),
     }
 }
 
 /// Prints the reason why the window cannot open, and returns the exit status.
 pub fn report_window_error(why: &str) -> u8 {
-    end(Err(Failure::Failed(vec![why.to_owned()])))
+    exit_code(Err(Failure::Failed(vec![why.to_owned()])))
 }
 
-fn window(common: CommonArgs, profile: Option<PathBuf>) -> Invocation {
+fn open_window(common: CommonArgs, profile: Option<PathBuf>) -> Invocation {
     if common.only_master {
-        return Invocation::Command(end(Err(usage_error("--only-master needs a command; the window asks instead"))));
+        return Invocation::Command(exit_code(Err(usage_error(
+            "--only-master needs a command; the window asks instead",
+        ))));
     }
     if common.json || common.trace.is_some() {
-        return Invocation::Command(end(Err(usage_error(
+        return Invocation::Command(exit_code(Err(usage_error(
             "--json and --trace need a command; encoder-studio help lists them",
         ))));
     }
-    match common.given() {
+    match common.given_values() {
         Ok(given) => Invocation::Window(Window { link: common.link, profile, given }),
-        Err(failure) => Invocation::Command(end(Err(failure))),
+        Err(failure) => Invocation::Command(exit_code(Err(failure))),
     }
 }
 
@@ -120,24 +122,24 @@ fn usage_error(message: &str) -> Failure {
     Failure::Usage(message.to_owned())
 }
 
-fn end(result: Result) -> u8 {
+fn exit_code(result: Result) -> u8 {
     match result {
-        Ok(Done::Well) | Err(Failure::NobodyReads) => 0,
-        Ok(Done::ValueDifference) => 3,
+        Ok(Success::Well) | Err(Failure::NobodyReads) => 0,
+        Ok(Success::ValueDifference) => 3,
         Err(Failure::Failed(lines)) => {
             for (at, line) in lines.iter().enumerate() {
-                output::say(&format!("{}{line}\n", if at == 0 { "error: " } else { "" }));
+                output::write_stderr(&format!("{}{line}\n", if at == 0 { "error: " } else { "" }));
             }
             1
         }
         Err(Failure::Usage(message)) => {
-            output::say(&format!("error: {message}\n"));
+            output::write_stderr(&format!("error: {message}\n"));
             2
         }
     }
 }
 
-fn call(common: &CommonArgs, called: ParsedCommand, output: &Output) -> Result {
+fn run_command(common: &CommonArgs, called: ParsedCommand, output: &Output) -> Result {
     match called {
         ParsedCommand::Shared(command) => dispatch(common, &command, output),
         ParsedCommand::Own(command, matches) => command.run(common, output, &matches),
@@ -149,7 +151,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         Command::Ports => return ports::ports(output),
         Command::Log(log) => return log::log(output, log),
         Command::Diff(diff) => return profiles::diff(common, output, diff),
-        Command::Verify(verify) => return profiles::verify(common, output, &verify.file),
+        Command::Verify(verify) => return profiles::verify_profile(common, output, &verify.file),
         Command::Restore(restore) => return profiles::restore(common, output, restore),
         Command::Find(find) => (CommandId::Find, &find.device, &find.own),
         Command::Identify(identify) => (CommandId::Identify, &identify.device, &identify.own),
@@ -170,12 +172,12 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         output.commands().device(chosen)?.run(common, output, command).unwrap_or_else(lacking)
     };
     match (command, output.commands().protocol(chosen)) {
-        (Command::Simulate(simulate), _) => simulate::simulate(output, simulate),
+        (Command::Simulate(simulate), _) => simulate::run_simulation(output, simulate),
         (Command::Decode(decode), Some(protocol)) => protocol.decode(output, decode),
         (Command::Save(save), _) => {
             let replaces = consent::confirm_replacement(&save.file, save.force)?;
             let done = run()?;
-            replaces.report(output);
+            replaces.report_replaced(output);
             Ok(done)
         }
         _ => run(),

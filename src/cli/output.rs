@@ -18,7 +18,7 @@ pub struct Output {
 pub struct Lines(Vec<(String, String)>);
 
 impl Lines {
-    pub fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
+    pub fn add_line(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
         self.0.push((label.into(), value.to_string()));
         self
     }
@@ -51,10 +51,14 @@ impl Output {
     }
 
     pub fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
-        if self.json { self.print(&format!("{json}\n")) } else { self.print(&show_control_characters(text)) }
+        if self.json {
+            self.write_stdout(&format!("{json}\n"))
+        } else {
+            self.write_stdout(&show_control_characters(text))
+        }
     }
 
-    pub fn print(&self, printed: &str) -> Result<(), Failure> {
+    pub fn write_stdout(&self, printed: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
@@ -76,8 +80,8 @@ impl Output {
     }
 
     /// Prints a message that is not a result.
-    pub fn remark(&self, text: &str) {
-        say(&format!("{text}\n"));
+    pub fn print_message(&self, text: &str) {
+        write_stderr(&format!("{text}\n"));
     }
 }
 
@@ -104,14 +108,14 @@ pub(super) fn print_usage_error(error: &clap::Error) {
     let rendered = error.render().to_string();
     let (words, usage) = rendered.split_once("Usage:").unwrap_or((&rendered, ""));
     let words: Vec<&str> = words.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    say(&format!("{}\n", words.join(" ")));
+    write_stderr(&format!("{}\n", words.join(" ")));
     if let Some(usage) = usage.lines().next().filter(|usage| !usage.is_empty()) {
-        say(&format!("usage:{usage}\n"));
+        write_stderr(&format!("usage:{usage}\n"));
     }
 }
 
 /// Writes to stderr. Errors are ignored, because they cannot be reported anywhere.
-pub(crate) fn say(text: &str) {
+pub(crate) fn write_stderr(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(show_control_characters(text).as_bytes()).and_then(|()| err.flush());
 }

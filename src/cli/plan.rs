@@ -18,7 +18,7 @@ pub struct PlanReport {
 
 impl PlanReport {
     /// Creates the report of a plan whose steps are identical in text and JSON.
-    pub fn of<Base, Op: Operation>(
+    pub fn from_plan<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
         steps: Vec<PlanStep>,
         seen: Option<u64>,
@@ -27,7 +27,7 @@ impl PlanReport {
         let operations = steps.iter().map(PlanStep::json).collect();
         PlanReport {
             operations,
-            text: text(plan, lines(steps.into_iter()), seen, limit),
+            text: text(plan, step_lines(steps.into_iter()), seen, limit),
             write_cycles: plan.write_cycles(),
         }
     }
@@ -47,13 +47,13 @@ impl PlanStep {
     }
 }
 
-pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
+pub fn step_lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     let mut lines = Lines::default();
     for PlanStep { item, old, new, .. } in steps {
         let new = new.unwrap_or_default();
         match old {
-            Some(old) => lines.add(item, format!("{old}  →  {new}")),
-            None => lines.add(item, new),
+            Some(old) => lines.add_line(item, format!("{old}  →  {new}")),
+            None => lines.add_line(item, new),
         };
     }
     lines
@@ -68,15 +68,15 @@ pub fn text<Base, Op: Operation>(
     limit: Option<u64>,
 ) -> String {
     if plan.is_empty() {
-        return NOTHING.to_owned();
+        return NOTHING_TO_WRITE.to_owned();
     }
     let seen = seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
     let limit = limit.map(|limit| format!(", of {limit}")).unwrap_or_default();
-    lines.add("write cycles", format!("{} (counted here so far: {seen}{limit})", plan.write_cycles()));
+    lines.add_line("write cycles", format!("{} (counted here so far: {seen}{limit})", plan.write_cycles()));
     lines.text()
 }
 
-pub(super) const NOTHING: &str = "nothing to write: the device already has these values\n";
+pub(super) const NOTHING_TO_WRITE: &str = "nothing to write: the device already has these values\n";
 
 #[derive(Default)]
 pub struct WriteSummary {
@@ -89,16 +89,16 @@ pub struct WriteSummary {
 
 impl WriteSummary {
     /// Summarises an executed plan. Prints a warning if the result could not be recorded in the logbook.
-    pub fn of(output: &Output, committed: CommitResult<WrittenChanges>) -> Self {
+    pub fn from_commit(output: &Output, committed: CommitResult<WrittenChanges>) -> Self {
         let CommitResult { written, backup, logbook_warning } = committed;
-        warn(output, logbook_warning.as_ref());
+        warn_not_logged(output, logbook_warning.as_ref());
         let WrittenChanges { written, verified, write_cycles, .. } = written;
         WriteSummary { written, verified, write_cycles, backup }
     }
 }
 
-pub(crate) fn warn(output: &Output, warning: Option<&LogbookError>) {
+pub(crate) fn warn_not_logged(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
-        output.remark(&explain::logbook(why).terminal_text());
+        output.print_message(&explain::logbook(why).terminal_text());
     }
 }

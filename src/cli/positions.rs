@@ -3,12 +3,12 @@
 use std::time::{Duration, Instant};
 
 use super::args::Position;
-use super::runner::{JobFailure, Runner, Runs};
-use super::{Done, Result};
+use super::runner::{CliDevice, JobFailure, Runner};
+use super::{Result, Success};
 use crate::worker::JobInterruption as _;
 
 /// Runs `job` repeatedly and prints each result with `show`. The loop ends when a job fails.
-pub fn readings<D: Runs>(
+pub fn print_readings<D: CliDevice>(
     runner: &mut Runner<D>,
     position: &Position,
     job: impl Fn() -> D::Job,
@@ -20,7 +20,7 @@ pub fn readings<D: Runs>(
 }
 
 /// Runs `job` repeatedly and passes each result or error to `show`. `show` returns whether it printed a line.
-pub fn try_readings<D: Runs>(
+pub fn try_readings<D: CliDevice>(
     runner: &mut Runner<D>,
     position: &Position,
     job: impl Fn() -> D::Job,
@@ -37,21 +37,21 @@ pub fn try_readings<D: Runs>(
             next = (next + interval).max(Instant::now());
             let paused = runner.pause(next.saturating_duration_since(Instant::now()));
             if endless && runner.is_interrupted() {
-                return Ok(Done::Well);
+                return Ok(Success::Well);
             }
             paused?;
         }
         first = false;
         let came = match runner.try_run(job()) {
             Ok(output) => Ok(output),
-            Err(JobFailure::Job(error)) if endless && error.is_cancelled() => return Ok(Done::Well),
+            Err(JobFailure::Job(error)) if endless && error.is_cancelled() => return Ok(Success::Well),
             Err(JobFailure::Job(error)) => Err(error),
             Err(ended) => return Err(ended.into_failure()),
         };
         lines += match show(runner, came) {
-            Err(_) if endless && runner.is_interrupted() => return Ok(Done::Well),
+            Err(_) if endless && runner.is_interrupted() => return Ok(Success::Well),
             shown => u64::from(shown?),
         };
     }
-    Ok(Done::Well)
+    Ok(Success::Well)
 }

@@ -9,10 +9,10 @@ use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, DiffArgs, Restore};
 use super::consent::require_consent;
-use super::output::{Lines, Output, say};
-use super::plan::{NOTHING, PlanReport, WriteSummary};
-use super::runner::failed;
-use super::{Done, Failure, Result};
+use super::output::{Lines, Output, write_stderr};
+use super::plan::{NOTHING_TO_WRITE, PlanReport, WriteSummary};
+use super::runner::to_failure;
+use super::{Failure, Result, Success};
 use crate::app::{KindRegistry, explain, review};
 use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
 use crate::store::{read_text, write_atomically};
@@ -20,38 +20,40 @@ use crate::store::{read_text, write_atomically};
 /// Reads a profile of any kind, for viewing or comparison.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?;
-    remark(output, path, &document)?;
+    print_profile_note(output, path, &document)?;
     Ok(document.body)
 }
 
 /// Reads a profile that is to be written to a device. All parts of its schema must be known.
 pub(crate) fn load_profile_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?
-        .known()
-        .map_err(|error| failed(&explain::profile(path, &error, KindRegistry::NONE)))?;
-    remark(output, path, &document)?;
+        .check_schema()
+        .map_err(|error| to_failure(&explain::profile(path, &error, KindRegistry::NONE)))?;
+    print_profile_note(output, path, &document)?;
     Ok(document.body)
 }
 
-fn remark(output: &Output, path: &Path, document: &ProfileDocument) -> Result<()> {
-    explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal_text())));
-    if let Some(words) = output.commands().device(document.body.kind())?.remark(&document.body) {
-        say(&format!("{}: {}\n", path.display(), words.terminal_text()));
+fn print_profile_note(output: &Output, path: &Path, document: &ProfileDocument) -> Result<()> {
+    explain::profile_remarks(path, document)
+        .iter()
+        .for_each(|words| write_stderr(&format!("{}\n", words.terminal_text())));
+    if let Some(words) = output.commands().device(document.body.kind())?.profile_note(&document.body) {
+        write_stderr(&format!("{}: {}\n", path.display(), words.terminal_text()));
     }
     Ok(())
 }
 
 fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
-    let text = read_text(path).map_err(|error| failed(&explain::file_error_text(&error)))?;
+    let text = read_text(path).map_err(|error| to_failure(&explain::file_error_text(&error)))?;
     ProfileDocument::parse(&text, output.formats())
-        .map_err(|error| failed(&explain::profile(path, &error, KindRegistry::NONE)))
+        .map_err(|error| to_failure(&explain::profile(path, &error, KindRegistry::NONE)))
 }
 
 pub fn save_profile(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = ProfileDocument::new(second.to_string(), body);
-    write_atomically(path, document.emit().as_bytes()).map_err(|error| failed(&explain::file_error_text(&error)))
+    write_atomically(path, document.emit().as_bytes()).map_err(|error| to_failure(&explain::file_error_text(&error)))
 }
 
 pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Result {
@@ -62,24 +64,24 @@ pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Res
     let kind = output.commands().device(left.kind())?;
     let (right, name) = match &diff.right {
         Some(path) => (load(output, path)?, path.as_path()),
-        None => (kind.present(common, output, None)?, Path::new("the device")),
+        None => (kind.read_for_comparison(common, output, None)?, Path::new("the device")),
     };
     let comparison =
-        left.compare(&right).map_err(|error| failed(&explain::profile(name, &error, KindRegistry::NONE)))?;
-    let missing = comparison.missing();
+        left.compare(&right).map_err(|error| to_failure(&explain::profile(name, &error, KindRegistry::NONE)))?;
+    let missing = comparison.one_sided_items();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
 
-pub(super) fn verify(common: &CommonArgs, output: &Output, file: &Path) -> Result {
+pub(super) fn verify_profile(common: &CommonArgs, output: &Output, file: &Path) -> Result {
     let profile = load(output, file)?;
     let kind = output.commands().device(profile.kind())?;
-    let device = kind.present(common, output, Some(&profile))?;
+    let device = kind.read_for_comparison(common, output, Some(&profile))?;
     // Two different devices may be compared, but this is reported.
     if let Some(words) = kind.device_mismatch(&profile, &device) {
-        output.remark(&words);
+        output.print_message(&words);
     }
     let comparison =
-        profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, KindRegistry::NONE)))?;
+        profile.compare(&device).map_err(|error| to_failure(&explain::profile(file, &error, KindRegistry::NONE)))?;
     // Items that only the device has do not count, because they are not part of the profile.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
@@ -95,19 +97,19 @@ pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Resul
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
-    profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, KindRegistry::NONE)))
+    profile.into_profile().map_err(|error| to_failure(&explain::profile(&restore.file, &error, KindRegistry::NONE)))
 }
 
 pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
     for item in items {
-        output.remark(&format!("{item} is not restored: the encoder does not have it"));
+        output.print_message(&format!("{item} is not restored: the encoder does not have it"));
     }
 }
 
 /// Reports the mounting values of another device that are left unchanged.
 pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     for item in items {
-        output.remark(&format!(
+        output.print_message(&format!(
             "{item} belongs to the mounting of another encoder and is not restored; use --with-mounting to restore it"
         ));
     }
@@ -121,7 +123,7 @@ pub fn write_restore(
     left: &UnrestoredItems,
     write: impl FnOnce() -> Result<WriteSummary>,
 ) -> Result {
-    left.warn(output);
+    left.print_warning(output);
     if restore.dry_run { show_dry_run(output, plan, left) } else { show_restored(output, &write()?, left) }
 }
 
@@ -145,7 +147,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
         .iter()
         .map(|difference| json!({"item": difference.item, "left": difference.left, "right": difference.right}))
         .collect();
-    let missing = comparison.missing();
+    let missing = comparison.one_sided_items();
     let json = json!({
         "equal": equal,
         "differences": differences,
@@ -154,19 +156,19 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     });
     let mut lines = Lines::default();
     for difference in &comparison.differences {
-        lines.add(&difference.item, format!("{}  →  {}", difference.left, difference.right));
+        lines.add_line(&difference.item, format!("{}  →  {}", difference.left, difference.right));
     }
     for item in &comparison.only_left {
-        lines.add(item, "only on the left");
+        lines.add_line(item, "only on the left");
     }
     for item in &comparison.only_right {
-        lines.add(item, "only on the right");
+        lines.add_line(item, "only on the right");
     }
     let compared = comparison.compared;
     let verdict =
         if equal { format!("equal ({compared} compared)\n") } else { format!("different ({compared} compared)\n") };
     output.show(&json, &(lines.text() + &verdict))?;
-    Ok(if equal { Done::Well } else { Done::ValueDifference })
+    Ok(if equal { Success::Well } else { Success::ValueDifference })
 }
 
 /// Items that a restore leaves unchanged.
@@ -180,10 +182,10 @@ pub struct UnrestoredItems {
 }
 
 impl UnrestoredItems {
-    fn warn(&self, output: &Output) {
+    fn print_warning(&self, output: &Output) {
         let items = self.redo.iter().map(explain::literal_text).collect();
         if let Some(text) = review::redo(items) {
-            output.remark(&text.terminal_text());
+            output.print_message(&text.terminal_text());
         }
     }
 }
@@ -201,7 +203,7 @@ fn show_dry_run(output: &Output, plan: &PlanReport, left: &UnrestoredItems) -> R
         "redo": left.redo,
     });
     output.show(&json, &plan.text)?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) -> Result {
@@ -216,17 +218,17 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) 
     });
     let mut lines = Lines::default();
     lines
-        .add("written", spent.written)
-        .add("unchanged", left.unchanged)
-        .add("verified", spent.verified)
-        .add("write cycles", spent.write_cycles);
+        .add_line("written", spent.written)
+        .add_line("unchanged", left.unchanged)
+        .add_line("verified", spent.verified)
+        .add_line("write cycles", spent.write_cycles);
     if let Some(backup) = &spent.backup {
-        lines.add("backup", backup.display());
+        lines.add_line("backup", backup.display());
     }
     output.show_write_result(&json, &lines.text())?;
     // They are also printed before the write, because they list the remaining work.
-    left.warn(output);
-    Ok(Done::Well)
+    left.print_warning(output);
+    Ok(Success::Well)
 }
 
 /// Prints the result of writing an item. `operations` were executed, and `changes` has the old and new values.
@@ -260,14 +262,14 @@ pub(crate) fn print_write_result(
         object.insert("results".to_owned(), json!(results));
     }
     let text = match &spent.backup {
-        None => NOTHING.to_owned(),
+        None => NOTHING_TO_WRITE.to_owned(),
         Some(backup) => {
             let mut lines = Lines::default();
-            lines.add("written", spent.written).add("verified", spent.verified);
-            lines.add("write cycles", spent.write_cycles).add("backup", backup.display());
+            lines.add_line("written", spent.written).add_line("verified", spent.verified);
+            lines.add_line("write cycles", spent.write_cycles).add_line("backup", backup.display());
             format!("{changes}{}", lines.text())
         }
     };
     output.show_write_result(&json, &text)?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }

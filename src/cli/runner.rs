@@ -12,9 +12,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::CommonArgs;
 use super::commands::DeviceCommands;
-use super::consent::{answer, can_prompt};
-use super::output::say;
-use super::slow_reply_notice::{Pace, SlowReplyNotice};
+use super::consent::{can_prompt, read_answer};
+use super::output::write_stderr;
+use super::slow_reply_notice::{ReplyTiming, SlowReplyNotice};
 use super::{Failure, Result};
 use crate::app::session::Kind;
 use crate::app::{Text, TypeMap, explain};
@@ -23,7 +23,7 @@ use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// A device on which the command line can run jobs.
-pub trait Runs: Kind {
+pub trait CliDevice: Kind {
     /// Part of a session that stays outside its thread.
     type Context;
     /// Whether the line allows only one master. A connected drive may be such a master. `--only-master` confirms that
@@ -39,32 +39,32 @@ pub trait Runs: Kind {
     }
 
     /// Prepares a session with the options that every command has.
-    fn begin(session: &mut Session<Self>, given: &TypeMap) -> Self::Context;
+    fn prepare_context(session: &mut Session<Self>, given: &TypeMap) -> Self::Context;
 
     /// Prints a message of the device immediately. The default prints nothing.
     fn print_message(_remark: &Self::DeviceMessage) {}
 
     /// Describes a step for the progress bar on a terminal.
-    fn step(doing: &Self::JobStep) -> String;
+    fn describe_step(doing: &Self::JobStep) -> String;
 
     /// Returns a message about a step for the user at the terminal. The message is printed when it changes.
-    fn announce(_doing: &Self::JobStep) -> Option<String> {
+    fn step_message(_doing: &Self::JobStep) -> Option<String> {
         None
     }
 
     /// Returns the reply times. `None` if they are not measured or the link has no time-out.
-    fn reply_times(_session: &Session<Self>) -> Option<Pace> {
+    fn reply_times(_session: &Session<Self>) -> Option<ReplyTiming> {
         None
     }
 
     /// Returns a function that is called for each Ctrl-C. Its argument is `true` for the second Ctrl-C, which ends the
     /// program.
-    fn interrupt(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
+    fn interrupt_handler(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
         Box::new(|_| ())
     }
 }
 
-pub struct Runner<D: Runs> {
+pub struct Runner<D: CliDevice> {
     worker: Worker<D>,
     /// Whether Ctrl-C was pressed. This is independent of the worker's cancellation flag, which applies to a single
     /// job.
@@ -75,7 +75,7 @@ pub struct Runner<D: Runs> {
     pub kept: D::Context,
 }
 
-pub enum JobFailure<D: Runs> {
+pub enum JobFailure<D: CliDevice> {
     Job(Box<D::Error>),
     Interrupted,
     Lost(LinkError),
@@ -84,22 +84,22 @@ pub enum JobFailure<D: Runs> {
 
 /// Maximum time for leaving a state that must not remain. Examples are a drive under control and a supply that was
 /// switched on.
-const LEAVING: Duration = Duration::from_secs(4);
+const RESTORE_TIMEOUT: Duration = Duration::from_secs(4);
 
-impl<D: Runs> Drop for Runner<D> {
+impl<D: CliDevice> Drop for Runner<D> {
     fn drop(&mut self) {
-        if !self.worker.finish(LEAVING) {
+        if !self.worker.finish(RESTORE_TIMEOUT) {
             tracing::warn!("the link could not be closed properly");
         }
     }
 }
 
-impl<D: Runs> Runner<D> {
+impl<D: CliDevice> Runner<D> {
     pub fn open(common: &CommonArgs) -> Result<Self> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware, use --link sim:".to_owned()));
         };
-        let given = common.given()?;
+        let given = common.given_values()?;
         if let Some(why) = common.commands.foreign_common_option(D::COMMANDS, &common.own) {
             return Err(Failure::Usage(why));
         }
@@ -107,24 +107,24 @@ impl<D: Runs> Runner<D> {
             ask_for_other_master(common)?;
         }
         if common.only_master && !D::HAS_ONE_MASTER {
-            return Err(Failure::Usage(common.commands.refusal("--only-master", D::COMMANDS.name())));
+            return Err(Failure::Usage(common.commands.option_rejection("--only-master", D::COMMANDS.name())));
         }
-        let store = Store::for_user().map_err(|error| failed(&explain::store_error_text(&error)))?;
+        let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal_text()),
-            error => failed(&D::open_error(&error)),
+            error => to_failure(&D::open_error(&error)),
         })?;
-        let kept = D::begin(&mut session, &given);
+        let kept = D::prepare_context(&mut session, &given);
         if let Some(path) = &common.trace {
-            record(&mut session, path)?;
+            record_trace(&mut session, path)?;
         }
-        let patience = SlowReplyNotice::begin(D::reply_times(&session));
+        let patience = SlowReplyNotice::start(D::reply_times(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("Could not start a thread: {error}.")]))?;
         let stop_handle = worker.stop_handle();
         let interrupted = Arc::new(AtomicBool::new(false));
         let pressed = interrupted.clone();
-        let interrupt = D::interrupt(&kept);
+        let interrupt = D::interrupt_handler(&kept);
         ctrlc::set_handler(move || {
             let again = pressed.swap(true, Ordering::SeqCst);
             interrupt(again);
@@ -149,23 +149,23 @@ impl<D: Runs> Runner<D> {
             // Ctrl-C came before the job began and applies to it as well.
             self.worker.stop();
         }
-        let bar = Bar::default();
+        let bar = TerminalProgressBar::default();
         let mut announced = None;
         loop {
             let Some(event) = self.next_event()? else {
-                if let Some(words) = self.patience.words() {
+                if let Some(words) = self.patience.take_message() {
                     bar.print_line(&words);
                 }
                 continue;
             };
             match event {
                 Event::Progress(of, progress) if of == id => {
-                    let words = D::announce(&progress.step);
+                    let words = D::step_message(&progress.step);
                     if let Some(words) = words.as_ref().filter(|_| words != announced) {
                         bar.print_line(words);
                     }
                     announced = words;
-                    bar.show(progress.done, progress.total, &D::step(&progress.step));
+                    bar.show(progress.done, progress.total, &D::describe_step(&progress.step));
                 }
                 Event::Remark(remark) => {
                     D::print_message(&remark);
@@ -183,7 +183,7 @@ impl<D: Runs> Runner<D> {
     /// Returns the next event. Returns `None` when a check is due.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
-        let Some(left) = self.patience.left() else {
+        let Some(left) = self.patience.time_until_check() else {
             return events.recv().map(Some).map_err(|_| JobFailure::Worker);
         };
         match events.recv_timeout(left) {
@@ -219,14 +219,14 @@ impl<D: Runs> Runner<D> {
     }
 }
 
-impl<D: Runs> JobFailure<D> {
+impl<D: CliDevice> JobFailure<D> {
     pub fn into_failure(self) -> Failure {
         match self {
             JobFailure::Job(error) => {
-                Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal_text).collect()))
+                Failure::Failed(combine_lines(D::error_texts(&error).iter().map(Text::terminal_text).collect()))
             }
-            JobFailure::Interrupted => failed(&Text::new("encoder.cancelled")),
-            JobFailure::Lost(error) => failed(&explain::link_error_text(&error)),
+            JobFailure::Interrupted => to_failure(&Text::new("encoder.cancelled")),
+            JobFailure::Lost(error) => to_failure(&explain::link_error_text(&error)),
             JobFailure::Worker => Failure::Failed(vec!["The session ended unexpectedly.".to_owned()]),
         }
     }
@@ -234,7 +234,7 @@ impl<D: Runs> JobFailure<D> {
 
 /// Combines sentences into at most four lines. If there are more sentences, those between the first and the last share
 /// one line.
-fn lines(mut sentences: Vec<String>) -> Vec<String> {
+fn combine_lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
         let middle = sentences.split_off(1).join(" ");
@@ -244,7 +244,7 @@ fn lines(mut sentences: Vec<String>) -> Vec<String> {
     sentences
 }
 
-pub fn failed(text: &Text) -> Failure {
+pub fn to_failure(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal_text()])
 }
 
@@ -271,14 +271,14 @@ fn ask_for_other_master(common: &CommonArgs) -> Result<()> {
     if common.only_master || !can_prompt() {
         return Ok(());
     }
-    let reply = answer("Is a drive or controller connected to this line, or powered? [yes/no/not sure] ");
+    let reply = read_answer("Is a drive or controller connected to this line, or powered? [yes/no/not sure] ");
     if matches!(reply.as_str(), "n" | "N" | "no") {
         return Ok(());
     }
-    Err(failed(&Text::new("session.maybe_drive")))
+    Err(to_failure(&Text::new("session.maybe_drive")))
 }
 
-fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
+fn record_trace<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     let cannot = |error: std::io::Error| {
         Failure::Failed(vec![format!("{}: could not record the trace: {error}.", path.display())])
     };
@@ -286,7 +286,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     write_header(&mut file).map_err(cannot)?;
     let name = path.display().to_string();
     let mut works = true;
-    session.watch(move |entry| {
+    session.add_watcher(move |entry| {
         // Every frame is flushed. The trace is then complete however the program ends.
         if works && write_entry(&mut file, entry).and_then(|()| file.flush()).is_err() {
             works = false;
@@ -297,20 +297,20 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
 }
 
 /// A progress bar, drawn on a terminal only.
-pub(crate) struct Bar(ProgressBar);
+pub(crate) struct TerminalProgressBar(ProgressBar);
 
-impl Default for Bar {
+impl Default for TerminalProgressBar {
     fn default() -> Self {
         let target = if stderr().is_terminal() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
             bar.set_style(style);
         }
-        Bar(bar)
+        TerminalProgressBar(bar)
     }
 }
 
-impl Bar {
+impl TerminalProgressBar {
     pub(crate) fn show(&self, done: u64, total: u64, what: &impl ToString) {
         self.0.set_length(total);
         self.0.set_position(done);
@@ -318,18 +318,18 @@ impl Bar {
     }
 }
 
-impl Bar {
+impl TerminalProgressBar {
     /// Prints a line above the bar, or where the bar will be.
     fn print_line(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),
             None if self.0.is_hidden() => {}
-            None => say(&format!("{words}\n")),
+            None => write_stderr(&format!("{words}\n")),
         }
     }
 }
 
-impl Drop for Bar {
+impl Drop for TerminalProgressBar {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }

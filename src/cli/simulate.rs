@@ -11,31 +11,31 @@ use std::time::Duration;
 
 use super::args::SimulateArgs;
 use super::output::Output;
-use super::{Done, Failure, Result};
+use super::{Failure, Result, Success};
 use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
 /// Time to wait for bytes while the device is idle. It is also the longest delay of an interrupt.
-const PATIENCE: Duration = Duration::from_millis(20);
+const IDLE_WAIT: Duration = Duration::from_millis(20);
 /// Waiting time below which the thread sleeps. Socket time-outs only have the resolution of the system tick.
-const SHORT: Duration = Duration::from_millis(10);
+const SLEEP_THRESHOLD: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
-pub trait Simulated: ByteDevice {
+pub trait ServableDevice: ByteDevice {
     /// Returns the line format at `now`. Returns `None` without a serial line or while the device does not receive.
-    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+    fn line_format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
     /// Returns a device for another simultaneous client at the given address. Returns `None` if the device has a single
     /// line, for which clients are served one after another.
-    fn duplicate(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+    fn clone_for_peer(&self, _peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         None
     }
 
     /// Returns the UDP side of the same device, which is served on the same port as TCP.
-    fn datagrams(&self) -> Option<Box<dyn DatagramDevice>> {
+    fn datagram_device(&self) -> Option<Box<dyn DatagramDevice>> {
         None
     }
 
@@ -46,20 +46,20 @@ pub trait Simulated: ByteDevice {
     }
 }
 
-pub(super) fn simulate(output: &Output, arguments: &SimulateArgs) -> Result {
+pub(super) fn run_simulation(output: &Output, arguments: &SimulateArgs) -> Result {
     let kind = output.commands().device(&arguments.device)?;
-    let simulated = kind.simulated(output, arguments)?;
+    let simulated = kind.create_simulated(output, arguments)?;
     let ended = Arc::new(AtomicBool::new(false));
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
         .map_err(|error| Failure::Failed(vec![format!("Could not install the Ctrl-C handler: {error}.")]))?;
     let mut device = Device { kind: kind.name(), simulated, clock: Arc::new(RealClock::start()) };
     match (&arguments.pty, &arguments.listen) {
-        (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
-        (None, Some(address)) => listen(address, &mut device, &ended)?,
+        (Some(path), _) => terminal::serve_path(path, &mut device, &ended)?,
+        (None, Some(address)) => serve_tcp(address, &mut device, &ended)?,
         (None, None) => return Err(Failure::Usage("simulate needs --pty PATH or --listen ADDR".to_owned())),
     }
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 pub fn settings(output: &Output, arguments: &SimulateArgs) -> Result<Vec<(String, String)>> {
@@ -80,7 +80,7 @@ pub fn settings(output: &Output, arguments: &SimulateArgs) -> Result<Vec<(String
 
 struct Device {
     kind: &'static str,
-    simulated: Box<dyn Simulated>,
+    simulated: Box<dyn ServableDevice>,
     clock: Arc<RealClock>,
 }
 
@@ -91,23 +91,23 @@ enum ReadOutcome {
 }
 
 impl Device {
-    fn duplicate(&self, peer: SocketAddr) -> Option<Device> {
+    fn clone_for_peer(&self, peer: SocketAddr) -> Option<Device> {
         let address = match peer {
             SocketAddr::V4(peer) => *peer.ip(),
             SocketAddr::V6(peer) => peer.ip().to_ipv4_mapped().unwrap_or(Ipv4Addr::UNSPECIFIED),
         };
-        let simulated = self.simulated.duplicate(address)?;
+        let simulated = self.simulated.clone_for_peer(address)?;
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
     /// Serves a client until it disconnects or the program is interrupted. The device follows the baud rate of the
     /// client if it can be read.
-    fn serve(&mut self, client: &mut impl SimulatorClient, ended: &AtomicBool) -> std::io::Result<()> {
+    fn serve_client(&mut self, client: &mut impl SimulatorClient, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
         while !ended.load(Ordering::SeqCst) {
             let now = self.clock.now();
-            let wait = self.simulated.poll_at().map_or(PATIENCE, |next| next.since(now).min(PATIENCE));
+            let wait = self.simulated.poll_at().map_or(IDLE_WAIT, |next| next.duration_since(now).min(IDLE_WAIT));
             let outcome = client.read(&mut buffer, wait)?;
             let now = self.clock.now();
             self.apply_client_baud(client.baud());
@@ -131,7 +131,7 @@ impl Device {
     /// Properties that cannot be read are assumed to be correct.
     fn apply_client_baud(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
-        if let Some(own) = self.simulated.format(now) {
+        if let Some(own) = self.simulated.line_format(now) {
             let format = CharacterFormat { baud: baud.unwrap_or(own.baud), parity: own.parity };
             self.simulated.set_host_format(now, format);
         }
@@ -154,7 +154,7 @@ trait SimulatorClient {
 
 impl SimulatorClient for TcpStream {
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome> {
-        if wait >= SHORT {
+        if wait >= SLEEP_THRESHOLD {
             self.set_read_timeout(Some(wait))?;
             return Ok(read_outcome(Read::read(self, buffer)));
         }
@@ -192,7 +192,7 @@ fn read_outcome(read: std::io::Result<usize>) -> ReadOutcome {
     }
 }
 
-fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> {
+fn serve_tcp(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> {
     let cannot = |error: std::io::Error| match error.kind() {
         ErrorKind::InvalidInput => Failure::Usage(format!("{address} is not HOST:PORT, such as 127.0.0.1:4001")),
         ErrorKind::AddrInUse => {
@@ -204,7 +204,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
              127.0.0.1:4001."
         )]),
     };
-    let (listener, packets) = match device.simulated.datagrams() {
+    let (listener, packets) = match device.simulated.datagram_device() {
         Some(own) => {
             let (listener, socket, at) = datagrams::bind_tcp_and_udp(address).map_err(cannot)?;
             device.simulated.on_listening(at);
@@ -225,13 +225,13 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
         begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
             let Ok((client, peer)) = listener.accept() else {
-                std::thread::sleep(PATIENCE);
+                std::thread::sleep(IDLE_WAIT);
                 continue;
             };
-            match device.duplicate(peer) {
-                None => attend(device, client, ended),
+            match device.clone_for_peer(peer) {
+                None => serve_tcp_client(device, client, ended),
                 Some(mut own) => {
-                    let attended = move || attend(&mut own, client, ended);
+                    let attended = move || serve_tcp_client(&mut own, client, ended);
                     // If no thread can be started, the client is disconnected.
                     let _ = std::thread::Builder::new().spawn_scoped(scope, attended);
                 }
@@ -242,12 +242,12 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
 }
 
 /// Serves a client over TCP. A client that cannot be served is disconnected, and the next one may connect.
-fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
+fn serve_tcp_client(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
     let _ = client
         .set_nonblocking(false)
         .and_then(|()| client.set_nodelay(true))
-        .and_then(|()| client.set_write_timeout(Some(PATIENCE * 10)))
-        .and_then(|()| device.serve(&mut client, ended));
+        .and_then(|()| client.set_write_timeout(Some(IDLE_WAIT * 10)))
+        .and_then(|()| device.serve_client(&mut client, ended));
 }
 
 #[cfg(unix)]
@@ -263,26 +263,26 @@ mod terminal {
 
     use serialport::{SerialPort, TTYPort};
 
-    use super::{Clock as _, Device, Failure, PATIENCE, ReadOutcome, Result, SimulatorClient};
+    use super::{Clock as _, Device, Failure, IDLE_WAIT, ReadOutcome, Result, SimulatorClient};
     use crate::units::Baud;
 
-    pub(super) fn serve(path: &Path, device: &mut Device, ended: &AtomicBool) -> Result<()> {
+    pub(super) fn serve_path(path: &Path, device: &mut Device, ended: &AtomicBool) -> Result<()> {
         let cannot = |what: String| Failure::Failed(vec![format!("{}: {what}.", path.display())]);
         let (mut master, mut slave) = TTYPort::pair().map_err(|error| cannot(error.description))?;
         let name = slave.name().ok_or_else(|| cannot("the pseudo-terminal has no name".to_owned()))?;
         // The terminal has the speed of the encoder until a client sets another.
-        if let Some(own) = device.simulated.format(device.clock.now()) {
+        if let Some(own) = device.simulated.line_format(device.clock.now()) {
             let _ = slave.set_baud_rate(own.baud.bits_per_second());
         }
         drop(slave);
-        let _link = SymbolicLink::make(path, Path::new(&name)).map_err(|error| match error.kind() {
+        let _link = SymbolicLink::create(path, Path::new(&name)).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => cannot("the path already exists; remove it, or choose another path".into()),
             ErrorKind::NotFound => cannot("the folder does not exist; create it, or choose another path".into()),
             _ => cannot(error.to_string()),
         })?;
         device.print_ready(&path.display().to_string())?;
         while !ended.load(Ordering::SeqCst) {
-            device.serve(&mut master, ended).map_err(|error| cannot(error.to_string()))?;
+            device.serve_client(&mut master, ended).map_err(|error| cannot(error.to_string()))?;
             wait_for_client(&mut master, ended);
         }
         Ok(())
@@ -297,7 +297,7 @@ mod terminal {
     impl SymbolicLink {
         /// Creates the link. A dangling link is left over from an earlier run and is replaced. Anything else belongs to
         /// another program, and the link is refused.
-        fn make(path: &Path, target: &Path) -> std::io::Result<Self> {
+        fn create(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;
             }
@@ -318,7 +318,7 @@ mod terminal {
     fn wait_for_client(master: &mut TTYPort, ended: &AtomicBool) {
         while !ended.load(Ordering::SeqCst) {
             match master.bytes_to_read() {
-                Ok(0) if has_hung_up(master) => std::thread::sleep(PATIENCE / 4),
+                Ok(0) if has_hung_up(master) => std::thread::sleep(IDLE_WAIT / 4),
                 _ => return,
             }
         }
@@ -364,7 +364,7 @@ mod terminal {
 
     use super::{Device, Failure, Result};
 
-    pub(super) fn serve(_path: &Path, _device: &mut Device, _ended: &AtomicBool) -> Result<()> {
+    pub(super) fn serve_path(_path: &Path, _device: &mut Device, _ended: &AtomicBool) -> Result<()> {
         Err(Failure::Usage("this system has no pseudo-terminals: use --listen ADDR".to_owned()))
     }
 }

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 use crate::link::ReplyTimes;
 
 /// Time before the first notice.
-const WONDERS: Duration = Duration::from_secs(3);
+const FIRST_NOTICE_DELAY: Duration = Duration::from_secs(3);
 /// Interval between checks after the first notice.
-const LOOKS: Duration = Duration::from_millis(500);
+const CHECK_INTERVAL: Duration = Duration::from_millis(500);
 /// Reply time from which a device counts as slow.
-const SLOW: Duration = Duration::from_millis(100);
+const SLOW_REPLY_TIME: Duration = Duration::from_millis(100);
 
-pub struct Pace {
+pub struct ReplyTiming {
     pub(crate) replies: ReplyTimes,
     /// Time-out for a reply, as set by `timeout=` in the link.
     pub(crate) timeout: Duration,
@@ -21,37 +21,37 @@ pub struct Pace {
 
 /// Monitor of a long command. It reports once if the command is slow because of the replies.
 pub(super) struct SlowReplyNotice {
-    pace: Option<Pace>,
+    pace: Option<ReplyTiming>,
     look: Instant,
 }
 
 impl SlowReplyNotice {
     /// Starts to measure the time. Without a pace, a device is never reported as slow.
-    pub(super) fn begin(pace: Option<Pace>) -> Self {
-        SlowReplyNotice { pace, look: Instant::now() + WONDERS }
+    pub(super) fn start(pace: Option<ReplyTiming>) -> Self {
+        SlowReplyNotice { pace, look: Instant::now() + FIRST_NOTICE_DELAY }
     }
 
     /// Returns the time until the next check. Returns `None` without a limit.
-    pub(super) fn left(&self) -> Option<Duration> {
+    pub(super) fn time_until_check(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
 
     /// Returns the notice if it is due.
-    pub(super) fn words(&mut self) -> Option<String> {
+    pub(super) fn take_message(&mut self) -> Option<String> {
         let now = Instant::now();
-        let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(Pace::words);
+        let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(ReplyTiming::message);
         match words {
             Some(_) => self.pace = None,
-            None if now >= self.look => self.look = now + LOOKS,
+            None if now >= self.look => self.look = now + CHECK_INTERVAL,
             None => {}
         }
         words
     }
 }
 
-impl Pace {
+impl ReplyTiming {
     /// Returns the message. It tells how to allow more time if that may help.
-    fn words(&self) -> Option<String> {
+    fn message(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {
             format!("Set timeout={} in the link to allow more time for a reply.", self.longest.as_millis())
@@ -59,11 +59,11 @@ impl Pace {
             "Check the load of the network.".to_owned()
         };
         let ms = |time: Duration| format!("{} ms", time.as_millis());
-        match self.replies.usual() {
+        match self.replies.average() {
             None => {
                 Some(format!("The device has not answered yet; the request is repeated every {}. {more}", ms(timeout)))
             }
-            Some(usual) if usual < SLOW => None,
+            Some(usual) if usual < SLOW_REPLY_TIME => None,
             Some(usual) if longest < timeout / 2 => {
                 Some(format!("The device answers slowly: a reply takes {}.", ms(usual)))
             }
@@ -83,8 +83,8 @@ mod tests {
     /// Returns the message for a time-out and for reply times, all in milliseconds.
     fn message(timeout: u64, took: &[u64]) -> Option<String> {
         let replies = ReplyTimes::default();
-        took.iter().for_each(|ms| replies.note(Duration::from_millis(*ms)));
-        Pace { replies, timeout: Duration::from_millis(timeout), longest: Duration::from_secs(2) }.words()
+        took.iter().for_each(|ms| replies.record(Duration::from_millis(*ms)));
+        ReplyTiming { replies, timeout: Duration::from_millis(timeout), longest: Duration::from_secs(2) }.message()
     }
 
     #[test]
@@ -107,13 +107,16 @@ mod tests {
     #[test]
     fn the_notice_appears_late_and_only_once() {
         let replies = ReplyTimes::default();
-        replies.note(Duration::from_millis(300));
-        let pace = |replies| Pace { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
-        let mut patience = SlowReplyNotice::begin(Some(pace(replies)));
-        assert!(patience.words().is_none() && patience.left().is_some_and(|left| left > WONDERS / 2));
+        replies.record(Duration::from_millis(300));
+        let pace = |replies| ReplyTiming { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
+        let mut patience = SlowReplyNotice::start(Some(pace(replies)));
+        assert!(
+            patience.take_message().is_none()
+                && patience.time_until_check().is_some_and(|left| left > FIRST_NOTICE_DELAY / 2)
+        );
         patience.look = Instant::now();
-        assert!(patience.words().is_some());
-        assert!(patience.words().is_none() && patience.left().is_none());
-        assert!(SlowReplyNotice::begin(None).left().is_none());
+        assert!(patience.take_message().is_some());
+        assert!(patience.take_message().is_none() && patience.time_until_check().is_none());
+        assert!(SlowReplyNotice::start(None).time_until_check().is_none());
     }
 }

@@ -31,7 +31,7 @@ impl Clock for RealClock {
     }
 
     fn sleep_until(&self, moment: Moment) {
-        let left = moment.since(self.now());
+        let left = moment.duration_since(self.now());
         if !left.is_zero() {
             std::thread::sleep(left);
         }
@@ -41,11 +41,11 @@ impl Clock for RealClock {
 /// Measures the step of the timer: how long the shortest sleep takes. Windows before version 10 (1803) wakes a thread
 /// only at ticks that are up to 15.6 ms apart.
 pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
-    const SHORT: Duration = Duration::from_millis(1);
+    const SHORT_SLEEP: Duration = Duration::from_millis(1);
     let sleep = || {
         let began = clock.now();
-        clock.sleep_until(began + SHORT);
-        clock.now().since(began)
+        clock.sleep_until(began + SHORT_SLEEP);
+        clock.now().duration_since(began)
     };
     // The first sleep may begin just before a tick. Of the others, the least counts: a busy computer makes some longer.
     sleep();

@@ -19,15 +19,15 @@ use crate::bits::MaskedBytes;
 use crate::units::Moment;
 
 /// Maximum number of attempts of a read command.
-pub(crate) const TRIES: u32 = 5;
+pub(crate) const MAX_ATTEMPTS: u32 = 5;
 /// Time without a valid reply after which no further attempt is made. A command must finish within ten seconds.
-const PATIENCE: Duration = Duration::from_secs(8);
+const RETRY_TIMEOUT: Duration = Duration::from_secs(8);
 /// Longest interval between two checks for cancellation.
-const SLICE: Duration = Duration::from_millis(50);
+const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Duration of continuous reception after which the wait for silence ends with an error.
-const NEVER_SILENT: Duration = Duration::from_secs(2);
+const MAX_CONTINUOUS_RECEPTION: Duration = Duration::from_secs(2);
 /// Maximum number of unexpected bytes to keep. A socket can deliver unlimited noise.
-pub(crate) const MOST_KEPT: usize = 4096;
+pub(crate) const MAX_KEPT_BYTES: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
@@ -87,21 +87,21 @@ impl<'a> SerialLine<'a> {
         let end = self.now() + duration;
         while self.now() < end {
             self.check_cancel()?;
-            let slice = (self.now() + SLICE).min(end);
+            let slice = (self.now() + CANCEL_CHECK_INTERVAL).min(end);
             self.ctx.clock.sleep_until(slice);
         }
         Ok(())
     }
 
-    /// Receives for the given duration without sending. At most [`MOST_KEPT`] bytes are returned.
-    pub(crate) fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
+    /// Receives for the given duration without sending. At most [`MAX_KEPT_BYTES`] bytes are returned.
+    pub(crate) fn receive_pending(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
         while self.now() < end {
             self.check_cancel()?;
-            let slice = (self.now() + SLICE).min(end);
+            let slice = (self.now() + CANCEL_CHECK_INTERVAL).min(end);
             self.ctx.wire.receive(slice, &mut heard)?;
-            heard.truncate(MOST_KEPT);
+            heard.truncate(MAX_KEPT_BYTES);
         }
         self.trace_hidden_bytes(end, heard.len());
         Ok(heard)
@@ -117,7 +117,7 @@ impl<'a> SerialLine<'a> {
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels or the line stays busy.
-    pub(crate) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn begin_exchange(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         self.start()?;
         let mut stray = Vec::new();
         // Bytes that arrived before the request do not belong to its reply, so the line is read at least once.
@@ -137,7 +137,7 @@ impl<'a> SerialLine<'a> {
     /// frame, the error shows only the masked bytes.
     pub(crate) fn send(&mut self, bytes: &[u8], shown: MaskedBytes, at: Moment) -> Result<(), LinkError> {
         let text = shown.to_string();
-        self.ctx.trace.record(at, Direction::Sent, shown);
+        self.ctx.trace.record_frame(at, Direction::Sent, shown);
         self.ctx.wire.send(bytes).map_err(|mut error| {
             if let LinkErrorKind::NotRecorded(request) = &mut error.kind {
                 *request = text;
@@ -160,19 +160,19 @@ impl<'a> SerialLine<'a> {
         self.passed.take().unwrap_or_default()
     }
 
-    /// Skips bytes that belong to no reply. During recording, the first [`MOST_KEPT`] bytes are kept.
+    /// Skips bytes that belong to no reply. During recording, the first [`MAX_KEPT_BYTES`] bytes are kept.
     pub(crate) fn skip_bytes(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
-            passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
+            passed.extend(bytes.iter().take(MAX_KEPT_BYTES.saturating_sub(passed.len())));
         }
     }
 
     pub(crate) fn show(&mut self, at: Moment, shown: MaskedBytes) {
-        self.ctx.trace.record(at, Direction::Received, shown);
+        self.ctx.trace.record_frame(at, Direction::Received, shown);
     }
 
     fn trace_hidden_bytes(&mut self, at: Moment, count: usize) {
-        self.show(at, MaskedBytes::hidden(count));
+        self.show(at, MaskedBytes::fully_masked(count));
     }
 
     /// Counts an unanswered attempt and returns whether another attempt is allowed. `longest` is the maximum duration
@@ -182,9 +182,9 @@ impl<'a> SerialLine<'a> {
         state.damaged += 1;
         // The first attempt counts as well. At 600 bit/s, it alone may take three seconds.
         let since = *state.troubled_since.get_or_insert(now - longest);
-        let next_end = (now + longest).since(since);
+        let next_end = (now + longest).duration_since(since);
         let again = match self.patience {
-            None => tries < TRIES && next_end < PATIENCE,
+            None => tries < MAX_ATTEMPTS && next_end < RETRY_TIMEOUT,
             Some(patience) => next_end < patience,
         };
         state.quality.retries += u64::from(again);
@@ -213,7 +213,7 @@ impl<'a> SerialLine<'a> {
             }
             // On a slow connection this takes seconds, so cancellation is checked in between.
             self.check_cancel()?;
-            let slice = (self.now() + SLICE).min(end);
+            let slice = (self.now() + CANCEL_CHECK_INTERVAL).min(end);
             self.ctx.wire.receive(slice, &mut late)?;
         }
         self.trace_hidden_bytes(self.now(), late.len());
@@ -228,7 +228,7 @@ impl<'a> SerialLine<'a> {
     /// Returns a [`LineError`] if the line is never silent or the connection fails.
     pub(crate) fn discard_late_answers(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let now = self.now();
-        let lateness = now.since(state.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
+        let lateness = now.duration_since(state.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
         let passed = state.last_sent + lateness + state.margin;
         let mut late = Vec::new();
         while self.now() < passed {
@@ -244,7 +244,7 @@ impl<'a> SerialLine<'a> {
     /// Skips bytes until the line has been silent for `quiet`. Returns [`LineError::NeverSilent`] if bytes keep
     /// arriving.
     pub(crate) fn wait_for_silence(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
-        let give_up = self.now() + NEVER_SILENT;
+        let give_up = self.now() + MAX_CONTINUOUS_RECEPTION;
         let mut stray = Vec::new();
         loop {
             stray.clear();

@@ -72,7 +72,7 @@ pub trait ByteLink: Send {
     ///
     /// # Errors
     /// Returns an error if the connection was lost.
-    fn check(&mut self) -> Result<(), LinkError>;
+    fn check_connection(&mut self) -> Result<(), LinkError>;
 }
 
 /// A cancellation flag. All clones share the same flag.
@@ -94,7 +94,7 @@ impl Default for CancelState {
 
 impl CancelToken {
     /// Creates a flag that requests cancellation after the given number of transactions.
-    pub fn after(transactions: u64) -> Self {
+    pub fn after_transactions(transactions: u64) -> Self {
         let cancel = CancelToken::default();
         cancel.0.fuse.store(transactions, Ordering::SeqCst);
         cancel

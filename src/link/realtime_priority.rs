@@ -6,7 +6,7 @@ use thread_priority::{Error, ThreadPriority};
 /// Requests real-time priority for the calling thread until it ends. Returns whether the system granted the request. On
 /// Linux, the user needs the `rtprio` permission.
 pub fn request_realtime_priority() -> bool {
-    let asked = ask();
+    let asked = request_realtime();
     if let Err(error) = &asked {
         tracing::debug!("a thread of the cyclic connection is an ordinary one: {error}");
     }
@@ -15,7 +15,7 @@ pub fn request_realtime_priority() -> bool {
 
 /// Requests the lowest real-time priority, which is above all ordinary priorities.
 #[cfg(unix)]
-fn ask() -> Result<(), Error> {
+fn request_realtime() -> Result<(), Error> {
     use thread_priority::unix::{
         RealtimeThreadSchedulePolicy, ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
     };
@@ -24,6 +24,6 @@ fn ask() -> Result<(), Error> {
 }
 
 #[cfg(not(unix))]
-fn ask() -> Result<(), Error> {
+fn request_realtime() -> Result<(), Error> {
     ThreadPriority::Max.set_for_current()
 }

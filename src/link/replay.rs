@@ -46,7 +46,7 @@ impl ByteLink for ReplayLink {
         let count = self.exchanges.len();
         let found = (0..count)
             .map(|step| (self.next + step) % count)
-            .find(|at| self.exchanges.get(*at).is_some_and(|exchange| exchange.request.matches(bytes)));
+            .find(|at| self.exchanges.get(*at).is_some_and(|exchange| exchange.request.matches_visible(bytes)));
         let Some(at) = found else {
             return Err(LinkError::new(&self.target, LinkErrorKind::NotRecorded(hex(bytes))));
         };
@@ -72,7 +72,7 @@ impl ByteLink for ReplayLink {
         false
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }

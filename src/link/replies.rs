@@ -17,7 +17,7 @@ struct Measured {
 
 impl ReplyTimes {
     /// Records the time between a request and its reply. Late replies count as well.
-    pub(crate) fn note(&self, took: Duration) {
+    pub(crate) fn record(&self, took: Duration) {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
         self.0.sum.fetch_add(took, Ordering::Relaxed);
         self.0.longest.fetch_max(took, Ordering::Relaxed);
@@ -26,7 +26,7 @@ impl ReplyTimes {
     }
 
     /// Returns the average reply time, or `None` before the first reply.
-    pub fn usual(&self) -> Option<Duration> {
+    pub fn average(&self) -> Option<Duration> {
         let count = self.0.count.load(Ordering::Acquire);
         self.0.sum.load(Ordering::Relaxed).checked_div(count).map(Duration::from_micros)
     }
@@ -45,8 +45,8 @@ mod tests {
     fn reply_times_are_shared_by_all_clones() {
         let (replies, ms) = (ReplyTimes::default(), Duration::from_millis);
         let seen = replies.clone();
-        assert_eq!((seen.usual(), seen.longest_reply_time()), (None, Duration::ZERO));
-        [100, 500, 300].into_iter().for_each(|took| replies.note(ms(took)));
-        assert_eq!((seen.usual(), seen.longest_reply_time()), (Some(ms(300)), ms(500)));
+        assert_eq!((seen.average(), seen.longest_reply_time()), (None, Duration::ZERO));
+        [100, 500, 300].into_iter().for_each(|took| replies.record(ms(took)));
+        assert_eq!((seen.average(), seen.longest_reply_time()), (Some(ms(300)), ms(500)));
     }
 }

@@ -130,7 +130,7 @@ impl SerialLink {
         }
     }
 
-    fn lost(&self, error: &std::io::Error) -> LinkError {
+    fn connection_error(&self, error: &std::io::Error) -> LinkError {
         LinkError::from_io_error(&self.target, error)
     }
 }
@@ -142,14 +142,14 @@ impl ByteLink for SerialLink {
             .set_timeout(time_to_leave)
             .map_err(std::io::Error::from)
             .and_then(|()| self.port.write_all(bytes))
-            .map_err(|error| self.lost(&error))
+            .map_err(|error| self.connection_error(&error))
     }
 
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         let mut buffer = [0; 512];
         loop {
-            let left = until.since(self.clock.now());
-            self.port.set_timeout(left.max(SHORTEST_TIMEOUT)).map_err(|error| self.lost(&error.into()))?;
+            let left = until.duration_since(self.clock.now());
+            self.port.set_timeout(left.max(SHORTEST_TIMEOUT)).map_err(|error| self.connection_error(&error.into()))?;
             match self.port.read(&mut buffer) {
                 Ok(0) => return Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
                 Ok(count) => {
@@ -162,7 +162,7 @@ impl ByteLink for SerialLink {
                     }
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(self.lost(&error)),
+                Err(error) => return Err(self.connection_error(&error)),
             }
         }
     }
@@ -176,8 +176,8 @@ impl ByteLink for SerialLink {
         set.map_err(|_| LinkError::new(&self.target, LinkErrorKind::Format(format.to_string())))
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.port.bytes_to_read().map(drop).map_err(|error| self.lost(&error.into()))
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.port.bytes_to_read().map(drop).map_err(|error| self.connection_error(&error.into()))
     }
 }
 
@@ -196,7 +196,7 @@ fn open_error_kind(path: &str, error: &serialport::Error) -> LinkErrorKind {
     match error.kind {
         serialport::ErrorKind::Io(ErrorKind::NotFound) => LinkErrorKind::NotFound,
         serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::permission_error(path),
-        serialport::ErrorKind::NoDevice if platform::exists(path) => LinkErrorKind::Busy,
+        serialport::ErrorKind::NoDevice if platform::path_exists(path) => LinkErrorKind::Busy,
         serialport::ErrorKind::NoDevice => LinkErrorKind::NotFound,
         _ if platform::is_not_serial_port(path) || error.description == NOT_A_TERMINAL => LinkErrorKind::NotAPort,
         serialport::ErrorKind::InvalidInput => LinkErrorKind::Format(error.description.clone()),
@@ -218,7 +218,7 @@ mod platform {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }
 
-    pub(super) fn exists(path: &str) -> bool {
+    pub(super) fn path_exists(path: &str) -> bool {
         Path::new(path).exists()
     }
 
@@ -254,7 +254,7 @@ mod platform {
         true
     }
 
-    pub(super) fn exists(path: &str) -> bool {
+    pub(super) fn path_exists(path: &str) -> bool {
         serialport::available_ports()
             .is_ok_and(|ports| ports.iter().any(|port| port.port_name.eq_ignore_ascii_case(path)))
     }

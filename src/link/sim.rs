@@ -58,7 +58,7 @@ impl ByteLink for SimLink {
         Ok(())
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }

@@ -18,8 +18,8 @@ pub struct TcpLink {
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
     /// Wait below which the socket is polled, because its time-out is only as precise as the system tick.
-    const SHORT: Duration = Duration::from_millis(10);
-    const GLANCE: Duration = Duration::from_micros(500);
+    const POLL_THRESHOLD: Duration = Duration::from_millis(10);
+    const POLL_INTERVAL: Duration = Duration::from_micros(500);
 
     /// Connects to `host:port`.
     ///
@@ -46,7 +46,7 @@ impl TcpLink {
 
     /// Reads bytes, polling instead of blocking if the wait is short.
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<usize> {
-        if wait >= Self::SHORT {
+        if wait >= Self::POLL_THRESHOLD {
             self.stream.set_read_timeout(Some(wait))?;
             return self.stream.read(buffer);
         }
@@ -56,20 +56,20 @@ impl TcpLink {
         read
     }
 
-    fn lost(&self, error: &std::io::Error) -> LinkError {
+    fn connection_error(&self, error: &std::io::Error) -> LinkError {
         LinkError::from_io_error(&self.target, error)
     }
 }
 
 impl ByteLink for TcpLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        self.stream.write_all(bytes).map_err(|error| self.lost(&error))
+        self.stream.write_all(bytes).map_err(|error| self.connection_error(&error))
     }
 
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         let mut buffer = [0; 512];
         loop {
-            let left = until.since(self.clock.now());
+            let left = until.duration_since(self.clock.now());
             match self.read(&mut buffer, left) {
                 Ok(0) => return Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
                 Ok(count) => {
@@ -81,12 +81,12 @@ impl ByteLink for TcpLink {
                     if now >= until {
                         return Ok(());
                     }
-                    if left < Self::SHORT {
-                        self.clock.sleep_until(until.min(now + Self::GLANCE));
+                    if left < Self::POLL_THRESHOLD {
+                        self.clock.sleep_until(until.min(now + Self::POLL_INTERVAL));
                     }
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(self.lost(&error)),
+                Err(error) => return Err(self.connection_error(&error)),
             }
         }
     }
@@ -99,15 +99,15 @@ impl ByteLink for TcpLink {
         false
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         let mut byte = [0];
         let peeked = self.stream.set_nonblocking(true).and_then(|()| self.stream.peek(&mut byte));
-        self.stream.set_nonblocking(false).map_err(|error| self.lost(&error))?;
+        self.stream.set_nonblocking(false).map_err(|error| self.connection_error(&error))?;
         match peeked {
             Ok(0) => Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
             Ok(_) => Ok(()),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(()),
-            Err(error) => Err(self.lost(&error)),
+            Err(error) => Err(self.connection_error(&error)),
         }
     }
 }
@@ -130,9 +130,13 @@ mod tests {
         let begun = clock.now();
         for _ in 0..100 {
             link.receive(clock.now(), &mut bytes).unwrap();
-            link.check().unwrap();
+            link.check_connection().unwrap();
         }
-        assert!(clock.now().since(begun) < Duration::from_millis(200), "{:?}", clock.now().since(begun));
+        assert!(
+            clock.now().duration_since(begun) < Duration::from_millis(200),
+            "{:?}",
+            clock.now().duration_since(begun)
+        );
         let until = clock.now() + Duration::from_millis(5);
         link.receive(until, &mut bytes).unwrap();
         assert!(clock.now() >= until && bytes.is_empty());

@@ -51,12 +51,12 @@ impl fmt::Debug for Trace {
 
 impl Trace {
     /// Calls `watcher` for every subsequent frame. The watcher must not block.
-    pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
+    pub fn add_watcher(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
         self.watchers.push(Box::new(watcher));
     }
 
     /// Reports a frame to all watchers.
-    pub fn record(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
+    pub fn record_frame(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
         if bytes.is_empty() {
             return;
         }

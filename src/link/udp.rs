@@ -15,11 +15,11 @@ use super::{
 use crate::units::Moment;
 
 /// Length of the longest datagram in bytes. A longer one than the buffer would be cut on Linux, and be an error on Windows.
-const LONGEST: usize = 65_535;
+const MAX_DATAGRAM_LEN: usize = 65_535;
 /// Maximum number of received packets waiting to be read. Further packets are dropped.
-const WAITING: usize = 64;
+const MAX_WAITING_PACKETS: usize = 64;
 /// Maximum time until a receiver thread notices that its channel has been dropped.
-const GLANCE: Duration = Duration::from_millis(100);
+const DROP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A factory for UDP channels to the target of a TCP connection. Channels use the local address from which the target
 /// is reached.
@@ -50,7 +50,7 @@ impl DatagramPort for UdpPort {
         let local = leads_to(target).map_err(unreachable)?;
         let socket = UdpSocket::bind((local, 0)).map_err(unreachable)?;
         let port = socket.local_addr().map_err(unreachable)?.port();
-        let (sender, heard) = bounded(WAITING);
+        let (sender, heard) = bounded(MAX_WAITING_PACKETS);
         let mut packets = UdpChannel {
             name: self.target.clone(),
             target,
@@ -63,7 +63,7 @@ impl DatagramPort for UdpPort {
             clock: self.clock.clone(),
         };
         let socket = packets.socket.clone();
-        packets.listen(socket)?;
+        packets.start_listening(socket)?;
         Ok(Box::new(packets))
     }
 }
@@ -105,18 +105,18 @@ impl Drop for SocketListener {
 }
 
 impl UdpChannel {
-    fn fail(&self, error: &io::Error) -> LinkError {
+    fn connection_error(&self, error: &io::Error) -> LinkError {
         LinkError::new(&self.name, LinkErrorKind::Unreachable(error.to_string()))
     }
 
-    fn listen(&mut self, socket: Arc<UdpSocket>) -> Result<(), LinkError> {
-        socket.set_read_timeout(Some(GLANCE)).map_err(|error| self.fail(&error))?;
+    fn start_listening(&mut self, socket: Arc<UdpSocket>) -> Result<(), LinkError> {
+        socket.set_read_timeout(Some(DROP_CHECK_INTERVAL)).map_err(|error| self.connection_error(&error))?;
         let deaf = Arc::new(AtomicBool::new(false));
         let (hears, sender, from) = (deaf.clone(), self.sender.clone(), *self.target.ip());
         let thread = std::thread::Builder::new().name("cyclic packets".to_owned());
         let started = thread.spawn(move || {
             request_realtime_priority();
-            let mut buffer = vec![0; LONGEST];
+            let mut buffer = vec![0; MAX_DATAGRAM_LEN];
             while !hears.load(Ordering::Relaxed) {
                 match socket.recv_from(&mut buffer) {
                     // Packets from other senders are dropped, and so are packets that the queue cannot hold.
@@ -132,7 +132,7 @@ impl UdpChannel {
                 }
             }
         });
-        started.map_err(|error| self.fail(&error))?;
+        started.map_err(|error| self.connection_error(&error))?;
         self.listeners.push(SocketListener { is_stopped: deaf });
         Ok(())
     }
@@ -153,9 +153,10 @@ impl DatagramChannel for UdpChannel {
     }
 
     fn join(&mut self, group: SocketAddrV4) -> Result<(), LinkError> {
-        let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, group.port())).map_err(|error| self.fail(&error))?;
-        socket.join_multicast_v4(group.ip(), &self.local).map_err(|error| self.fail(&error))?;
-        self.listen(Arc::new(socket))
+        let socket =
+            UdpSocket::bind((Ipv4Addr::UNSPECIFIED, group.port())).map_err(|error| self.connection_error(&error))?;
+        socket.join_multicast_v4(group.ip(), &self.local).map_err(|error| self.connection_error(&error))?;
+        self.start_listening(Arc::new(socket))
     }
 
     fn send(&mut self, packet: &[u8]) -> Result<(), LinkError> {
@@ -171,7 +172,7 @@ impl DatagramChannel for UdpChannel {
         let received = if cfg!(windows) {
             sleep_for_packet(&self.heard, until, &*self.clock)
         } else {
-            self.heard.recv_timeout(until.since(self.clock.now()))
+            self.heard.recv_timeout(until.duration_since(self.clock.now()))
         };
         match received {
             Ok(packet) => {
@@ -187,7 +188,7 @@ impl DatagramChannel for UdpChannel {
 /// Waits for a packet in short sleeps. On Windows a thread that waits for a channel wakes at the next tick of the system
 /// timer, up to 15.6 ms late, while a sleep uses a timer of high resolution.
 fn sleep_for_packet(heard: &Receiver<Vec<u8>>, until: Moment, clock: &dyn Clock) -> Result<Vec<u8>, RecvTimeoutError> {
-    const SHORT: Duration = Duration::from_millis(1);
+    const POLL_THRESHOLD: Duration = Duration::from_millis(1);
     loop {
         match heard.try_recv() {
             Ok(packet) => return Ok(packet),
@@ -198,7 +199,7 @@ fn sleep_for_packet(heard: &Receiver<Vec<u8>>, until: Moment, clock: &dyn Clock)
         if now >= until {
             return Err(RecvTimeoutError::Timeout);
         }
-        clock.sleep_until(until.min(now + SHORT));
+        clock.sleep_until(until.min(now + POLL_THRESHOLD));
     }
 }
 
@@ -218,24 +219,24 @@ impl UdpBroadcast {
         let mut networks = vec![Ipv4Addr::BROADCAST];
         networks.extend(local_networks());
         networks.dedup();
-        Self::to(networks.into_iter().map(|address| SocketAddrV4::new(address, port)).collect(), clock)
+        Self::new(networks.into_iter().map(|address| SocketAddrV4::new(address, port)).collect(), clock)
     }
 
     /// Creates a channel that sends to the given addresses.
     ///
     /// # Errors
     /// Returns an error if the system has no free socket.
-    pub fn to(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
+    pub fn new(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let open = || {
             let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
             socket.set_broadcast(true)?;
             Ok(socket)
         };
-        let socket = open().map_err(|error: io::Error| Self::fail(&to, &error))?;
+        let socket = open().map_err(|error: io::Error| Self::send_error(&to, &error))?;
         Ok(UdpBroadcast { socket, to, clock })
     }
 
-    fn fail(to: &[SocketAddrV4], error: &io::Error) -> LinkError {
+    fn send_error(to: &[SocketAddrV4], error: &io::Error) -> LinkError {
         let to: Vec<String> = to.iter().map(ToString::to_string).collect();
         LinkError::new(to.join(", "), LinkErrorKind::Unreachable(error.to_string()))
     }
@@ -266,15 +267,15 @@ impl BroadcastChannel for UdpBroadcast {
             }
         }
         match failed {
-            Some(error) if !sent => Err(Self::fail(&self.to, &error)),
+            Some(error) if !sent => Err(Self::send_error(&self.to, &error)),
             _ => Ok(()),
         }
     }
 
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
-        let mut buffer = vec![0; LONGEST];
+        let mut buffer = vec![0; MAX_DATAGRAM_LEN];
         loop {
-            let left = until.since(self.clock.now());
+            let left = until.duration_since(self.clock.now());
             if left.is_zero() {
                 return Ok(None);
             }
@@ -286,7 +287,7 @@ impl BroadcastChannel for UdpBroadcast {
                 }
                 Ok(_) => {}
                 Err(error) if is_transient(&error) => {}
-                Err(error) => return Err(Self::fail(&self.to, &error)),
+                Err(error) => return Err(Self::send_error(&self.to, &error)),
             }
         }
     }
@@ -350,7 +351,7 @@ mod tests {
         let target = UdpSocket::bind("127.0.0.1:0").unwrap();
         let SocketAddr::V4(address) = target.local_addr().unwrap() else { panic!() };
         let clock = Arc::new(RealClock::start());
-        let mut shout = UdpBroadcast::to(vec![address], clock.clone()).unwrap();
+        let mut shout = UdpBroadcast::new(vec![address], clock.clone()).unwrap();
         shout.broadcast(b"who?").unwrap();
         let mut buffer = [0; 16];
         let (count, from) = target.recv_from(&mut buffer).unwrap();

@@ -5,7 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::expected::AllowedValues;
-use crate::parameter::{Refused, Values};
+use crate::parameter::{ParameterValues, RejectedParameter};
 
 /// Kind of connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,12 +38,12 @@ impl LinkScheme {
     ];
 
     /// Returns the keyword before the colon.
-    pub fn word(self) -> &'static str {
+    pub fn keyword(self) -> &'static str {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
     /// Describes what must follow the colon, with an example.
-    fn requirements(self) -> &'static str {
+    fn target_hint(self) -> &'static str {
         match self {
             LinkScheme::Tcp => "a host and a port, as in tcp:192.168.0.7:4001",
             LinkScheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
@@ -103,7 +103,7 @@ pub enum UrlError {
         known: &'static str,
     },
     /// The port, host or file is missing.
-    #[error("{}: needs {}", scheme.word(), scheme.requirements())]
+    #[error("{}: needs {}", scheme.keyword(), scheme.target_hint())]
     Target {
         /// Kind of connection.
         scheme: LinkScheme,
@@ -144,8 +144,8 @@ pub enum UrlError {
     },
 }
 
-impl From<Refused> for UrlError {
-    fn from(Refused { key: name, value, allowed }: Refused) -> Self {
+impl From<RejectedParameter> for UrlError {
+    fn from(RejectedParameter { key: name, value, allowed }: RejectedParameter) -> Self {
         UrlError::Value { name, value, allowed }
     }
 }
@@ -177,7 +177,7 @@ impl FromStr for LinkUrl {
 
 impl LinkUrl {
     /// Returns a link to the virtual device with default settings.
-    pub fn sim() -> Self {
+    pub fn simulated() -> Self {
         LinkUrl { scheme: LinkScheme::Sim, target: String::new(), query: UrlQuery::default() }
     }
 
@@ -203,7 +203,7 @@ impl LinkUrl {
             Wire::Host(host) => match host.rsplit_once(':') {
                 Some((host, port)) if !host.is_empty() && !port.is_empty() => {
                     let is_port = port.parse::<u16>().is_ok_and(|port| port != 0);
-                    let (scheme, port) = (self.scheme.word(), port.to_owned());
+                    let (scheme, port) = (self.scheme.keyword(), port.to_owned());
                     return if is_port { Ok(()) } else { Err(UrlError::Port { scheme, port }) };
                 }
                 _ => false,
@@ -223,7 +223,7 @@ fn has_no_port(target: &str) -> bool {
 
 impl fmt::Display for LinkUrl {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.scheme.word(), self.target)?;
+        write!(f, "{}:{}", self.scheme.keyword(), self.target)?;
         for (at, (name, value)) in self.query.0.iter().enumerate() {
             let separator = if at == 0 { '?' } else { '&' };
             write!(f, "{separator}{name}={value}")?;
@@ -277,8 +277,8 @@ impl UrlQuery {
     ///
     /// # Errors
     /// Returns an error if the value is not allowed.
-    pub fn read<V: Values>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
-        Ok(self.get(name).map(|value| values.take(name, value)).transpose()?)
+    pub fn read<V: ParameterValues>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
+        Ok(self.get(name).map(|value| values.parse_value(name, value)).transpose()?)
     }
 }
 
@@ -286,7 +286,7 @@ impl UrlQuery {
 mod tests {
     use super::*;
     use crate::expected::Quantity;
-    use crate::parameter::Whole;
+    use crate::parameter::WholeNumbers;
 
     #[test]
     fn links_round_trip() {
@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn a_bad_value_names_the_allowed_ones() {
         let query: UrlQuery = "baud=fast".parse().unwrap();
-        let speeds = Whole(Quantity::Number, 1..=9);
+        let speeds = WholeNumbers(Quantity::Number, 1..=9);
         let error = query.read("baud", &speeds).unwrap_err();
         assert_eq!(error.to_string(), "baud=fast is not valid (allowed: a number from 1 to 9)");
         assert_eq!(query.read("parity", &speeds), Ok(None));

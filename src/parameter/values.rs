@@ -3,18 +3,18 @@
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use super::Refused;
+use super::RejectedParameter;
 use crate::expected::{AllowedValues, Limit, Quantity};
 
-pub trait Values {
+pub trait ParameterValues {
     type Value;
 
     fn read(&self, text: &str) -> Option<Self::Value>;
 
-    fn allowed(&self) -> AllowedValues;
+    fn allowed_values(&self) -> AllowedValues;
 
     /// Formats a value if it is short enough to serve as an example.
-    fn print(&self, _value: &Self::Value) -> String {
+    fn format_example(&self, _value: &Self::Value) -> String {
         String::new()
     }
 
@@ -32,18 +32,18 @@ pub trait Values {
     ///
     /// # Errors
     /// Returns the allowed values if the key does not accept the value.
-    fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
-        self.read(value).ok_or_else(|| Refused::new(key, value, self.allowed()))
+    fn parse_value(&self, key: &str, value: &str) -> Result<Self::Value, RejectedParameter> {
+        self.read(value).ok_or_else(|| RejectedParameter::new(key, value, self.allowed_values()))
     }
 }
 
 /// Whole numbers, with their quantity and range.
 #[derive(Clone, Debug)]
-pub struct Whole<T>(pub Quantity, pub RangeInclusive<T>);
+pub struct WholeNumbers<T>(pub Quantity, pub RangeInclusive<T>);
 
 /// Numbers that may have a decimal point, with their quantity and range, exact to a thousandth.
 #[derive(Clone, Debug)]
-pub struct Decimal(pub Quantity, pub RangeInclusive<f64>);
+pub struct DecimalNumbers(pub Quantity, pub RangeInclusive<f64>);
 
 #[derive(Clone, Debug)]
 pub struct Milliseconds(pub RangeInclusive<u64>);
@@ -53,22 +53,22 @@ pub struct Milliseconds(pub RangeInclusive<u64>);
 pub struct Millivolts(pub RangeInclusive<u16>);
 
 #[derive(Clone, Copy, Debug)]
-pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
+pub struct Keywords<T: 'static>(pub &'static [(&'static str, T)]);
 
 /// Values in a custom notation, with the function that parses them.
 #[derive(Clone, Debug)]
-pub struct Checked<T>(pub AllowedValues, pub fn(&str) -> Option<T>);
+pub struct CustomNotation<T>(pub AllowedValues, pub fn(&str) -> Option<T>);
 
 #[derive(Clone, Debug)]
 pub struct OptionalValue<V>(pub V);
 
-pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
+pub const SWITCH: Keywords<bool> = Keywords(&[("on", true), ("off", false)]);
 
 /// Any string. None is refused at this stage, because the meaning depends on other parameters.
-pub const ANY: Checked<String> = Checked(AllowedValues::words(&[]), |text| Some(text.to_owned()));
+pub const ANY: CustomNotation<String> = CustomNotation(AllowedValues::words(&[]), |text| Some(text.to_owned()));
 
 /// Parses a whole number that fits into `T`, in decimal or in hexadecimal after `0x`.
-pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
+pub fn parse_whole<T: TryFrom<i128>>(text: &str) -> Option<T> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u64::from_str_radix(digits, 16).ok()?.into(),
         None => text.parse().ok()?,
@@ -87,18 +87,18 @@ const fn unit_symbol(quantity: Quantity) -> &'static str {
     }
 }
 
-impl<T: TryFrom<i128> + Into<i128> + Copy + PartialOrd> Values for Whole<T> {
+impl<T: TryFrom<i128> + Into<i128> + Copy + PartialOrd> ParameterValues for WholeNumbers<T> {
     type Value = T;
 
     fn read(&self, text: &str) -> Option<T> {
-        number(text).filter(|number| self.1.contains(number))
+        parse_whole(text).filter(|number| self.1.contains(number))
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::range(self.0, *self.1.start(), *self.1.end())
     }
 
-    fn print(&self, value: &T) -> String {
+    fn format_example(&self, value: &T) -> String {
         (*value).into().to_string()
     }
 
@@ -107,19 +107,19 @@ impl<T: TryFrom<i128> + Into<i128> + Copy + PartialOrd> Values for Whole<T> {
     }
 }
 
-impl Values for Decimal {
+impl ParameterValues for DecimalNumbers {
     type Value = f64;
 
     fn read(&self, text: &str) -> Option<f64> {
         text.parse().ok().filter(|number| self.1.contains(number))
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         let limit = |number: &f64| Limit::from_thousandths((number * 1000.0).round() as i128);
         AllowedValues::range(self.0, limit(self.1.start()), limit(self.1.end()))
     }
 
-    fn print(&self, value: &f64) -> String {
+    fn format_example(&self, value: &f64) -> String {
         value.to_string()
     }
 
@@ -132,18 +132,18 @@ impl Values for Decimal {
     }
 }
 
-impl Values for Milliseconds {
+impl ParameterValues for Milliseconds {
     type Value = Duration;
 
     fn read(&self, text: &str) -> Option<Duration> {
-        number(text).filter(|ms| self.0.contains(ms)).map(Duration::from_millis)
+        parse_whole(text).filter(|ms| self.0.contains(ms)).map(Duration::from_millis)
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::range(Quantity::Milliseconds, *self.0.start(), *self.0.end())
     }
 
-    fn print(&self, value: &Duration) -> String {
+    fn format_example(&self, value: &Duration) -> String {
         value.as_millis().to_string()
     }
 
@@ -152,7 +152,7 @@ impl Values for Milliseconds {
     }
 }
 
-impl Values for Millivolts {
+impl ParameterValues for Millivolts {
     type Value = u16;
 
     fn read(&self, text: &str) -> Option<u16> {
@@ -162,12 +162,12 @@ impl Values for Millivolts {
         fits.then_some(millivolts as u16).filter(|own| self.0.contains(own))
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         let limit = |millivolts: u16| Limit::from_thousandths(millivolts.into());
         AllowedValues::range(Quantity::Volts, limit(*self.0.start()), limit(*self.0.end()))
     }
 
-    fn print(&self, value: &u16) -> String {
+    fn format_example(&self, value: &u16) -> String {
         (f64::from(*value) / 1000.0).to_string()
     }
 
@@ -180,47 +180,47 @@ impl Values for Millivolts {
     }
 }
 
-impl<T: Clone + PartialEq> Values for Words<T> {
+impl<T: Clone + PartialEq> ParameterValues for Keywords<T> {
     type Value = T;
 
     fn read(&self, text: &str) -> Option<T> {
         self.0.iter().find(|(word, _)| *word == text).map(|(_, meaning)| meaning.clone())
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::Words(self.0.iter().map(|(word, _)| *word).collect())
     }
 
-    fn print(&self, value: &T) -> String {
+    fn format_example(&self, value: &T) -> String {
         self.0.iter().find(|(_, meaning)| meaning == value).map_or_else(String::new, |(word, _)| (*word).to_owned())
     }
 }
 
-impl<T> Values for Checked<T> {
+impl<T> ParameterValues for CustomNotation<T> {
     type Value = T;
 
     fn read(&self, text: &str) -> Option<T> {
         (self.1)(text)
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         self.0.clone()
     }
 }
 
-impl<V: Values> Values for OptionalValue<V> {
+impl<V: ParameterValues> ParameterValues for OptionalValue<V> {
     type Value = Option<V::Value>;
 
     fn read(&self, text: &str) -> Option<Self::Value> {
         self.0.read(text).map(Some)
     }
 
-    fn allowed(&self) -> AllowedValues {
-        self.0.allowed()
+    fn allowed_values(&self) -> AllowedValues {
+        self.0.allowed_values()
     }
 
-    fn print(&self, value: &Self::Value) -> String {
-        value.as_ref().map_or_else(String::new, |value| self.0.print(value))
+    fn format_example(&self, value: &Self::Value) -> String {
+        value.as_ref().map_or_else(String::new, |value| self.0.format_example(value))
     }
 
     fn unit(&self) -> &'static str {
@@ -239,26 +239,29 @@ mod tests {
     #[test]
     fn values_parse_print_and_are_refused() {
         let told = |allowed: AllowedValues| allowed.to_string();
-        let unit = Whole::<u8>(Quantity::Unit, 1..=247);
+        let unit = WholeNumbers::<u8>(Quantity::Unit, 1..=247);
         assert_eq!(
             [unit.read("0x10"), unit.read("247"), unit.read("248"), unit.read("")],
             [Some(16), Some(247), None, None]
         );
-        assert_eq!((unit.print(&16), told(unit.allowed())), ("16".to_owned(), "a unit ID from 1 to 247".to_owned()));
+        assert_eq!(
+            (unit.format_example(&16), told(unit.allowed_values())),
+            ("16".to_owned(), "a unit ID from 1 to 247".to_owned())
+        );
         let time = Milliseconds(50..=8000);
         assert_eq!((time.read("50"), time.read("49")), (Some(Duration::from_millis(50)), None));
-        assert_eq!((time.print(&Duration::from_secs(2)), time.unit()), ("2000".to_owned(), "ms"));
+        assert_eq!((time.format_example(&Duration::from_secs(2)), time.unit()), ("2000".to_owned(), "ms"));
         let supply = Millivolts(4_750..=12_500);
         assert_eq!(
             [supply.read("4.75"), supply.read("12.501"), supply.read("NaN"), supply.read("-5")],
             [Some(4_750), None, None, None]
         );
-        assert_eq!(told(supply.allowed()), "a voltage in volts from 4.75 to 12.5");
-        let warm = Decimal(Quantity::Celsius, -12.5..=40.0);
+        assert_eq!(told(supply.allowed_values()), "a voltage in volts from 4.75 to 12.5");
+        let warm = DecimalNumbers(Quantity::Celsius, -12.5..=40.0);
         assert_eq!([warm.read("-12.5"), warm.read("-12.6"), warm.read("inf")], [Some(-12.5), None, None]);
-        assert_eq!(told(warm.allowed()), "a temperature in °C from -12.5 to 40");
+        assert_eq!(told(warm.allowed_values()), "a temperature in °C from -12.5 to 40");
         assert_eq!((OptionalValue(SWITCH).read("on"), OptionalValue(SWITCH).read("yes")), (Some(Some(true)), None));
-        let refused = SWITCH.take("echo", "yes").unwrap_err();
+        let refused = SWITCH.parse_value("echo", "yes").unwrap_err();
         assert_eq!(
             (refused.key.as_str(), refused.value.as_str(), told(refused.allowed)),
             ("echo", "yes", "on or off".to_owned())

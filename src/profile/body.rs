@@ -53,13 +53,13 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     fn emit(&self, writer: &mut Writer);
 
     /// Returns a boxed copy.
-    fn boxed(&self) -> Box<dyn ProfileBody>;
+    fn clone_boxed(&self) -> Box<dyn ProfileBody>;
 
     /// Returns whether this body equals another one.
     fn dyn_eq(&self, other: &dyn ProfileBody) -> bool;
 
     /// Compares this body with another one. Returns `None` if the other body is for a different kind of device.
-    fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
+    fn compare_with(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 }
 
 impl<P: Profile> ProfileBody for P {
@@ -71,7 +71,7 @@ impl<P: Profile> ProfileBody for P {
         self.write(writer);
     }
 
-    fn boxed(&self) -> Box<dyn ProfileBody> {
+    fn clone_boxed(&self) -> Box<dyn ProfileBody> {
         Box::new(self.clone())
     }
 
@@ -80,7 +80,7 @@ impl<P: Profile> ProfileBody for P {
         other.downcast_ref::<P>() == Some(self)
     }
 
-    fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison> {
+    fn compare_with(&self, other: &dyn ProfileBody) -> Option<Comparison> {
         let other: &dyn Any = other;
         other.downcast_ref::<P>().map(|other| self.compare(other))
     }
@@ -127,7 +127,7 @@ impl Body {
     /// # Errors
     /// Returns [`ProfileError::OtherKind`] if the other profile is for a different kind of device.
     pub fn compare(&self, other: &Body) -> Result<Comparison, ProfileError> {
-        self.0.compared(other.0.as_ref()).ok_or_else(|| other.wrong_kind_error(self.kind()))
+        self.0.compare_with(other.0.as_ref()).ok_or_else(|| other.wrong_kind_error(self.kind()))
     }
 
     /// Returns the error that the profile is not for a `wanted` device.
@@ -160,7 +160,7 @@ impl Body {
 
 impl Clone for Body {
     fn clone(&self) -> Self {
-        Body(self.0.boxed())
+        Body(self.0.clone_boxed())
     }
 }
 

@@ -8,12 +8,12 @@ use std::fmt;
 pub struct Cause(Box<dyn DynCause>);
 
 trait DynCause: Any + Error + Send + Sync {
-    fn boxed(&self) -> Box<dyn DynCause>;
+    fn clone_boxed(&self) -> Box<dyn DynCause>;
     fn dyn_eq(&self, other: &dyn DynCause) -> bool;
 }
 
 impl<E: Error + Clone + Eq + Send + Sync + 'static> DynCause for E {
-    fn boxed(&self) -> Box<dyn DynCause> {
+    fn clone_boxed(&self) -> Box<dyn DynCause> {
         Box::new(self.clone())
     }
 
@@ -38,7 +38,7 @@ impl Cause {
 
 impl Clone for Cause {
     fn clone(&self) -> Self {
-        Cause(self.0.boxed())
+        Cause(self.0.clone_boxed())
     }
 }
 

@@ -26,13 +26,13 @@ impl ChangedItem {
     }
 
     /// Creates an item with a new value that replaces no single old one.
-    pub fn set(item: impl ToString, new: impl ToString) -> Self {
+    pub fn new_value(item: impl ToString, new: impl ToString) -> Self {
         ChangedItem::new(item, None, Some(new.to_string()))
     }
 
     /// Adds the name in the manual.
     #[must_use]
-    pub fn named(self, name: impl ToString) -> Self {
+    pub fn with_manual_name(self, name: impl ToString) -> Self {
         ChangedItem { name: Some(name.to_string()), ..self }
     }
 }

@@ -28,7 +28,7 @@ pub struct Comparison {
 
 impl Comparison {
     /// Compares an item that counts as one value. `None` means that a side does not have the item.
-    pub fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
+    pub fn compare_item<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}
             (Some(_), None) => self.only_left.push(item),
@@ -43,13 +43,13 @@ impl Comparison {
     }
 
     /// Returns the items that are present on only one side.
-    pub fn missing(&self) -> Vec<String> {
+    pub fn one_sided_items(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()
     }
 }
 
 /// Returns the ranges of consecutive bytes that differ. Bytes beyond the shorter side are ignored.
-pub(crate) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
+pub(crate) fn differing_ranges(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {
         match runs.last_mut() {

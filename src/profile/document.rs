@@ -9,8 +9,8 @@ use ron::error::SpannedError;
 use super::body::{Body, ProfileFormats};
 use super::error::{ProfileError, SyntaxErrorKind};
 use super::misspelt::Reading;
-use super::place::location_of;
-use super::ron_text::{Entries, Unknown, Writer};
+use super::place::find_location;
+use super::ron_text::{Entries, UnknownValues, Writer};
 use super::unique_names::UniqueNames;
 use crate::expected::AllowedValues;
 
@@ -27,7 +27,7 @@ pub struct ProfileDocument {
     /// Saved content.
     pub body: Body,
     /// Unknown entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
     /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, because saving would lose its unknown parts.
     pub schema: u32,
     /// Paths of entries that the schema does not define. In an older file, such entries are moved into `extra`.
@@ -41,7 +41,7 @@ impl ProfileDocument {
             saved: Some(saved),
             note: None,
             body,
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
             schema: SCHEMA,
             beyond: Vec::new(),
         }
@@ -68,7 +68,7 @@ impl ProfileDocument {
         let reading = Rc::new(Reading::default());
         Self::read(value, &reading, formats).map_err(|error| match reading.reported_error(error) {
             ProfileError::Misspelt { path, intended, .. } => {
-                let (line, column) = location_of(text, &path).unwrap_or((1, 1));
+                let (line, column) = find_location(text, &path).unwrap_or((1, 1));
                 ProfileError::Misspelt { line, column, path, intended }
             }
             error => error,
@@ -88,8 +88,8 @@ impl ProfileDocument {
         let saved = entries.take_optional("saved", AllowedValues::Text)?;
         let note = entries.take_optional("note", AllowedValues::Text)?;
         let body = formats.parse(device, &mut entries)?;
-        let unknown = entries.rest()?;
-        Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.beyond() })
+        let unknown = entries.into_unknown()?;
+        Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.undefined_entries() })
     }
 
     /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared. It cannot be
@@ -102,7 +102,7 @@ impl ProfileDocument {
     ///
     /// # Errors
     /// Returns [`ProfileError::Schema`] if the schema is newer.
-    pub fn known(self) -> Result<Self, ProfileError> {
+    pub fn check_schema(self) -> Result<Self, ProfileError> {
         if self.is_newer() { Err(ProfileError::Schema { found: self.schema, known: SCHEMA }) } else { Ok(self) }
     }
 
@@ -119,7 +119,7 @@ impl ProfileDocument {
             writer.text("note", note);
         }
         self.body.emit(&mut writer);
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
         writer.close(')');
         writer.finish()
     }

@@ -39,7 +39,7 @@ pub enum ProfileError {
         known: u32,
     },
     /// The profile is for an unknown kind of device.
-    #[error("device {found:?}; this program knows {}", quoted(known))]
+    #[error("device {found:?}; this program knows {}", quoted_list(known))]
     Device {
         /// Kind of device in the file.
         found: String,
@@ -102,12 +102,12 @@ pub enum SyntaxErrorKind {
 
 impl ProfileError {
     /// Creates an error for an entry that is invalid for the kind of device.
-    pub fn refused<E: std::error::Error + Clone + Eq + Send + Sync + 'static>(path: String, error: E) -> Self {
+    pub fn invalid_entry<E: std::error::Error + Clone + Eq + Send + Sync + 'static>(path: String, error: E) -> Self {
         ProfileError::Refused { path, cause: Cause::new(error) }
     }
 }
 
-fn quoted(kinds: &[&str]) -> String {
+fn quoted_list(kinds: &[&str]) -> String {
     let kinds: Vec<String> = kinds.iter().map(|kind| format!("{kind:?}")).collect();
     match kinds.split_last() {
         Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),

@@ -45,7 +45,7 @@ impl Reading {
     }
 
     /// Returns the paths of the entries that the schema does not define, in reading order.
-    pub(super) fn beyond(&self) -> Vec<String> {
+    pub(super) fn undefined_entries(&self) -> Vec<String> {
         self.beyond.borrow().clone()
     }
 
@@ -80,12 +80,12 @@ pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     let (name, intended) = (plain(name), plain(intended));
     let (shorter, longer) = if name.len() < intended.len() { (&name, &intended) } else { (&intended, &name) };
     let begins = shorter.len() >= 3 && longer.starts_with(shorter);
-    let letters = distance(&name, &intended);
+    let letters = char_distance(&name, &intended);
     (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
 }
 
 /// Returns the edit distance between two names. Swapping two adjacent letters counts as one edit.
-fn distance(from: &[char], to: &[char]) -> usize {
+fn char_distance(from: &[char], to: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=to.len()).collect();
     for (row, letter) in from.iter().enumerate() {

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use super::ProfileError;
-use super::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use super::ron_text::{Entries, UnknownValues, Writer, entries_text, quote};
 use crate::expected::AllowedValues;
 
 /// A mark on a value that is valid only for one device on one machine.
@@ -14,7 +14,7 @@ pub struct MountingMark<Item> {
     /// Meaning of the item.
     pub meaning: String,
     /// Unknown entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 const ENTRY: &str = "mounting";
@@ -27,7 +27,11 @@ impl<Item> MountingMark<Item> {
         expected: AllowedValues,
         item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Vec<Self>, ProfileError> {
-        entries.structures(ENTRY)?.into_iter().map(|entries| Self::read(entries, expected.clone(), &item)).collect()
+        entries
+            .take_structures(ENTRY)?
+            .into_iter()
+            .map(|entries| Self::read(entries, expected.clone(), &item))
+            .collect()
     }
 
     fn read<E: Error + Clone + Eq + Send + Sync + 'static>(
@@ -35,11 +39,11 @@ impl<Item> MountingMark<Item> {
         expected: AllowedValues,
         item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Self, ProfileError> {
-        let path = entries.path_of("item");
+        let path = entries.entry_path("item");
         let text: String = entries.take_required("item", expected)?;
-        let item = item(&text).map_err(|error| ProfileError::refused(path, error))?;
+        let item = item(&text).map_err(|error| ProfileError::invalid_entry(path, error))?;
         let meaning = entries.take_optional("meaning", AllowedValues::Text)?.unwrap_or_default();
-        Ok(MountingMark { item, meaning, unknown: entries.rest()? })
+        Ok(MountingMark { item, meaning, unknown: entries.into_unknown()? })
     }
 }
 
@@ -49,10 +53,10 @@ impl<Item: ToString> MountingMark<Item> {
         if marks.is_empty() {
             return;
         }
-        writer.comment(comment);
+        writer.write_comment(comment);
         writer.open(ENTRY, '[');
         for mark in marks {
-            let (item, meaning) = (quoted(&mark.item.to_string()), quoted(&mark.meaning));
+            let (item, meaning) = (quote(&mark.item.to_string()), quote(&mark.meaning));
             let unknown = entries_text(&mark.unknown);
             writer.write_list_element(&format!("(item: {item}, meaning: {meaning}{unknown})"));
         }
@@ -61,4 +65,4 @@ impl<Item: ToString> MountingMark<Item> {
 }
 
 /// Comment for items that are copied to another encoder only on request.
-pub(crate) const NEVER_BY_ITSELF: &str = "belongs to the mounting: never restored onto another encoder by itself";
+pub(crate) const MOUNTING_COMMENT: &str = "belongs to the mounting: never restored onto another encoder by itself";

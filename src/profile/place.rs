@@ -7,10 +7,10 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 
 /// Returns the line and column of an entry's name, counted from 1. Returns `None` if there is no entry at `path`, for
 /// example `fields[2].status`.
-pub(super) fn location_of(text: &str, path: &str) -> Option<(usize, usize)> {
+pub(super) fn find_location(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
-    if found.code != ron::Error::Message(FOUND.to_owned()) {
+    if found.code != ron::Error::Message(FOUND_MESSAGE.to_owned()) {
         return None;
     }
     // The parser stops after the name, or after the text that follows the name.
@@ -22,7 +22,7 @@ pub(super) fn location_of(text: &str, path: &str) -> Option<(usize, usize)> {
 }
 
 /// Error message that ends the search when the entry is found.
-const FOUND: &str = "found";
+const FOUND_MESSAGE: &str = "found";
 
 struct EntrySearch<'w> {
     path: String,
@@ -30,7 +30,7 @@ struct EntrySearch<'w> {
 }
 
 impl EntrySearch<'_> {
-    fn at(&self, path: String) -> Self {
+    fn with_path(&self, path: String) -> Self {
         EntrySearch { path, wanted: self.wanted }
     }
 }
@@ -58,16 +58,16 @@ impl<'de> Visitor<'de> for EntrySearch<'_> {
             };
             let path = if self.path.is_empty() { name } else { format!("{}.{name}", self.path) };
             if path == self.wanted {
-                return Err(A::Error::custom(FOUND));
+                return Err(A::Error::custom(FOUND_MESSAGE));
             }
-            map.next_value_seed(self.at(path))?;
+            map.next_value_seed(self.with_path(path))?;
         }
         Ok(())
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
         let mut number = 0;
-        while seq.next_element_seed(self.at(format!("{}[{number}]", self.path)))?.is_some() {
+        while seq.next_element_seed(self.with_path(format!("{}[{number}]", self.path)))?.is_some() {
             number += 1;
         }
         Ok(())
@@ -138,8 +138,8 @@ mod tests {
             ("d", None),
         ];
         for (path, place) in cases {
-            assert_eq!(location_of(text, path), place, "{path}");
+            assert_eq!(find_location(text, path), place, "{path}");
         }
-        assert_eq!(location_of("(a: ", "b"), None);
+        assert_eq!(find_location("(a: ", "b"), None);
     }
 }

@@ -1,36 +1,36 @@
 //! Saving a profile over a file that a user has edited, and merging the profiles of two users.
 
-use super::source::{Carried, Change, apply_all, carry, changes, lost};
+use super::source::{Change, UpdatedText, apply_all, carry_changes, find_changes, lost_comments};
 use super::{ProfileDocument, ProfileError, ProfileFormats};
 
 impl ProfileDocument {
     /// Updates `text` to the content of the document. Unchanged entries keep their notation, comments, order and line
     /// endings.
-    pub fn rewrite_text(&self, text: &str, formats: ProfileFormats) -> Carried {
+    pub fn rewrite_text(&self, text: &str, formats: ProfileFormats) -> UpdatedText {
         let own = self.emit();
         let before = ProfileDocument::parse(text, formats).map(|before| before.emit());
-        let carried = before.as_ref().ok().and_then(|before| carry(text, before, &own));
+        let carried = before.as_ref().ok().and_then(|before| carry_changes(text, before, &own));
         let says_the_same = |text: &str| ProfileDocument::parse(text, formats).is_ok_and(|read| read.emit() == own);
         match carried {
             Some(carried) if says_the_same(&carried.text) => carried,
             _ => {
-                let lost = lost(text, &own, before.as_deref().unwrap_or_default());
+                let lost = lost_comments(text, &own, before.as_deref().unwrap_or_default());
                 let text = if text.contains("\r\n") { own.replace('\n', "\r\n") } else { own };
-                Carried { text, lost }
+                UpdatedText { text, lost }
             }
         }
     }
 
     /// Returns the changes, entry by entry, that turn this document into `other`.
     pub fn changes_to(&self, other: &ProfileDocument) -> Vec<Change> {
-        changes(&self.emit(), &other.emit()).unwrap_or_default()
+        find_changes(&self.emit(), &other.emit()).unwrap_or_default()
     }
 
     /// Returns the document with the changes applied.
     ///
     /// # Errors
     /// Returns the error if the result is not a valid profile, or `None` if a change cannot be applied.
-    pub fn changed(
+    pub fn with_changes(
         &self,
         changes: &[Change],
         formats: ProfileFormats,

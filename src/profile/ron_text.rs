@@ -14,10 +14,10 @@ use crate::bits::{HexError, parse_hex};
 use crate::expected::AllowedValues;
 
 /// Unknown entries by name. They were added by the user or belong to a newer schema.
-pub type Unknown = BTreeMap<String, Value>;
+pub type UnknownValues = BTreeMap<String, Value>;
 
 /// Name of the structure that holds the user's own entries.
-const EXTRA: &str = "extra";
+const EXTRA_ENTRY: &str = "extra";
 
 /// The entries of a structure. Parsing takes them out one by one. Those that remain are the user's own or misspelt.
 pub struct Entries {
@@ -50,7 +50,7 @@ impl Entries {
     }
 
     /// Takes an entry, and records its name if the entry is missing.
-    fn take(&mut self, name: &str) -> Option<Value> {
+    fn take_value(&mut self, name: &str) -> Option<Value> {
         let value = self.entries.remove(name);
         if value.is_none() {
             self.missed.push(name.to_owned());
@@ -63,11 +63,11 @@ impl Entries {
         if self.reading.is_newer() {
             return None;
         }
-        let left = self.entries.keys().filter(|name| *name != EXTRA);
+        let left = self.entries.keys().filter(|name| *name != EXTRA_ENTRY);
         let pairs = left.flat_map(|name| self.missed.iter().map(move |intended| (name, intended)));
         let slips = pairs.filter_map(|(name, intended)| {
             let letters = edit_distance(name, intended).filter(|letters| *letters <= most)?;
-            Some(Misspelling { letters, path: self.path_of(name), intended: intended.clone() })
+            Some(Misspelling { letters, path: self.entry_path(name), intended: intended.clone() })
         });
         slips.min()
     }
@@ -78,7 +78,7 @@ impl Entries {
     }
 
     /// Returns the path of an entry for use in messages.
-    pub fn path_of(&self, name: &str) -> String {
+    pub fn entry_path(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
@@ -88,14 +88,14 @@ impl Entries {
         name: &str,
         expected: AllowedValues,
     ) -> Result<Option<T>, ProfileError> {
-        let Some(value) = self.take(name) else { return Ok(None) };
+        let Some(value) = self.take_value(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
             return Ok(None);
         }
         unwrap_value(value)
             .into_rust()
             .map(Some)
-            .map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
+            .map_err(|_| ProfileError::Shape { path: self.entry_path(name), expected })
     }
 
     /// Parses a required simple value.
@@ -104,20 +104,20 @@ impl Entries {
         name: &str,
         expected: AllowedValues,
     ) -> Result<T, ProfileError> {
-        self.take_optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
+        self.take_optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.entry_path(name) })
     }
 
     /// Takes a required structure.
-    pub fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
-        let path = self.path_of(name);
-        let value = self.take(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
+    pub fn take_structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
+        let path = self.entry_path(name);
+        let value = self.take_value(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
         Entries::open(&path, value, &self.reading)
     }
 
     /// Takes a structure, or returns `None` if the structure is missing.
     pub fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
-        let path = self.path_of(name);
-        match self.take(name) {
+        let path = self.entry_path(name);
+        match self.take_value(name) {
             None | Some(Value::Option(None)) => Ok(None),
             Some(value) => Entries::open(&path, value, &self.reading).map(Some),
         }
@@ -125,7 +125,7 @@ impl Entries {
 
     /// Parses bytes, written as one hex string or as a list of hex strings.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
-        let path = self.path_of(name);
+        let path = self.entry_path(name);
         let Some(value) = self.take_optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
         let lines = match value {
             Value::String(line) => vec![line],
@@ -141,15 +141,15 @@ impl Entries {
     pub fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         if !self.entries.contains_key(name) {
             self.missed.push(name.to_owned());
-            return Err(ProfileError::Missing { path: self.path_of(name) });
+            return Err(ProfileError::Missing { path: self.entry_path(name) });
         }
-        self.structures(name)
+        self.take_structures(name)
     }
 
     /// Takes a list of structures, or returns an empty list if the entry is missing.
-    pub fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
-        let path = self.path_of(name);
-        match self.take(name).map(unwrap_value) {
+    pub fn take_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
+        let path = self.entry_path(name);
+        match self.take_value(name).map(unwrap_value) {
             None => Ok(Vec::new()),
             Some(Value::Seq(values)) => values
                 .into_iter()
@@ -161,11 +161,11 @@ impl Entries {
     }
 
     /// Takes a map with arbitrary keys and preserves their order. Returns an empty map if the entry is missing.
-    pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
-        match self.take(name).map(unwrap_value) {
+    pub fn take_map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
+        match self.take_value(name).map(unwrap_value) {
             None | Some(Value::Unit) => Ok(Vec::new()),
             Some(Value::Map(map)) => Ok(map.into_iter().collect()),
-            Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: AllowedValues::Map }),
+            Some(_) => Err(ProfileError::Shape { path: self.entry_path(name), expected: AllowedValues::Map }),
         }
     }
 
@@ -174,7 +174,7 @@ impl Entries {
     ///
     /// # Errors
     /// Returns [`ProfileError::Misspelt`] if a remaining entry is a misspelling of a missing one.
-    pub fn rest(mut self) -> Result<Unknown, ProfileError> {
+    pub fn into_unknown(mut self) -> Result<UnknownValues, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
             self.report_unknown_entries(&left);
@@ -185,9 +185,11 @@ impl Entries {
             return Err(slip.error());
         }
         let mut left = std::mem::take(&mut self.entries);
-        let mut own = match left.remove(EXTRA) {
-            None => Unknown::new(),
-            Some(value) => std::mem::take(&mut Entries::open(&self.path_of(EXTRA), value, &self.reading)?.entries),
+        let mut own = match left.remove(EXTRA_ENTRY) {
+            None => UnknownValues::new(),
+            Some(value) => {
+                std::mem::take(&mut Entries::open(&self.entry_path(EXTRA_ENTRY), value, &self.reading)?.entries)
+            }
         };
         self.report_unknown_entries(&left);
         for (name, value) in left {
@@ -201,8 +203,8 @@ impl Entries {
         self.reading.is_beyond(path);
     }
 
-    fn report_unknown_entries(&self, left: &Unknown) {
-        left.keys().for_each(|name| self.reading.is_beyond(self.path_of(name)));
+    fn report_unknown_entries(&self, left: &UnknownValues) {
+        left.keys().for_each(|name| self.reading.is_beyond(self.entry_path(name)));
     }
 }
 
@@ -241,24 +243,24 @@ pub struct Writer {
 
 impl Writer {
     /// Writes a comment on a separate line.
-    pub fn comment(&mut self, text: &str) {
-        self.line(&format!("// {text}"));
+    pub fn write_comment(&mut self, text: &str) {
+        self.write_line(&format!("// {text}"));
     }
 
     /// Writes `name: value,` followed by a comment. The value is written as given.
     pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
-        self.line(&format!("{name}: {value},{behind}"));
+        self.write_line(&format!("{name}: {value},{behind}"));
     }
 
     /// Writes a list element verbatim.
     pub fn write_list_element(&mut self, value: &str) {
-        self.line(&format!("{value},"));
+        self.write_line(&format!("{value},"));
     }
 
     /// Writes `name: "text",`.
     pub fn text(&mut self, name: &str, text: &str) {
-        self.entry(name, &quoted(text), "");
+        self.entry(name, &quote(text), "");
     }
 
     /// Writes bytes as a list of strings of sixteen bytes, each followed by its ASCII characters.
@@ -267,22 +269,22 @@ impl Writer {
         for row in bytes.chunks(16) {
             let printable = |byte: &u8| if matches!(byte, b' '..=b'~') { char::from(*byte) } else { '.' };
             let text: String = row.iter().map(printable).collect();
-            self.line(&format!("\"{}\", // {text}", crate::bits::hex(row)));
+            self.write_line(&format!("\"{}\", // {text}", crate::bits::hex(row)));
         }
         self.close(']');
     }
 
     /// Writes unknown entries as they were read.
-    pub fn unknown(&mut self, unknown: &Unknown) {
+    pub fn write_unknown(&mut self, unknown: &UnknownValues) {
         if !unknown.is_empty() {
-            self.entry(EXTRA, &extra_text(unknown), "");
+            self.entry(EXTRA_ENTRY, &extra_text(unknown), "");
         }
     }
 
     /// Begins a structure or list. In a list and at the top level, the name is empty.
     pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
-        self.line(&head);
+        self.write_line(&head);
         self.depth += 1;
     }
 
@@ -290,31 +292,31 @@ impl Writer {
     pub fn close(&mut self, bracket: char) {
         self.depth = self.depth.saturating_sub(1);
         let comma = if self.depth == 0 { "" } else { "," };
-        self.line(&format!("{bracket}{comma}"));
+        self.write_line(&format!("{bracket}{comma}"));
     }
 
     pub(super) fn finish(self) -> String {
         self.out
     }
 
-    fn line(&mut self, text: &str) {
+    fn write_line(&mut self, text: &str) {
         // Writing to a String cannot fail.
         let _ = writeln!(self.out, "{:indent$}{}", "", text.trim_end(), indent = self.depth * 4);
     }
 }
 
-pub(crate) fn quoted(text: &str) -> String {
+pub(crate) fn quote(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
 /// Formats the user's own entries for the end of a single-line structure, as in `, extra: {…}`.
-pub(crate) fn entries_text(unknown: &Unknown) -> String {
-    if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
+pub(crate) fn entries_text(unknown: &UnknownValues) -> String {
+    if unknown.is_empty() { String::new() } else { format!(", {EXTRA_ENTRY}: {}", extra_text(unknown)) }
 }
 
-fn extra_text(unknown: &Unknown) -> String {
+fn extra_text(unknown: &UnknownValues) -> String {
     let entries: Vec<String> =
-        unknown.iter().map(|(name, value)| format!("{}: {}", quoted(name), value_text(value))).collect();
+        unknown.iter().map(|(name, value)| format!("{}: {}", quote(name), value_text(value))).collect();
     format!("{{{}}}", entries.join(", "))
 }
 

@@ -1,12 +1,12 @@
 //! Helpers for profile tests of any kind of device.
 
-use super::{Carried, Profile, ProfileDocument};
+use super::{Profile, ProfileDocument, UpdatedText};
 
 /// Edits a profile and its note, and saves it over the text from which it was read.
-pub(crate) fn edited<P: Profile>(
+pub(crate) fn edit_profile<P: Profile>(
     text: &str,
     edit: impl FnOnce(&mut Option<String>, &mut P),
-) -> (ProfileDocument, Carried) {
+) -> (ProfileDocument, UpdatedText) {
     let mut document = ProfileDocument::parse(text, P::FORMATS).unwrap();
     edit(&mut document.note, document.body.get_mut().unwrap());
     let carried = document.rewrite_text(text, P::FORMATS);
@@ -16,9 +16,9 @@ pub(crate) fn edited<P: Profile>(
 
 /// Checks that an edit replaces only `from` with `to` in the text. If both are empty, the text must not change.
 pub(crate) fn assert_edit_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
-    let (_, same) = edited(text, |_, _: &mut P| {});
-    assert_eq!(same, Carried { text: text.to_owned(), lost: Vec::new() });
-    let (_, carried) = edited(text, |_, own| edit(own));
+    let (_, same) = edit_profile(text, |_, _: &mut P| {});
+    assert_eq!(same, UpdatedText { text: text.to_owned(), lost: Vec::new() });
+    let (_, carried) = edit_profile(text, |_, own| edit(own));
     // This program chooses the form and the place of a new entry.
     let squeezed = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
     assert_eq!(squeezed(&carried.text), squeezed(&text.replace(from, to)));

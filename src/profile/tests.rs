@@ -1,6 +1,6 @@
 //! Tests of documents of invented kinds: a light with its steps, and a fan.
 
-use super::testing::{assert_edit_in_place, edited};
+use super::testing::{assert_edit_in_place, edit_profile};
 use super::*;
 use crate::expected::AllowedValues;
 
@@ -8,7 +8,7 @@ use crate::expected::AllowedValues;
 #[derive(Clone, Debug, PartialEq)]
 struct Lamp {
     colour: String,
-    steps: Vec<(u8, Unknown)>,
+    steps: Vec<(u8, UnknownValues)>,
 }
 
 impl Profile for Lamp {
@@ -17,8 +17,8 @@ impl Profile for Lamp {
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let colour = entries.take_required("colour", AllowedValues::Text)?;
         let mut steps = Vec::new();
-        for mut entries in entries.structures("steps")? {
-            steps.push((entries.take_required("level", AllowedValues::between(0, 255))?, entries.rest()?));
+        for mut entries in entries.take_structures("steps")? {
+            steps.push((entries.take_required("level", AllowedValues::whole_range(0, 255))?, entries.into_unknown()?));
         }
         Ok(Lamp { colour, steps })
     }
@@ -29,7 +29,7 @@ impl Profile for Lamp {
         for (level, unknown) in &self.steps {
             writer.open("", '(');
             writer.entry("level", &level.to_string(), "");
-            writer.unknown(unknown);
+            writer.write_unknown(unknown);
             writer.close(')');
         }
         writer.close(']');
@@ -37,7 +37,7 @@ impl Profile for Lamp {
 
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
-        comparison.add("colour".to_owned(), Some(&self.colour), Some(&other.colour));
+        comparison.compare_item("colour".to_owned(), Some(&self.colour), Some(&other.colour));
         comparison
     }
 }
@@ -83,7 +83,7 @@ fn lamp(colour: &str) -> Body {
 fn a_document_is_parsed_in_the_format_of_its_kind() {
     let document = parse(TEXT).unwrap();
     assert_eq!(document.device(), "lamp");
-    assert_eq!(document.body.get::<Lamp>().unwrap().steps, [(10, Unknown::new()), (0x40, Unknown::new())]);
+    assert_eq!(document.body.get::<Lamp>().unwrap().steps, [(10, UnknownValues::new()), (0x40, UnknownValues::new())]);
     assert_eq!(document.body.get::<Fan>(), None);
     assert_eq!(parse(&document.emit()), Ok(document));
     assert_eq!(parse("(schema: 1, device: \"fan\")").unwrap().body, Body::new(Fan));
@@ -124,7 +124,7 @@ fn user_entries_and_newer_schema_entries_are_kept() {
     assert!(document.beyond.is_empty() && document.emit().contains("extra: {\"by\": \"CK\"}"));
     let newer = parse(&TEXT.replace("schema: 1", "schema: 7, power: 3")).unwrap();
     assert!(newer.is_newer() && newer.beyond == ["power"]);
-    assert_eq!(newer.known(), Err(ProfileError::Schema { found: 7, known: 1 }));
+    assert_eq!(newer.check_schema(), Err(ProfileError::Schema { found: 7, known: 1 }));
     let error = parse(&TEXT.replace("colour", "color")).unwrap_err().to_string();
     assert_eq!(error, "line 7, column 5: color is unknown, and colour is missing");
 }
@@ -133,7 +133,7 @@ fn user_entries_and_newer_schema_entries_are_kept() {
 #[test]
 fn a_document_is_merged_into_text_and_with_another() {
     assert_edit_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");
-    let (_, carried) = edited(TEXT, |note, own: &mut Lamp| {
+    let (_, carried) = edit_profile(TEXT, |note, own: &mut Lamp| {
         *note = Some("as of today".to_owned());
         own.steps.remove(0);
     });
@@ -151,7 +151,7 @@ fn a_document_is_merged_into_text_and_with_another() {
     );
     let here: Vec<Change> =
         found.into_iter().filter(|(_, who)| *who == ChangedSide::Here).map(|(own, _)| own).collect();
-    let merged = theirs.changed(&here, FORMATS).unwrap();
+    let merged = theirs.with_changes(&here, FORMATS).unwrap();
     assert_eq!(merged, parse(&TEXT.replace("red", "blue").replace("level: 10", "level: 20")).unwrap());
 }
 

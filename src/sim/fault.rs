@@ -29,7 +29,7 @@ impl FaultParser {
     ///
     /// # Errors
     /// Returns the first invalid fault.
-    pub fn take(&self, _key: &str, value: &str) -> Result<SimulatedFaults, FaultError> {
+    pub fn parse_value(&self, _key: &str, value: &str) -> Result<SimulatedFaults, FaultError> {
         value.parse()
     }
 
@@ -80,12 +80,12 @@ pub struct ByteTransfer {
     /// Noise byte inserted before the byte, if any.
     pub inserted: Option<u8>,
     /// The byte that arrived. `None` if it was lost.
-    pub carried: Option<Carried>,
+    pub carried: Option<ReceivedByte>,
 }
 
 /// A byte that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Carried {
+pub struct ReceivedByte {
     /// Data bits.
     pub byte: u8,
     /// Whether one bit was inverted in transit. The parity is then wrong.
@@ -106,22 +106,22 @@ impl SimulatedFaults {
     }
 
     /// Returns the number of the store operation during which power is lost. The first one is 1.
-    pub fn die_in_store(&self) -> Option<u32> {
+    pub fn failing_store(&self) -> Option<u32> {
         self.die_in_store
     }
 
     /// Passes a byte over the noisy line.
     pub fn transmit_byte(&self, rng: &mut Rng, byte: u8) -> ByteTransfer {
-        let inserted = happens(self.garbage, rng).then(|| rng.u8(..));
-        let carried = (!happens(self.drop, rng)).then(|| match happens(self.flip, rng) {
-            true => Carried { byte: byte ^ 1 << rng.u8(..8), flipped: true },
-            false => Carried { byte, flipped: false },
+        let inserted = is_hit(self.garbage, rng).then(|| rng.u8(..));
+        let carried = (!is_hit(self.drop, rng)).then(|| match is_hit(self.flip, rng) {
+            true => ReceivedByte { byte: byte ^ 1 << rng.u8(..8), flipped: true },
+            false => ReceivedByte { byte, flipped: false },
         });
         ByteTransfer { inserted, carried }
     }
 }
 
-fn happens(probability: f64, rng: &mut Rng) -> bool {
+fn is_hit(probability: f64, rng: &mut Rng) -> bool {
     // f64() is below 1, so probability 1 always happens and 0 never does.
     rng.f64() < probability
 }
@@ -137,14 +137,14 @@ impl FromStr for SimulatedFaults {
             let unknown = || FaultError::Unknown { item: item.to_owned() };
             let (name, value) = item.split_once(':').ok_or_else(unknown)?;
             match name {
-                "drop" => faults.drop = probability(item, value)?,
-                "flip" => faults.flip = probability(item, value)?,
-                "garbage" => faults.garbage = probability(item, value)?,
+                "drop" => faults.drop = parse_probability(item, value)?,
+                "flip" => faults.flip = parse_probability(item, value)?,
+                "garbage" => faults.garbage = parse_probability(item, value)?,
                 "delay" => {
-                    faults.delay = Duration::from_millis(number(item, value, 0, Self::MAX_DELAY_MS)?.into());
+                    faults.delay = Duration::from_millis(parse_number(item, value, 0, Self::MAX_DELAY_MS)?.into());
                 }
-                "silent-after" => faults.silent_after = Some(number(item, value, 0, u32::MAX)?),
-                "die-in-store" => faults.die_in_store = Some(number(item, value, 1, u32::MAX)?),
+                "silent-after" => faults.silent_after = Some(parse_number(item, value, 0, u32::MAX)?),
+                "die-in-store" => faults.die_in_store = Some(parse_number(item, value, 1, u32::MAX)?),
                 _ => return Err(unknown()),
             }
         }
@@ -152,7 +152,7 @@ impl FromStr for SimulatedFaults {
     }
 }
 
-fn probability(item: &str, value: &str) -> Result<f64, FaultError> {
+fn parse_probability(item: &str, value: &str) -> Result<f64, FaultError> {
     value
         .parse()
         .ok()
@@ -160,7 +160,7 @@ fn probability(item: &str, value: &str) -> Result<f64, FaultError> {
         .ok_or_else(|| FaultError::Probability { item: item.to_owned() })
 }
 
-fn number(item: &str, value: &str, min: u32, max: u32) -> Result<u32, FaultError> {
+fn parse_number(item: &str, value: &str, min: u32, max: u32) -> Result<u32, FaultError> {
     value.parse().ok().filter(|number| (min..=max).contains(number)).ok_or_else(|| FaultError::Number {
         item: item.to_owned(),
         min,
@@ -179,7 +179,7 @@ mod tests {
             "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
         assert_eq!((faults.drop, faults.flip, faults.garbage), (0.01, 1.0, 0.0));
         assert_eq!(faults.reply_delay(), Duration::from_millis(25));
-        assert_eq!((faults.silent_after(), faults.die_in_store()), (Some(0), Some(2)));
+        assert_eq!((faults.silent_after(), faults.failing_store()), (Some(0), Some(2)));
         assert_eq!("".parse(), Ok(SimulatedFaults::default()));
     }
 
@@ -210,7 +210,7 @@ mod tests {
         let lossy: SimulatedFaults = "drop:1".parse().unwrap();
         let noisy: SimulatedFaults = "flip:1,garbage:1".parse().unwrap();
         for byte in 0..=255 {
-            let whole = Some(Carried { byte, flipped: false });
+            let whole = Some(ReceivedByte { byte, flipped: false });
             assert_eq!(quiet.transmit_byte(&mut rng, byte), ByteTransfer { inserted: None, carried: whole });
             assert_eq!(lossy.transmit_byte(&mut rng, byte).carried, None);
             let passage = noisy.transmit_byte(&mut rng, byte);

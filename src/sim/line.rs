@@ -31,7 +31,7 @@ impl<T> TransitQueue<T> {
     }
 
     /// Returns the time at which the next item is due.
-    pub(crate) fn due(&self) -> Option<Moment> {
+    pub(crate) fn next_due(&self) -> Option<Moment> {
         self.0.front().map(|(at, _)| *at)
     }
 
@@ -67,7 +67,7 @@ pub(crate) struct SentCharacters {
 
 /// State common to all lines, created from the settings of a device.
 #[derive(Clone)]
-pub(crate) struct Wires {
+pub(crate) struct LineConditions {
     pub(crate) faults: SimulatedFaults,
     pub(crate) rng: Rng,
     pub(crate) host: CharacterFormat,
@@ -78,9 +78,9 @@ pub(crate) struct Wires {
     pub(crate) inbox: Vec<u8>,
 }
 
-impl Wires {
+impl LineConditions {
     pub(crate) fn new(faults: &SimulatedFaults, seed: u64, host: CharacterFormat) -> Self {
-        Wires {
+        LineConditions {
             faults: faults.clone(),
             rng: Rng::with_seed(seed),
             host,
@@ -96,7 +96,7 @@ impl Wires {
     const BUFFER: usize = 512;
 
     /// Returns the number of further bytes that the host's UART can accept.
-    fn room(&mut self) -> usize {
+    fn free_capacity(&mut self) -> usize {
         let now = self.now;
         while self.sending.pop_front_if(|(end, _)| *end <= now).is_some() {}
         Self::BUFFER.saturating_sub(self.sending.iter().map(|(_, count)| count).sum())
@@ -127,9 +127,9 @@ pub(crate) trait VirtualLine: Send {
     /// Event on the line. The smallest of simultaneous events comes first.
     type Event;
 
-    fn wires(&self) -> &Wires;
+    fn line_conditions(&self) -> &LineConditions;
 
-    fn wires_mut(&mut self) -> &mut Wires;
+    fn wires_mut(&mut self) -> &mut LineConditions;
 
     fn next_event(&self) -> Option<(Moment, Self::Event)>;
 
@@ -142,21 +142,21 @@ pub(crate) trait VirtualLine: Send {
     fn supply_power(&mut self, now: Moment);
 
     /// Processes all events that are due up to and including `to`.
-    fn advance(&mut self, to: Moment) {
+    fn advance_to(&mut self, to: Moment) {
         while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
-            self.wires_mut().now = self.wires().now.max(at);
+            self.wires_mut().now = self.line_conditions().now.max(at);
             self.schedule_event(at, event);
         }
-        self.wires_mut().now = self.wires().now.max(to);
+        self.wires_mut().now = self.line_conditions().now.max(to);
     }
 }
 
 impl<L: VirtualLine> ByteDevice for L {
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
-        self.advance(now);
-        let taken = bytes.get(..self.wires_mut().room()).unwrap_or(bytes);
+        self.advance_to(now);
+        let taken = bytes.get(..self.wires_mut().free_capacity()).unwrap_or(bytes);
         if !taken.is_empty() {
-            let start = self.wires().now.max(self.wires().host_done);
+            let start = self.line_conditions().now.max(self.line_conditions().host_done);
             let end = self.transmit_from_host(start, taken);
             let wires = self.wires_mut();
             wires.host_done = end;
@@ -165,24 +165,24 @@ impl<L: VirtualLine> ByteDevice for L {
     }
 
     fn poll(&mut self, now: Moment) -> Vec<u8> {
-        self.advance(now);
+        self.advance_to(now);
         std::mem::take(&mut self.wires_mut().inbox)
     }
 
     fn poll_at(&self) -> Option<Moment> {
-        let wires = self.wires();
+        let wires = self.line_conditions();
         if wires.inbox.is_empty() { self.next_event().map(|(at, _)| at) } else { Some(wires.now) }
     }
 
     fn set_host_format(&mut self, now: Moment, format: CharacterFormat) {
-        self.advance(now);
+        self.advance_to(now);
         self.wires_mut().host = format;
     }
 
     fn connect(&mut self, now: Moment) {
-        self.advance(now);
+        self.advance_to(now);
         self.wires_mut().inbox.clear();
-        let now = self.wires().now;
+        let now = self.line_conditions().now;
         self.supply_power(now);
     }
 }

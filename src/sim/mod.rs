@@ -12,7 +12,7 @@ mod motor;
 pub mod setting;
 pub mod sine_cosine;
 
-pub use fault::{ByteTransfer, Carried, FAULTS, FaultError, SimulatedFaults};
+pub use fault::{ByteTransfer, FAULTS, FaultError, ReceivedByte, SimulatedFaults};
 pub use motor::Motor;
 pub use setting::{ConfigError, RPM, SEED, VirtualDevice};
 

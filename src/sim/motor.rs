@@ -12,7 +12,7 @@ impl Motor {
     /// Maximum speed in revolutions per minute, in either direction.
     pub const MAX_RPM: f64 = 12_000.0;
 
-    pub(crate) fn at(rpm: f64) -> Self {
+    pub(crate) fn with_speed(rpm: f64) -> Self {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 

@@ -3,7 +3,7 @@
 
 use super::FaultError;
 use crate::expected::AllowedValues;
-use crate::parameter::{Checked, Parameters, Refused, Values, number};
+use crate::parameter::{CustomNotation, ParameterGroup, ParameterValues, RejectedParameter, parse_whole};
 
 /// The reason why settings are invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -52,13 +52,13 @@ pub enum VirtualDevice {
 
 impl ConfigError {
     /// Creates the error for an unknown setting of `device`. `known` are the existing keys.
-    pub fn unknown(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
+    pub fn unknown_setting(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
 }
 
-impl From<Refused> for ConfigError {
-    fn from(Refused { key, value, allowed }: Refused) -> Self {
+impl From<RejectedParameter> for ConfigError {
+    fn from(RejectedParameter { key, value, allowed }: RejectedParameter) -> Self {
         ConfigError::Value { key, value, allowed }
     }
 }
@@ -67,21 +67,21 @@ impl From<Refused> for ConfigError {
 ///
 /// # Errors
 /// Returns an error that names the key and the allowed values.
-pub fn read<P: Parameters<Error = ConfigError>>(
+pub fn read<P: ParameterGroup<Error = ConfigError>>(
     device: VirtualDevice,
     pairs: &[(String, String)],
 ) -> Result<P, ConfigError> {
     let mut own = P::default();
     for (key, value) in pairs {
-        if !own.set(key, value)? {
-            return Err(ConfigError::unknown(device, key, P::KEYS));
+        if !own.set_value(key, value)? {
+            return Err(ConfigError::unknown_setting(device, key, P::KEYS));
         }
     }
     Ok(own)
 }
 
 /// Seed of the noise. Any number is valid.
-pub const SEED: Checked<u64> = Checked(AllowedValues::Whole, number);
+pub const SEED: CustomNotation<u64> = CustomNotation(AllowedValues::Whole, parse_whole);
 
 /// Speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
@@ -94,7 +94,7 @@ impl Rpm {
     const MAX: u32 = 12_000;
 }
 
-impl Values for Rpm {
+impl ParameterValues for Rpm {
     type Value = f64;
 
     fn read(&self, text: &str) -> Option<f64> {
@@ -102,11 +102,11 @@ impl Values for Rpm {
         text.parse().ok().filter(|rpm| (-most..=most).contains(rpm))
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::Speed { most: Self::MAX }
     }
 
-    fn print(&self, value: &f64) -> String {
+    fn format_example(&self, value: &f64) -> String {
         value.to_string()
     }
 
@@ -117,7 +117,7 @@ impl Values for Rpm {
 
 /// Returns the keys and values of a query, for tests.
 #[cfg(test)]
-pub(crate) fn pairs(query: &str) -> Vec<(String, String)> {
+pub(crate) fn query_pairs(query: &str) -> Vec<(String, String)> {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
     pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect()
 }

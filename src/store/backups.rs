@@ -9,7 +9,7 @@ use jiff::civil::DateTime;
 use jiff::tz::TimeZone;
 
 use super::file_error::{FileError, FileErrorKind, FileOperation};
-use super::file_names::{Case, safe_name};
+use super::file_names::{LetterCase, safe_name};
 use super::files::{create_folder, write_new};
 
 /// Time format in file names. It is UTC without colons, which Windows forbids.
@@ -17,7 +17,7 @@ const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
 /// Maximum number of backups of a device within a second. More would indicate a runaway loop.
-const MOST_IN_A_SECOND: u32 = 1000;
+const MAX_BACKUPS_PER_SECOND: u32 = 1000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Backups(PathBuf);
@@ -40,26 +40,27 @@ impl Backups {
     /// # Errors
     /// Returns an error if the folder cannot be created or the file cannot be written. No file is left behind.
     pub fn save(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
-        let folder = self.folder_of(device, serial_number);
+        let folder = self.device_folder(device, serial_number);
         create_folder(&folder)?;
         let time = taken.strftime(TIME).to_string();
-        for number in 1..=MOST_IN_A_SECOND {
+        for number in 1..=MAX_BACKUPS_PER_SECOND {
             let path = folder.join(file_name(&time, number));
             match write_new(&path, text.as_bytes()) {
                 Err(FileError { problem: FileErrorKind::Exists, .. }) => {}
                 result => return result.map(|()| path),
             }
         }
-        Err(FileErrorKind::Exists.of(FileOperation::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
+        Err(FileErrorKind::Exists
+            .into_error(FileOperation::Write, &folder.join(file_name(&time, MAX_BACKUPS_PER_SECOND))))
     }
 
     /// Returns the backups of a device, newest first. Other files in the folder are ignored.
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.
-    pub fn list(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
-        let folder = self.folder_of(device, serial_number);
-        let failed = |error: std::io::Error| FileErrorKind::from(error).of(FileOperation::List, &folder);
+    pub fn list_for(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
+        let folder = self.device_folder(device, serial_number);
+        let failed = |error: std::io::Error| FileErrorKind::from(error).into_error(FileOperation::List, &folder);
         let entries = match fs::read_dir(&folder) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
             entries => entries.map_err(failed)?,
@@ -77,9 +78,9 @@ impl Backups {
         Ok(backups.into_iter().map(|((taken, _), path)| Backup { path, taken }).collect())
     }
 
-    fn folder_of(&self, device: &str, serial_number: &str) -> PathBuf {
+    fn device_folder(&self, device: &str, serial_number: &str) -> PathBuf {
         // `device` is a keyword of this program. It is escaped as well, which prevents any path out of the folder.
-        self.0.join(safe_name(device, Case::Kept)).join(safe_name(serial_number, Case::Told))
+        self.0.join(safe_name(device, LetterCase::Kept)).join(safe_name(serial_number, LetterCase::Told))
     }
 }
 
@@ -131,11 +132,11 @@ mod tests {
         for name in foreign.iter().chain(&["2026-13-21T12-14-47Z.ron", "2026-1-21T12-14-47Z.ron", "Z.ron", ".ron"]) {
             fs::write(folder.join(name), "x").unwrap();
         }
-        let listed = backups.list("hiperface", "12345678").unwrap();
+        let listed = backups.list_for("hiperface", "12345678").unwrap();
         let paths: Vec<_> = listed.iter().map(|backup| backup.path.clone()).collect();
         assert_eq!(paths, [later, second, first]);
         assert_eq!(listed[1].taken, at("2026-11-21T12:14:47Z"));
-        assert_eq!(backups.list("hiperface", "1234567"), Ok(Vec::new()));
+        assert_eq!(backups.list_for("hiperface", "1234567"), Ok(Vec::new()));
     }
 
     #[test]
@@ -152,7 +153,7 @@ mod tests {
                 });
             }
         });
-        let listed = backups.list("hiperface", "1").unwrap();
+        let listed = backups.list_for("hiperface", "1").unwrap();
         assert_eq!(listed.len(), 12);
         assert!(listed[0].path.ends_with("2026-11-21T12-14-47Z-12.ron"), "{:?}", listed[0]);
         let mut texts: Vec<_> = listed.iter().map(|backup| read_text(&backup.path).unwrap()).collect();
@@ -186,10 +187,10 @@ mod tests {
         ];
         let (root, backups) = backups();
         for (serial_number, expected) in cases {
-            assert_eq!(safe_name(serial_number, Case::Told), expected, "{serial_number:?}");
+            assert_eq!(safe_name(serial_number, LetterCase::Told), expected, "{serial_number:?}");
             let path = backups.save("hiperface", serial_number, at("2026-11-21T12:14:47Z"), serial_number).unwrap();
             assert_eq!(path.parent(), Some(root.path().join("data/backups/hiperface").join(expected).as_path()));
-            let listed = backups.list("hiperface", serial_number).unwrap();
+            let listed = backups.list_for("hiperface", serial_number).unwrap();
             assert_eq!(listed.len(), 1, "{serial_number:?}");
             assert_eq!(read_text(&listed[0].path).unwrap(), serial_number);
         }
@@ -203,6 +204,6 @@ mod tests {
         fs::write(root.path().join("data"), "x").unwrap();
         let error = backups.save("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
         assert_eq!((error.task, error.problem), (FileOperation::CreateFolder, FileErrorKind::NotFolder));
-        assert!(backups.list("hiperface", "1").is_err());
+        assert!(backups.list_for("hiperface", "1").is_err());
     }
 }

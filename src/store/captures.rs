@@ -23,7 +23,7 @@ pub enum ReadCaptureError {
 pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 
 /// Number of bytes read at a time. Progress is reported and cancellation is checked after each read.
-const PIECE: usize = 1 << 20;
+const CHUNK_BYTES: usize = 1 << 20;
 
 /// Reads a capture. Also returns the layout in which its table was read.
 ///
@@ -38,11 +38,11 @@ pub fn read_capture(
     let failed = |error: io::Error| {
         // Windows reports a folder as "permission denied".
         let problem = if path.is_dir() { FileErrorKind::IsFolder } else { error.into() };
-        problem.of(FileOperation::Read, path)
+        problem.into_error(FileOperation::Read, path)
     };
     let mut file = File::open(path).map_err(failed)?;
     let total = file.metadata().map(|data| if data.is_file() { data.len() } else { 0 }).unwrap_or(0);
-    let mut piece = Vec::with_capacity(PIECE);
+    let mut piece = Vec::with_capacity(CHUNK_BYTES);
     let mut import: Option<TableImport> = None;
     let mut done = 0;
     loop {
@@ -51,7 +51,7 @@ pub fn read_capture(
         }
         piece.clear();
         // A single read from a pipe may return few bytes, but the first piece has to contain the head.
-        let read = (&mut file).take(PIECE.max(HEAD_BYTES) as u64).read_to_end(&mut piece).map_err(failed)?;
+        let read = (&mut file).take(CHUNK_BYTES.max(HEAD_BYTES) as u64).read_to_end(&mut piece).map_err(failed)?;
         let importing = match &mut import {
             Some(importing) => importing,
             none => none.insert(TableImport::from_head(&piece, hints)?),
@@ -75,7 +75,7 @@ pub fn read_capture(
 /// # Errors
 /// Returns a [`FileError`] if the file cannot be read.
 pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
-    let failed = |error: io::Error| FileErrorKind::from(error).of(FileOperation::Read, path);
+    let failed = |error: io::Error| FileErrorKind::from(error).into_error(FileOperation::Read, path);
     let mut head = Vec::new();
     if std::fs::metadata(path).map_err(failed)?.is_file() {
         File::open(path).and_then(|file| file.take(HEAD_BYTES as u64).read_to_end(&mut head)).map_err(failed)?;

@@ -11,7 +11,7 @@ use super::files::read_file;
 /// errors of unreadable files. A missing folder yields no files.
 pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
-    match list(folder, ending) {
+    match list_files(folder, ending) {
         Ok(paths) => {
             for path in paths {
                 match read_file(&path) {
@@ -21,12 +21,12 @@ pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<F
             }
         }
         Err(FileErrorKind::NotFound) => {}
-        Err(problem) => errors.push(problem.of(FileOperation::List, folder)),
+        Err(problem) => errors.push(problem.into_error(FileOperation::List, folder)),
     }
     (texts, errors)
 }
 
-fn list(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FileErrorKind> {
+fn list_files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FileErrorKind> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::file_lock::FileLock;
-use super::file_names::{Case, safe_name};
+use super::file_names::{LetterCase, safe_name};
 use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
@@ -31,8 +31,8 @@ impl Drafts {
     /// # Errors
     /// Returns an error if the folder cannot be created or the file cannot be written. The earlier draft then remains.
     pub fn save(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
-        create_folder(&self.folder_of(device))?;
-        write_atomically(&self.path_of(device, key), text.as_bytes())
+        create_folder(&self.device_folder(device))?;
+        write_atomically(&self.draft_path(device, key), text.as_bytes())
     }
 
     /// Reads a draft, or returns `None` if the draft does not exist.
@@ -40,7 +40,7 @@ impl Drafts {
     /// # Errors
     /// Returns an error if a draft exists but cannot be read.
     pub fn load(&self, device: &str, key: &str) -> Result<Option<String>, FileError> {
-        match read_text(&self.path_of(device, key)) {
+        match read_text(&self.draft_path(device, key)) {
             Ok(text) => Ok(Some(text)),
             Err(FileError { problem: FileErrorKind::NotFound, .. }) => Ok(None),
             Err(error) => Err(error),
@@ -48,18 +48,18 @@ impl Drafts {
     }
 
     pub fn has_drafts(&self, device: &str) -> bool {
-        fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
+        fs::read_dir(self.device_folder(device)).is_ok_and(|mut files| files.next().is_some())
     }
 
     /// Claims a draft. Returns `None` if this or another program has already claimed it.
     ///
     /// # Errors
     /// Returns an error if the lock file cannot be created.
-    pub fn claim(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
+    pub fn claim_draft(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
         // The locks have a separate folder, because every file in the folder of drafts is taken for a draft.
-        let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
+        let folder = self.0.with_file_name("locks").join(safe_name(device, LetterCase::Kept));
         create_folder(&folder)?;
-        let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));
+        let path = folder.join(format!("{}.lock", safe_name(key, LetterCase::Told)));
         Ok(FileLock::try_lock_at(&path)?.map(|lock| Claim { _lock: lock }))
     }
 
@@ -68,19 +68,19 @@ impl Drafts {
     /// # Errors
     /// Returns an error if the draft cannot be removed.
     pub fn remove(&self, device: &str, key: &str) -> Result<(), FileError> {
-        let path = self.path_of(device, key);
+        let path = self.draft_path(device, key);
         match fs::remove_file(&path).map_err(FileErrorKind::from) {
             Ok(()) | Err(FileErrorKind::NotFound) => Ok(()),
-            Err(problem) => Err(problem.of(FileOperation::Remove, &path)),
+            Err(problem) => Err(problem.into_error(FileOperation::Remove, &path)),
         }
     }
 
-    fn folder_of(&self, device: &str) -> PathBuf {
-        self.0.join(safe_name(device, Case::Kept))
+    fn device_folder(&self, device: &str) -> PathBuf {
+        self.0.join(safe_name(device, LetterCase::Kept))
     }
 
-    fn path_of(&self, device: &str, key: &str) -> PathBuf {
-        self.folder_of(device).join(format!("{}.{EXTENSION}", safe_name(key, Case::Told)))
+    fn draft_path(&self, device: &str, key: &str) -> PathBuf {
+        self.device_folder(device).join(format!("{}.{EXTENSION}", safe_name(key, LetterCase::Told)))
     }
 }
 
@@ -115,12 +115,12 @@ mod tests {
     #[test]
     fn a_draft_is_claimed_once() {
         let (_root, drafts) = drafts();
-        let claim = drafts.claim("hiperface", "1").unwrap();
+        let claim = drafts.claim_draft("hiperface", "1").unwrap();
         assert!(claim.is_some());
-        assert!(drafts.claim("hiperface", "1").unwrap().is_none());
-        assert!(drafts.claim("hiperface", "2").unwrap().is_some());
+        assert!(drafts.claim_draft("hiperface", "1").unwrap().is_none());
+        assert!(drafts.claim_draft("hiperface", "2").unwrap().is_some());
         drop(claim);
-        assert!(drafts.claim("hiperface", "1").unwrap().is_some());
+        assert!(drafts.claim_draft("hiperface", "1").unwrap().is_some());
     }
 
     #[test]

@@ -95,7 +95,7 @@ impl From<io::Error> for FileErrorKind {
 }
 
 impl FileErrorKind {
-    pub(super) fn of(self, task: FileOperation, path: &Path) -> FileError {
+    pub(super) fn into_error(self, task: FileOperation, path: &Path) -> FileError {
         FileError { path: path.to_owned(), task, problem: self }
     }
 

@@ -10,7 +10,7 @@ use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::{create_folder, read_text, write_atomically};
 
 /// Maximum time to wait for another program that is using the file.
-const PATIENCE: Duration = Duration::from_secs(2);
+const LOCK_TIMEOUT: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
 /// A lock that excludes all other programs until it is dropped.
@@ -22,7 +22,7 @@ pub(super) struct FileLock {
 impl FileLock {
     /// Acquires a lock file, and creates it if missing. Returns `None` if this or another program holds the lock.
     pub(super) fn try_lock_at(path: &Path) -> Result<Option<Self>, FileError> {
-        let failed = |error: io::Error| FileErrorKind::from(error).of(FileOperation::Write, path);
+        let failed = |error: io::Error| FileErrorKind::from(error).into_error(FileOperation::Write, path);
         let file = open(path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(FileLock { _locked: file })),
@@ -74,7 +74,9 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
         let tried = FileLock::try_lock_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
         match tried {
             Some(lock) => return Ok(lock),
-            None if began.elapsed() > PATIENCE => return Err(FileErrorKind::InUse.of(FileOperation::Write, path)),
+            None if began.elapsed() > LOCK_TIMEOUT => {
+                return Err(FileErrorKind::InUse.into_error(FileOperation::Write, path));
+            }
             None => thread::sleep(RETRY),
         }
     }

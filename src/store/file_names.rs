@@ -2,7 +2,7 @@
 
 /// How file names represent letter case, which Windows and macOS ignore.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Case {
+pub(super) enum LetterCase {
     /// Case is not encoded, because no two names differ only in case.
     Kept,
     /// Case is encoded, because names may differ only in case.
@@ -12,8 +12,8 @@ pub(super) enum Case {
 /// Returns a file or folder name without extension for any text. The name is valid on every system, and different texts
 /// have different names. Letters, digits, `.`, `_` and `-` are unchanged, and every other byte becomes `%XX`.
 ///
-/// With [`Case::Told`], a name with lower-case letters ends with `%` and an `l` or a `u` for each letter.
-pub(super) fn safe_name(text: &str, case: Case) -> String {
+/// With [`LetterCase::Told`], a name with lower-case letters ends with `%` and an `l` or a `u` for each letter.
+pub(super) fn safe_name(text: &str, case: LetterCase) -> String {
     if text.is_empty() {
         return "%none".to_owned();
     }
@@ -37,7 +37,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
             cases.push(if byte.is_ascii_lowercase() { 'l' } else { 'u' });
         }
     }
-    if case == Case::Told && cases.contains('l') {
+    if case == LetterCase::Told && cases.contains('l') {
         name.push('%');
         name.push_str(&cases);
     }
@@ -91,7 +91,7 @@ mod tests {
     proptest! {
         #[test]
         fn different_texts_never_share_a_name(text in "(?s).{0,12}|[a-zA-Z.%]{0,6}|(?i:con|lpt1)[.a]?") {
-            prop_assert_eq!(read_back(&safe_name(&text, Case::Told)), text.as_bytes());
+            prop_assert_eq!(read_back(&safe_name(&text, LetterCase::Told)), text.as_bytes());
         }
     }
 }

@@ -17,7 +17,7 @@ use super::leftovers;
 pub const MAX_TEXT: u64 = 16 << 20;
 
 /// Byte order mark that some editors write at the beginning of a file.
-const MARK: &str = "\u{FEFF}";
+const BYTE_ORDER_MARK: &str = "\u{FEFF}";
 
 /// Writes a file so that a crash or a full disk leaves either the old content or the new content.
 ///
@@ -30,7 +30,7 @@ const MARK: &str = "\u{FEFF}";
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content)
-            .map_err(|error| FileErrorKind::from(error).of(FileOperation::Write, path));
+            .map_err(|error| FileErrorKind::from(error).into_error(FileOperation::Write, path));
     }
     write_atomically_with(path, |file| file.write_all(content))
 }
@@ -41,8 +41,8 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
 /// Returns the errors of [`write_atomically`].
 pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
-    let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == MARK.as_bytes());
-    let mark = if has_mark && !text.starts_with(MARK) { MARK } else { "" };
+    let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == BYTE_ORDER_MARK.as_bytes());
+    let mark = if has_mark && !text.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK } else { "" };
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
@@ -55,7 +55,7 @@ pub fn write_atomically_with(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), FileError> {
-    let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
+    let failed = |problem: FileErrorKind| problem.into_error(FileOperation::Write, path);
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
         Ok(target) if !target.is_file() => return Err(failed(FileErrorKind::NotAFile)),
@@ -65,8 +65,8 @@ pub fn write_atomically_with(
         Err(_) => None,
     };
     let target = resolve_links(path).map_err(|e| failed(e.into()))?;
-    let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, &target);
-    let folder = folder_of(&target).map_err(failed)?;
+    let failed = |problem: FileErrorKind| problem.into_error(FileOperation::Write, &target);
+    let folder = parent_folder(&target).map_err(failed)?;
     let staged =
         write_temp_file(folder, write, permissions).map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
     staged.persist(&target).map_err(|e| failed(e.error.into()))?;
@@ -79,8 +79,8 @@ pub fn write_atomically_with(
 /// # Errors
 /// Returns [`FileErrorKind::Exists`] if the file exists.
 pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
-    let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
-    let folder = folder_of(path).map_err(failed)?;
+    let failed = |problem: FileErrorKind| problem.into_error(FileOperation::Write, path);
+    let folder = parent_folder(path).map_err(failed)?;
     let staged = write_temp_file(folder, |file| file.write_all(content), None)
         .map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
     staged.persist_noclobber(path).map_err(|e| failed(e.error.into()))?;
@@ -90,8 +90,8 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
 pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.into() {
         // An existing folder is not an error, so this is a file or a broken link.
-        FileErrorKind::Exists => FileErrorKind::NotFolder.of(FileOperation::CreateFolder, path),
-        problem => problem.of(FileOperation::CreateFolder, path),
+        FileErrorKind::Exists => FileErrorKind::NotFolder.into_error(FileOperation::CreateFolder, path),
+        problem => problem.into_error(FileOperation::CreateFolder, path),
     })
 }
 
@@ -112,7 +112,9 @@ pub fn create_folder_and_write(path: &Path, content: &[u8]) -> Result<(), FileEr
 /// Returns the errors of [`read_text`], and an error for a pipe or a device.
 pub fn read_file(path: &Path) -> Result<String, FileError> {
     match fs::metadata(path) {
-        Ok(found) if !found.is_file() && !found.is_dir() => Err(FileErrorKind::NotAFile.of(FileOperation::Read, path)),
+        Ok(found) if !found.is_file() && !found.is_dir() => {
+            Err(FileErrorKind::NotAFile.into_error(FileOperation::Read, path))
+        }
         _ => read_text(path),
     }
 }
@@ -122,7 +124,7 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
 /// # Errors
 /// Returns an error if the file is missing, is a folder, is too large or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
-    let failed = |problem: FileErrorKind| problem.of(FileOperation::Read, path);
+    let failed = |problem: FileErrorKind| problem.into_error(FileOperation::Read, path);
     let bytes = match read_at_most(path, MAX_TEXT + 1) {
         Ok(bytes) => bytes,
         // Windows reports a folder as "permission denied".
@@ -134,7 +136,7 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
     }
     let text = String::from_utf8(bytes)
         .map_err(|error| failed(FileErrorKind::NotUtf8 { offset: error.utf8_error().valid_up_to() }))?;
-    Ok(text.strip_prefix(MARK).map(str::to_owned).unwrap_or(text))
+    Ok(text.strip_prefix(BYTE_ORDER_MARK).map(str::to_owned).unwrap_or(text))
 }
 
 fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
@@ -146,7 +148,7 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// Writes directly to a file. A pipe without a reader would block forever, so the write is abandoned after a time
 /// limit.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
-    const PATIENCE: Duration = Duration::from_secs(8);
+    const WRITE_TIMEOUT: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
     let (path, content) = (path.to_owned(), content.to_vec());
     thread::spawn(move || {
@@ -154,15 +156,17 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
         // The receiver may no longer exist.
         let _ = sender.send(result);
     });
-    written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
+    written
+        .recv_timeout(WRITE_TIMEOUT)
+        .unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
 }
 
 /// Follows a chain of links and returns the file at its end. The file need not exist.
 fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     /// Maximum number of links to follow, as in Linux.
-    const MOST: usize = 40;
+    const MAX_LINKS: usize = 40;
     let mut target = path.to_owned();
-    for _ in 0..MOST {
+    for _ in 0..MAX_LINKS {
         // If the target cannot be read as a link, it is not a link. Any other error occurs again when it is written.
         let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         target = target.parent().unwrap_or(Path::new("")).join(next);
@@ -171,7 +175,7 @@ fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     fs::metadata(path).map(|_| target)
 }
 
-fn folder_of(path: &Path) -> Result<&Path, FileErrorKind> {
+fn parent_folder(path: &Path) -> Result<&Path, FileErrorKind> {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
         (Some(folder), Some(_)) => Ok(folder),

@@ -19,7 +19,7 @@ impl BaseFolders {
         BaseFolders { working: std::env::current_dir().ok(), home }
     }
 
-    pub fn at(working: &Path, home: &Path) -> Self {
+    pub fn with_base_folders(working: &Path, home: &Path) -> Self {
         BaseFolders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
@@ -56,7 +56,7 @@ mod tests {
     fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();
         let (working, home) = (root.join("work"), root.join("home"));
-        let folders = BaseFolders::at(&working, &home);
+        let folders = BaseFolders::with_base_folders(&working, &home);
         let elsewhere = root.join("elsewhere.ron");
         let cases = [
             ("a.ron", working.join("a.ron")),

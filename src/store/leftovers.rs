@@ -9,7 +9,7 @@ pub(super) const PREFIX: &str = ".encoder-studio-";
 pub(super) const SUFFIX: &str = ".tmp";
 
 /// Age from which a temporary file is considered stale. A write takes seconds.
-const LEFT: Duration = Duration::from_secs(3600);
+const STALE_AGE: Duration = Duration::from_secs(3600);
 
 /// Number of folder levels in the program's data, as in `backups/biss/77`.
 const DEPTH: usize = 3;
@@ -42,7 +42,7 @@ fn is_stale_temporary(entry: &DirEntry) -> bool {
     let name = entry.file_name();
     let is_temporary = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
     let modified = || entry.metadata().and_then(|data| data.modified()).ok();
-    is_temporary && modified().and_then(|at| at.elapsed().ok()).is_some_and(|age| age >= LEFT)
+    is_temporary && modified().and_then(|at| at.elapsed().ok()).is_some_and(|age| age >= STALE_AGE)
 }
 
 fn remove(entry: DirEntry) {
@@ -68,13 +68,13 @@ mod tests {
     fn only_old_temporary_files_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let data = folder.path().join("data");
-        let (old, new) = (2 * LEFT, Duration::from_secs(5));
+        let (old, new) = (2 * STALE_AGE, Duration::from_secs(5));
         let left = [data.join(".encoder-studio-a1.tmp"), data.join("backups/biss/77/.encoder-studio-b2.tmp")];
         let kept = [data.join("backups/biss/77/1.ron"), data.join("x.tmp"), data.join(".encoder-studio-c.ron")];
         let fresh = data.join(".encoder-studio-d4.tmp");
         left.iter().chain(&kept).for_each(|path| create(path, old));
         create(&fresh, new);
-        Store::at(folder.path()).remove_leftovers();
+        Store::at_root(folder.path()).remove_leftovers();
         assert!(left.iter().all(|path| !path.exists()));
         assert!(kept.iter().all(|path| path.exists()) && fresh.exists(), "another program may be writing it");
     }
@@ -83,7 +83,7 @@ mod tests {
     fn a_write_removes_what_was_left_beside_its_file() {
         let folder = tempfile::tempdir().unwrap();
         let left = folder.path().join(".encoder-studio-a1.tmp");
-        create(&left, 2 * LEFT);
+        create(&left, 2 * STALE_AGE);
         write_atomically(&folder.path().join("a.ron"), b"new").unwrap();
         assert!(!left.exists() && folder.path().join("a.ron").exists());
     }

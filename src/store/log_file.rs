@@ -17,23 +17,23 @@ use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::{fmt, registry};
 
 /// Size in bytes above which a new log file is started.
-const LARGE: u64 = 1 << 20;
+const MAX_LOG_BYTES: u64 = 1 << 20;
 
 /// Maximum number of lines waiting to be written.
 const QUEUE: usize = 1024;
 
 /// Maximum time to wait for the last lines when the program ends.
-const PATIENCE: Duration = Duration::from_millis(500);
+const FLUSH_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// A handle that accepts lines for the log file without blocking. All clones write to the same file.
 #[derive(Clone, Debug)]
 pub struct LogFile {
-    queue: Sender<Order>,
+    queue: Sender<LogRequest>,
     dropped: Arc<AtomicU64>,
 }
 
 #[derive(Debug)]
-enum Order {
+enum LogRequest {
     Line(Vec<u8>),
     /// Requests a confirmation after all earlier lines have been written.
     Flush(Sender<()>),
@@ -45,9 +45,9 @@ impl LogFile {
     ///
     /// # Errors
     /// Returns an error if the thread cannot be started.
-    pub fn begin(path: &Path) -> io::Result<Self> {
+    pub fn start(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
-        let log = Self::spawn_writer(move || RotatingFile::open(&own, LARGE), QUEUE)?;
+        let log = Self::spawn_writer(move || RotatingFile::open(&own, MAX_LOG_BYTES), QUEUE)?;
         let lines = log.clone();
         let layer = fmt::layer().with_writer(move || lines.clone()).with_ansi(false).with_target(false);
         let filter = Targets::new().with_default(Level::WARN).with_target(env!("CARGO_CRATE_NAME"), Level::INFO);
@@ -69,25 +69,25 @@ impl LogFile {
         Ok(LogFile { queue: sender, dropped })
     }
 
-    fn add(&self, line: &[u8]) {
-        if self.queue.try_send(Order::Line(line.to_owned())).is_err() {
+    fn write_line(&self, line: &[u8]) {
+        if self.queue.try_send(LogRequest::Line(line.to_owned())).is_err() {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }
     }
 
     /// Waits until everything has been written to the file, or until a time limit if the disk hangs.
-    pub fn wait(&self) {
+    pub fn wait_until_written(&self) {
         let (done, waited) = bounded(1);
-        if self.queue.send_timeout(Order::Flush(done), PATIENCE).is_ok() {
-            let _ = waited.recv_timeout(PATIENCE);
+        if self.queue.send_timeout(LogRequest::Flush(done), FLUSH_TIMEOUT).is_ok() {
+            let _ = waited.recv_timeout(FLUSH_TIMEOUT);
         }
     }
 }
 
-fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64) {
+fn write_all(mut file: impl Write, orders: &Receiver<LogRequest>, dropped: &AtomicU64) {
     for order in orders {
         match order {
-            Order::Line(line) => {
+            LogRequest::Line(line) => {
                 // Lines that cannot be written are counted as missing.
                 if file.write_all(&line).is_err() {
                     dropped.fetch_add(1, Ordering::Relaxed);
@@ -98,7 +98,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64
                     dropped.fetch_add(missing, Ordering::Relaxed);
                 }
             }
-            Order::Flush(done) => {
+            LogRequest::Flush(done) => {
                 let _ = file.flush();
                 let _ = done.try_send(());
             }
@@ -109,7 +109,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64
 /// Each write queues one line.
 impl Write for LogFile {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
-        self.add(line);
+        self.write_line(line);
         Ok(line.len())
     }
 
@@ -174,13 +174,13 @@ mod tests {
             let log = LogFile::spawn_writer(
                 {
                     let path = path.clone();
-                    move || RotatingFile::open(&path, LARGE)
+                    move || RotatingFile::open(&path, MAX_LOG_BYTES)
                 },
                 QUEUE,
             )
             .unwrap();
-            log.add(line.as_bytes());
-            log.wait();
+            log.write_line(line.as_bytes());
+            log.wait_until_written();
         }
         assert_eq!(fs::read_to_string(&path).unwrap(), "one\ntwo\n");
     }
@@ -192,9 +192,9 @@ mod tests {
         let own = path.clone();
         let log = LogFile::spawn_writer(move || RotatingFile::open(&own, 8), QUEUE).unwrap();
         for line in ["one\n", "two\n", "three\n", "four\n"] {
-            log.add(line.as_bytes());
+            log.write_line(line.as_bytes());
         }
-        log.wait();
+        log.wait_until_written();
         assert_eq!(fs::read_to_string(path.with_extension("old.log")).unwrap(), "three\n");
         assert_eq!(fs::read_to_string(&path).unwrap(), "four\n");
     }
@@ -230,11 +230,11 @@ mod tests {
         )
         .unwrap();
         for number in 0..10 {
-            log.add(format!("line {number}\n").as_bytes());
+            log.write_line(format!("line {number}\n").as_bytes());
         }
         // Dropped, the lock blocks no thread.
         drop(release);
-        log.wait();
+        log.wait_until_written();
         let text = String::from_utf8(written.lock().unwrap().clone()).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         let (missing, kept): (Vec<&str>, Vec<&str>) = lines.iter().partition(|line| line.starts_with('('));

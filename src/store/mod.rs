@@ -68,7 +68,7 @@ impl Store {
     }
 
     /// Returns a store in the folders `data` and `config` under `root`, for tests or a portable copy.
-    pub fn at(root: &Path) -> Self {
+    pub fn at_root(root: &Path) -> Self {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
@@ -127,9 +127,9 @@ mod tests {
     #[test]
     fn reading_creates_no_folder() {
         let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
+        let store = Store::at_root(root.path());
         assert_eq!(read_folder(&store.device_folder("biss"), "ron"), (Vec::new(), Vec::new()));
-        assert_eq!(store.backups().list("hiperface", "1"), Ok(Vec::new()));
+        assert_eq!(store.backups().list_for("hiperface", "1"), Ok(Vec::new()));
         assert_eq!(store.drafts().load("hiperface", "1"), Ok(None));
         let paths = [
             store.logbook_path(),

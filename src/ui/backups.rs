@@ -134,7 +134,7 @@ fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
     ui.horizontal(|ui| {
         ui.label(theme.monospace(time(write.at)));
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
-        let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", write.cycles());
+        let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", write.write_cycles());
         ui.label(theme.label(theme.format_text(&cycles)));
         ui.add(egui::Label::new(theme.monospace(&write.description)).truncate());
     });

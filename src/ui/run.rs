@@ -25,7 +25,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         return Err(NO_DISPLAY.to_owned());
     }
     let store = Store::for_user().map_err(|error| explain::store_error_text(&error).terminal_text())?;
-    let log = LogFile::begin(&store.log_path());
+    let log = LogFile::start(&store.log_path());
     let cleaned = store.clone();
     // This is not awaited, so a slow disk does not delay the window.
     thread::spawn(move || cleaned.remove_leftovers());
@@ -75,7 +75,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         }
     }
     if let Ok(log) = log {
-        log.wait();
+        log.wait_until_written();
     }
     result
 }

@@ -236,7 +236,7 @@ impl WriteIntent {
         let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intent = Intent { backup: Some(backup.clone()), ..intent };
         let intend = |mut logbook: Logbook| {
-            let id = logbook.intend(Timestamp::now(), device, &intent)?;
+            let id = logbook.record_intent(Timestamp::now(), device, &intent)?;
             Ok((logbook, id))
         };
         let entry = Logbook::open(&store.logbook_path()).and_then(intend);

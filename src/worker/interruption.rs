@@ -11,13 +11,13 @@ pub trait JobInterruption {
     fn is_cancelled(&self) -> bool;
 
     /// Returns the number of operations carried out before the job ended. Returns `None` if no write had begun.
-    fn done(&self) -> Option<usize> {
+    fn operations_done(&self) -> Option<usize> {
         None
     }
 
     /// Returns whether the device had been written to before the job ended.
     fn has_begun(&self) -> bool {
-        self.done().is_some()
+        self.operations_done().is_some()
     }
 }
 
@@ -70,7 +70,7 @@ where
         self.device().is_some_and(DeviceError::is_cancelled)
     }
 
-    fn done(&self) -> Option<usize> {
+    fn operations_done(&self) -> Option<usize> {
         match self {
             JobError::Interrupted { interrupted, .. } => Some(interrupted.done.operation_count()),
             JobError::Device(_) | JobError::Plan(_) | JobError::NotStarted(_) => None,

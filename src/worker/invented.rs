@@ -1,6 +1,6 @@
 //! A device for tests that never sends a message.
 
-use super::{Device, JobInterruption, JobReport, SessionContext, Watched};
+use super::{Device, JobInterruption, JobReport, SessionContext, WatchReply};
 use crate::link::LinkError;
 
 /// Placeholder device that is never queried.
@@ -26,15 +26,15 @@ impl Device for TestDevice {
         Err(())
     }
 
-    fn sample(&mut self, _: &mut SessionContext) -> Result<(), ()> {
+    fn take_sample(&mut self, _: &mut SessionContext) -> Result<(), ()> {
         Err(())
     }
 
-    fn watch(&mut self, _: &mut SessionContext, (): &()) -> Result<Watched<()>, ()> {
+    fn read_watched(&mut self, _: &mut SessionContext, (): &()) -> Result<WatchReply<()>, ()> {
         Err(())
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }

@@ -9,11 +9,11 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use crate::link::CancelToken;
 
 /// Maximum interval. A longer interval is shortened to it.
-const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
+const MAX_INTERVAL: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The live requests of a session, shared by all clones.
 #[derive(Clone)]
-pub(super) struct Live {
+pub(super) struct LiveRequests {
     requests: Arc<Mutex<PollRequests>>,
     sampling: CancelToken,
     /// Channel that wakes the thread. If it is full, the thread is about to wake.
@@ -28,12 +28,12 @@ struct PollRequests {
     number: u64,
 }
 
-impl Live {
+impl LiveRequests {
     /// Creates an empty request list and the receiver that notifies the thread of changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
         let requests = Arc::new(Mutex::new(PollRequests { job: CancelToken::default(), interval: None, number: 0 }));
-        (Live { requests, sampling: CancelToken::default(), changed }, changes)
+        (LiveRequests { requests, sampling: CancelToken::default(), changed }, changes)
     }
 
     /// Sets the job to which later stops apply.
@@ -47,25 +47,25 @@ impl Live {
         requests.job.request();
         drop(requests);
         self.interrupt_sample();
-        self.wake();
+        self.wake_thread();
     }
 
     pub(super) fn poll(&self, interval: Option<Duration>) {
         let mut requests = self.lock();
-        requests.interval = interval.map(|interval| interval.min(LONGEST));
+        requests.interval = interval.map(|interval| interval.min(MAX_INTERVAL));
         requests.number += 1;
         drop(requests);
         if interval.is_none() {
             self.interrupt_sample();
         }
-        self.wake();
+        self.wake_thread();
     }
 
-    pub(super) fn polling(&self) -> Option<Duration> {
+    pub(super) fn polling_interval(&self) -> Option<Duration> {
         self.lock().interval
     }
 
-    pub(super) fn number(&self) -> u64 {
+    pub(super) fn request_number(&self) -> u64 {
         self.lock().number
     }
 
@@ -91,7 +91,7 @@ impl Live {
         WorkerStopHandle(self.clone())
     }
 
-    fn wake(&self) {
+    fn wake_thread(&self) {
         // If the channel is full, the thread has not read the previous request yet. It will read both.
         let _ = self.changed.try_send(());
     }
@@ -104,15 +104,15 @@ impl Live {
 /// Values watched between samples while polling, shared by all clones.
 pub(super) struct WatchList<W> {
     list: Arc<Mutex<WatchEntries<W>>>,
-    live: Live,
+    live: LiveRequests,
 }
 
 struct WatchEntries<W> {
-    entries: Vec<Entry<W>>,
+    entries: Vec<WatchEntry<W>>,
     number: u64,
 }
 
-struct Entry<W> {
+struct WatchEntry<W> {
     value: W,
     interval: Duration,
     /// Whether the device lacks the value. A refused value stays in the list but is not requested again.
@@ -121,27 +121,27 @@ struct Entry<W> {
 
 impl<W: Clone + PartialEq> WatchList<W> {
     /// Creates an empty watch list. The thread is notified of changes through `live`.
-    pub(super) fn new(live: Live) -> Self {
+    pub(super) fn new(live: LiveRequests) -> Self {
         WatchList { list: Arc::new(Mutex::new(WatchEntries { entries: Vec::new(), number: 0 })), live }
     }
 
     /// Sets the values to watch. If a value is listed more than once, the first entry counts.
     pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
-        let mut entries: Vec<Entry<W>> = Vec::with_capacity(watched.len());
+        let mut entries: Vec<WatchEntry<W>> = Vec::with_capacity(watched.len());
         for (what, interval) in watched {
             if entries.iter().any(|entry| entry.value == what) {
                 continue;
             }
             let refused = list.entries.iter().any(|before| before.value == what && before.refused);
-            entries.push(Entry { value: what, interval: interval.min(LONGEST), refused });
+            entries.push(WatchEntry { value: what, interval: interval.min(MAX_INTERVAL), refused });
         }
         list.entries = entries;
         list.number += 1;
         drop(list);
         // The running request may no longer be needed.
         self.live.interrupt_sample();
-        self.live.wake();
+        self.live.wake_thread();
     }
 
     /// Returns the watched values and their intervals if they have changed since `known`. Updates `known`.
@@ -157,7 +157,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
     }
 
     /// Records that the device lacks the given value.
-    pub(super) fn refuse(&self, what: &W) {
+    pub(super) fn mark_unsupported(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;
         if let Some(entry) = list.entries.iter_mut().find(|entry| entry.value == *what) {
@@ -185,7 +185,7 @@ impl<W> Clone for WatchList<W> {
 
 /// A handle that stops a worker without owning it. Clones stop the same worker.
 #[derive(Clone)]
-pub struct WorkerStopHandle(Live);
+pub struct WorkerStopHandle(LiveRequests);
 
 impl WorkerStopHandle {
     /// Ends polling and stops the running job at the next possible point. Later jobs are not affected.
@@ -200,29 +200,29 @@ mod tests {
 
     #[test]
     fn a_failure_ends_only_its_own_request() {
-        let (live, _changes) = Live::new();
+        let (live, _changes) = LiveRequests::new();
         live.poll(Some(Duration::from_millis(50)));
-        let earlier = live.number();
+        let earlier = live.request_number();
         live.poll(Some(Duration::from_millis(200)));
         live.poll_failed(earlier);
-        assert_eq!(live.polling(), Some(Duration::from_millis(200)));
-        live.poll_failed(live.number());
-        assert_eq!(live.polling(), None);
+        assert_eq!(live.polling_interval(), Some(Duration::from_millis(200)));
+        live.poll_failed(live.request_number());
+        assert_eq!(live.polling_interval(), None);
     }
 
     #[test]
     fn a_refused_watch_is_requested_again_after_removal() {
         let second = Duration::from_secs(1);
-        let watches = WatchList::new(Live::new().0);
+        let watches = WatchList::new(LiveRequests::new().0);
         let mut known = 0;
         assert_eq!(watches.changed_entries(&mut known), None);
         watches.set_entries(vec![("a", second), ("b", second), ("a", second * 2)]);
         assert_eq!(watches.changed_entries(&mut known), Some(vec![("a", second), ("b", second)]));
-        watches.refuse(&"a");
+        watches.mark_unsupported(&"a");
         assert_eq!(watches.changed_entries(&mut known), Some(vec![("b", second)]));
         assert_eq!(watches.changed_entries(&mut known), None, "known by now");
         watches.set_entries(vec![("a", second), ("b", Duration::MAX)]);
-        assert_eq!(watches.active_entries(), [("b", LONGEST)]);
+        assert_eq!(watches.active_entries(), [("b", MAX_INTERVAL)]);
         watches.set_entries(vec![]);
         watches.set_entries(vec![("a", second)]);
         assert_eq!(watches.active_entries(), [("a", second)]);

@@ -37,8 +37,8 @@ pub use ring::Ring;
 pub use session::{Session, SessionContext};
 
 use event_sender::{CAPACITY, EventSender};
-use live::{Live, WatchList};
-use thread::{Bench, Never, Order};
+use live::{LiveRequests, WatchList};
+use thread::{Never, SessionThread, SubmittedJob};
 
 use crate::link::{CancelToken, LinkError};
 
@@ -79,14 +79,17 @@ pub trait Device: Send + 'static {
     ///
     /// # Errors
     /// Returns an error if there is no sample, which ends polling.
-    fn sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
     /// Requests a watched value. Messages from the device during this time are part of the sample.
     ///
     /// # Errors
     /// Returns an error if the device does not answer, which ends polling. A refusal counts as an answer.
-    fn watch(&mut self, context: &mut SessionContext, what: &Self::Watch)
-    -> Result<Watched<Self::Sample>, Self::Error>;
+    fn read_watched(
+        &mut self,
+        context: &mut SessionContext,
+        what: &Self::Watch,
+    ) -> Result<WatchReply<Self::Sample>, Self::Error>;
 
     /// Takes the message that the device has sent since the last call.
     fn take_device_message(&mut self) -> Option<Self::DeviceMessage> {
@@ -97,7 +100,7 @@ pub trait Device: Send + 'static {
     ///
     /// # Errors
     /// Returns an error if the connection is lost.
-    fn check(&mut self) -> Result<(), LinkError>;
+    fn check_connection(&mut self) -> Result<(), LinkError>;
 
     /// Returns the interval at which an idle worker checks the device and its wire.
     fn idle_interval(&self) -> Duration {
@@ -105,17 +108,17 @@ pub trait Device: Send + 'static {
     }
 
     /// Maintains the session while no job is running. Returns a message from the device, if any.
-    fn idle(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
+    fn maintain(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
         None
     }
 
-    /// Returns whether [`idle`](Self::idle) must run before the next regular check.
+    /// Returns whether [`maintain`](Self::maintain) must run before the next regular check.
     fn is_urgent(&self) -> bool {
         false
     }
 
     /// Restores any device state that must not persist after the session.
-    fn leave(&mut self, _desk: &mut SessionContext) {}
+    fn restore_state(&mut self, _desk: &mut SessionContext) {}
 }
 
 /// Interval at which an idle worker checks a device.
@@ -123,7 +126,7 @@ pub(crate) const IDLE: Duration = Duration::from_millis(500);
 
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Watched<S> {
+pub enum WatchReply<S> {
     /// The sample with the value. It tells the reason if there is no value at the moment.
     Sample(S),
     /// The device does not have the value, and it is not requested again. The sample reports the refusal.
@@ -147,7 +150,7 @@ pub struct Progress<W> {
 
 impl<W> Progress<W> {
     /// Returns the progress with its step converted.
-    pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
+    pub fn map_step<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
         Progress { done: self.done, total: self.total, step: terms(self.step) }
     }
 }
@@ -200,10 +203,10 @@ pub enum SubmitError {
 /// A handle to the thread of a session. When it is dropped, the running work stops and the thread ends. Dropping does
 /// not wait.
 pub struct Worker<D: Device> {
-    orders: Sender<Order<D>>,
+    orders: Sender<SubmittedJob<D>>,
     events: Receiver<Event<D>>,
     samples: Ring<D::Sample>,
-    live: Live,
+    live: LiveRequests,
     watches: WatchList<D::Watch>,
     busy: Arc<AtomicBool>,
     ended: Receiver<Never>,
@@ -222,11 +225,11 @@ impl<D: Device> Worker<D> {
         let (orders, incoming) = bounded(1);
         let (outgoing, events) = bounded(CAPACITY);
         let (alive, ended) = bounded(0);
-        let (live, changes) = Live::new();
+        let (live, changes) = LiveRequests::new();
         let watches = WatchList::new(live.clone());
         let samples = Ring::new(SAMPLES);
         let busy = Arc::new(AtomicBool::new(false));
-        let bench = Bench {
+        let bench = SessionThread {
             session,
             orders: incoming,
             changes,
@@ -256,7 +259,7 @@ impl<D: Device> Worker<D> {
         // Each job has its own cancellation flag. An earlier job does not affect it, and it is never reset.
         let cancel = CancelToken::default();
         self.live.set_job_cancel(cancel.clone());
-        if self.orders.try_send(Order { id, job, cancel }).is_err() {
+        if self.orders.try_send(SubmittedJob { id, job, cancel }).is_err() {
             self.busy.store(false, Ordering::SeqCst);
             return Err(SubmitError::Ended);
         }
@@ -282,20 +285,20 @@ impl<D: Device> Worker<D> {
 
     /// Returns the current polling interval. Returns `None` while there is no polling, for example after a failed
     /// sample or a stop.
-    pub fn polling(&self) -> Option<Duration> {
-        self.live.polling()
+    pub fn polling_interval(&self) -> Option<Duration> {
+        self.live.polling_interval()
     }
 
     /// Sets the values to watch, each with an interval from start to start. A duplicate is ignored, and a new list
     /// replaces the previous one. While the device is polled, at most one value is requested between two samples. A
     /// value that the device does not have is requested only once. The list is kept when polling ends, and watching
     /// resumes with polling.
-    pub fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
+    pub fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
         self.watches.set_entries(watched);
     }
 
     /// Returns the watched values in the requested order. Values that the device has refused are left out.
-    pub fn watching(&self) -> Vec<(D::Watch, Duration)> {
+    pub fn watched_values(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.active_entries()
     }
 
@@ -320,9 +323,9 @@ impl<D: Device> Worker<D> {
     }
 
     /// Cancels the running work and ends the thread. Does not wait for the thread.
-    pub fn end(self) -> Ending<D> {
+    pub fn end(self) -> EndingWorker<D> {
         // Dropping the worker does both.
-        Ending { events: self.events.clone(), ended: self.ended.clone() }
+        EndingWorker { events: self.events.clone(), ended: self.ended.clone() }
     }
 
     /// Ends the worker like [`end`](Self::end), but keeps it. No further jobs are accepted. Waits at most `patience`
@@ -337,7 +340,7 @@ impl<D: Device> Worker<D> {
     /// Calls [`end`](Self::end) and waits at most `patience`. Returns true when the thread has ended and the connection
     /// is free.
     pub fn close(self, patience: Duration) -> bool {
-        self.end().wait(patience)
+        self.end().wait_for_end(patience)
     }
 }
 
@@ -348,12 +351,12 @@ impl<D: Device> Drop for Worker<D> {
 }
 
 /// A worker that is ending. Its thread ends as soon as the running work has ended.
-pub struct Ending<D: Device> {
+pub struct EndingWorker<D: Device> {
     events: Receiver<Event<D>>,
     ended: Receiver<Never>,
 }
 
-impl<D: Device> Ending<D> {
+impl<D: Device> EndingWorker<D> {
     /// Returns the channel of the remaining events. They report how the last job ended.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
@@ -365,7 +368,7 @@ impl<D: Device> Ending<D> {
     }
 
     /// Waits at most `patience` for the thread to end and returns true when it has ended.
-    pub fn wait(&self, patience: Duration) -> bool {
+    pub fn wait_for_end(&self, patience: Duration) -> bool {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 }

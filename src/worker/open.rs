@@ -72,13 +72,13 @@ pub fn open_byte_stream(
 }
 
 /// Connects to a virtual device in this process.
-pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
+pub fn connect_simulated(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
 /// Creates the error for a link whose scheme does not lead to a device. `known` lists the schemes that do.
 pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError {
-    UrlError::Device { scheme: scheme.word(), known }.into()
+    UrlError::Device { scheme: scheme.keyword(), known }.into()
 }
 
 /// Reads a recorded trace.
@@ -93,12 +93,12 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 /// Checks that `query` contains only parameters listed in `known`.
 ///
 /// # Errors
-/// Returns [`UrlError::Unknown`] for any other parameter.
+/// Returns [`UrlError::UnknownValues`] for any other parameter.
 pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) -> Result<(), UrlError> {
     match query.pairs().iter().find(|(name, _)| !known.contains(&name.as_str())) {
         None => Ok(()),
         Some((name, _)) => {
-            Err(UrlError::Unknown { name: name.clone(), scheme: scheme.word(), known: known.join(", ") })
+            Err(UrlError::Unknown { name: name.clone(), scheme: scheme.keyword(), known: known.join(", ") })
         }
     }
 }
@@ -107,8 +107,12 @@ pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) ->
 /// device has none.
 ///
 /// # Errors
-/// Returns [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
-pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
+/// Returns [`UrlError::UnknownValues`] for a parameter that the line to a real device does not have.
+pub(crate) fn simulator_settings(
+    url: &LinkUrl,
+    line: &[&str],
+    device: &[&str],
+) -> Result<Vec<(String, String)>, UrlError> {
     if url.scheme != LinkScheme::Sim {
         check_parameters(&url.query, url.scheme, line)?;
         return Ok(Vec::new());

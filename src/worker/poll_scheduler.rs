@@ -11,41 +11,41 @@ pub(super) enum DueRequest<W> {
 
 /// Schedule of requests, each with its own pace.
 pub(super) struct PollScheduler<W> {
-    sample: Pace,
-    watches: Vec<Watch<W>>,
+    sample: PollTiming,
+    watches: Vec<WatchSchedule<W>>,
     /// Whether the last request was a sample. Only then may a watched value be next.
     sample_was_last: bool,
 }
 
-struct Watch<W> {
+struct WatchSchedule<W> {
     value: W,
     interval: Duration,
-    pace: Pace,
+    pace: PollTiming,
 }
 
 impl<W> Default for PollScheduler<W> {
     fn default() -> Self {
-        PollScheduler { sample: Pace::default(), watches: Vec::new(), sample_was_last: false }
+        PollScheduler { sample: PollTiming::default(), watches: Vec::new(), sample_was_last: false }
     }
 }
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
     /// Sets the values to watch. Values that are already watched keep their pace.
-    pub(super) fn watch(&mut self, watched: Vec<(W, Duration)>) {
+    pub(super) fn set_watched(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
         for (what, interval) in watched {
             let pace = before.iter_mut().find(|watch| watch.value == what).map(|watch| std::mem::take(&mut watch.pace));
-            self.watches.push(Watch { value: what, interval, pace: pace.unwrap_or_default() });
+            self.watches.push(WatchSchedule { value: what, interval, pace: pace.unwrap_or_default() });
         }
     }
 
     /// Returns the next request and its time. It is the earliest request, or the sample if several are due. Watching
     /// pauses while sampling is off. A new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
-        let sample = self.sample.due(polling, now);
+        let sample = self.sample.next_due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
-        for Watch { value: what, interval, pace } in &mut self.watches {
-            let due = pace.due(polling.and(Some(*interval)), now);
+        for WatchSchedule { value: what, interval, pace } in &mut self.watches {
+            let due = pace.next_due(polling.and(Some(*interval)), now);
             if let Some(due) = due
                 && self.sample_was_last
                 && next.as_ref().is_none_or(|(earliest, _)| due < *earliest)
@@ -74,14 +74,14 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
 /// Timing of a request, with equal intervals from start to start. After a late request, missed ones are not made up
 /// for.
 #[derive(Default)]
-struct Pace {
+struct PollTiming {
     interval: Option<Duration>,
     next: Option<Instant>,
 }
 
-impl Pace {
+impl PollTiming {
     /// Returns the time of the next request. A new request is due immediately.
-    fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
+    fn next_due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
         if interval != self.interval {
             self.interval = interval;
             self.next = interval.map(|_| now);
@@ -108,25 +108,25 @@ mod tests {
     #[test]
     fn a_late_sample_is_not_followed_by_a_burst() {
         let (step, start) = (ms(100), Instant::now());
-        let mut pace = Pace::default();
-        assert_eq!(pace.due(None, start), None);
-        assert_eq!(pace.due(Some(step), start), Some(start));
+        let mut pace = PollTiming::default();
+        assert_eq!(pace.next_due(None, start), None);
+        assert_eq!(pace.next_due(Some(step), start), Some(start));
         pace.mark_completed(start + ms(25));
-        assert_eq!(pace.due(Some(step), start + ms(25)), Some(start + ms(100)), "from start to start");
+        assert_eq!(pace.next_due(Some(step), start + ms(25)), Some(start + ms(100)), "from start to start");
         pace.mark_completed(start + ms(500));
-        assert_eq!(pace.due(Some(step), start + ms(500)), Some(start + ms(500)), "at once, once");
+        assert_eq!(pace.next_due(Some(step), start + ms(500)), Some(start + ms(500)), "at once, once");
         pace.mark_completed(start + ms(525));
-        assert_eq!(pace.due(Some(step), start + ms(525)), Some(start + ms(600)));
-        assert_eq!(pace.due(None, start + ms(530)), None);
+        assert_eq!(pace.next_due(Some(step), start + ms(525)), Some(start + ms(600)));
+        assert_eq!(pace.next_due(None, start + ms(530)), None);
         pace.mark_completed(start + ms(530));
-        assert_eq!(pace.due(None, start + ms(530)), None);
+        assert_eq!(pace.next_due(None, start + ms(530)), None);
     }
 
     /// Returns the requests up to `end` and the milliseconds at which they begin, if each takes 25 ms.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();
-        agenda.watch(watches.iter().map(|(what, interval)| (*what, ms(*interval))).collect());
+        agenda.set_watched(watches.iter().map(|(what, interval)| (*what, ms(*interval))).collect());
         let (mut now, mut said) = (0, Vec::new());
         loop {
             let (at, due) = agenda.next(Some(ms(polling)), start + ms(now)).unwrap();
@@ -162,21 +162,21 @@ mod tests {
     fn watching_pauses_with_polling_and_continues_with_a_new_list() {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();
-        agenda.watch(vec![('a', ms(200))]);
+        agenda.set_watched(vec![('a', ms(200))]);
         assert_eq!(agenda.next(None, start), None);
         assert_eq!(agenda.next(Some(ms(100)), start + ms(10)), Some((start + ms(10), DueRequest::Sample)));
         agenda.mark_completed(&DueRequest::Sample, start + ms(20));
         assert_eq!(agenda.next(Some(ms(100)), start + ms(20)), Some((start + ms(10), DueRequest::Watch('a'))));
         agenda.mark_completed(&DueRequest::Watch('a'), start + ms(30));
         agenda.mark_completed(&DueRequest::Sample, start + ms(120));
-        agenda.watch(vec![('b', ms(50)), ('a', ms(200))]);
+        agenda.set_watched(vec![('b', ms(50)), ('a', ms(200))]);
         assert_eq!(
             agenda.next(Some(ms(100)), start + ms(120)),
             Some((start + ms(120), DueRequest::Watch('b'))),
             "b begins"
         );
         agenda.mark_completed(&DueRequest::Watch('b'), start + ms(130));
-        agenda.watch(vec![('a', ms(200))]);
+        agenda.set_watched(vec![('a', ms(200))]);
         assert_eq!(
             agenda.next(Some(ms(100)), start + ms(130)),
             Some((start + ms(210), DueRequest::Sample)),

@@ -30,12 +30,12 @@ impl<T> State<T> {
 impl<T> Ring<T> {
     /// Creates an empty ring for at least one and at most `capacity` entries.
     pub fn new(capacity: usize) -> Self {
-        Ring::bounded(capacity, usize::MAX, |_| 0)
+        Ring::with_byte_limit(capacity, usize::MAX, |_| 0)
     }
 
     /// Creates an empty ring that is also limited to `most` bytes, as measured by `size_of`. The newest entry is always
     /// kept.
-    pub fn bounded(capacity: usize, most: usize, size_of: fn(&T) -> usize) -> Self {
+    pub fn with_byte_limit(capacity: usize, most: usize, size_of: fn(&T) -> usize) -> Self {
         let (items, capacity) = (VecDeque::new(), capacity.max(1));
         Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
     }
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn the_newest_stay_within_their_bytes() {
-        let ring = Ring::bounded(9, 8, Vec::len);
+        let ring = Ring::with_byte_limit(9, 8, Vec::len);
         for item in [vec![1; 3], vec![2; 3], vec![3; 4], vec![4; 1]] {
             ring.push(item);
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Device, Event, JobId, JobInterruption as _, JobReport, Watched};
+use super::{Device, Event, JobId, JobInterruption as _, JobReport, WatchReply};
 use crate::link::{CancelToken, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
@@ -21,7 +21,7 @@ pub struct SessionContext {
 
 impl SessionContext {
     /// Returns the context of a procedure on `wire`.
-    pub fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
+    pub fn procedure_context<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
 }
@@ -34,7 +34,7 @@ pub struct Session<D> {
 
 impl<D: Device> Session<D> {
     /// Creates a session with a device.
-    pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
+    pub fn from_device(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (CancelToken::default(), Trace::default());
         Session { context: SessionContext { clock, cancel, trace, store, is_virtual }, device }
     }
@@ -50,8 +50,8 @@ impl<D: Device> Session<D> {
     }
 
     /// Passes all subsequent frames to `watcher`.
-    pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
-        self.context.trace.watch(watcher);
+    pub fn add_watcher(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
+        self.context.trace.add_watcher(watcher);
     }
 
     /// Returns whether the device is simulated in this process.
@@ -63,8 +63,8 @@ impl<D: Device> Session<D> {
     ///
     /// # Errors
     /// Returns an error if the connection is lost.
-    pub fn check(&mut self) -> Result<(), LinkError> {
-        self.device.check()
+    pub fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.device.check_connection()
     }
 
     /// Returns the interval at which an idle worker checks the device and its wire.
@@ -73,8 +73,8 @@ impl<D: Device> Session<D> {
     }
 
     /// Maintains the session between jobs and returns a device message, if any.
-    pub fn idle(&mut self) -> Option<D::DeviceMessage> {
-        self.device.idle(&mut self.context)
+    pub fn maintain(&mut self) -> Option<D::DeviceMessage> {
+        self.device.maintain(&mut self.context)
     }
 
     pub(super) fn is_urgent(&self) -> bool {
@@ -82,8 +82,8 @@ impl<D: Device> Session<D> {
     }
 
     /// Restores any state that must not outlast the session.
-    pub fn leave(&mut self) {
-        self.device.leave(&mut self.context);
+    pub fn restore_state(&mut self) {
+        self.device.restore_state(&mut self.context);
     }
 
     /// Runs a job on this thread. `tell` receives all events except the last, which is returned.
@@ -112,16 +112,16 @@ impl<D: Device> Session<D> {
     ///
     /// # Errors
     /// Returns an error if no sample could be taken.
-    pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
-        self.device.sample(&mut self.context)
+    pub fn take_sample(&mut self) -> Result<D::Sample, D::Error> {
+        self.device.take_sample(&mut self.context)
     }
 
     /// Reads a watched value immediately.
     ///
     /// # Errors
     /// Returns an error if the device did not reply.
-    pub fn watch_value(&mut self, what: &D::Watch) -> Result<Watched<D::Sample>, D::Error> {
-        self.device.watch(&mut self.context, what)
+    pub fn watch_value(&mut self, what: &D::Watch) -> Result<WatchReply<D::Sample>, D::Error> {
+        self.device.read_watched(&mut self.context, what)
     }
 
     /// Returns a message that the device has sent since the last call, unless an event contains it.

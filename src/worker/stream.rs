@@ -23,7 +23,7 @@ use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
 /// Maximum duration of a single wait of a producer. A stop or a change takes effect within this time.
-pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
+pub(crate) const MAX_WAIT: Duration = Duration::from_millis(20);
 /// Minimum interval between two calls that wake the window.
 const WAKE: Duration = Duration::from_millis(50);
 
@@ -59,7 +59,7 @@ pub trait Producer: Send + 'static {
     type Error: Send + 'static;
 
     /// Applies a change, starting with the next sample.
-    fn change(&mut self, request: Self::Request);
+    fn apply_change(&mut self, request: Self::Request);
 
     /// Waits for samples for at most `patience`. Returns `None` if none have arrived.
     ///
@@ -73,12 +73,12 @@ pub trait Producer: Send + 'static {
 
 /// A signal for the end of a stream. Code that needs the resources of the stream waits for it.
 #[derive(Clone, Debug)]
-pub struct End(Receiver<Never>);
+pub struct StreamEnd(Receiver<Never>);
 
-impl End {
+impl StreamEnd {
     /// Waits at most `patience` for the thread to end. Returns true when the thread has ended and its resources are
     /// free.
-    pub fn wait(&self, patience: Duration) -> bool {
+    pub fn wait_for_end(&self, patience: Duration) -> bool {
         matches!(self.0.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 
@@ -135,12 +135,12 @@ impl<P: Producer> Stream<P> {
     }
 
     /// Changes the request to the producer from its next sample on. Of several changes, the latest counts.
-    pub fn change(&self, request: P::Request) {
+    pub fn request_change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
 
     /// Takes the batches received since the last call, oldest first.
-    pub fn take(&self) -> Vec<Batch<P::Samples>> {
+    pub fn take_batches(&self) -> Vec<Batch<P::Samples>> {
         let mut ring = lock(&self.shared.ring);
         ring.held = 0;
         let batches = std::mem::take(&mut ring.batches);
@@ -150,7 +150,7 @@ impl<P: Producer> Stream<P> {
 
     /// Returns the number of samples lost since the start. They were lost at the source, or because they were not read
     /// in time.
-    pub fn lost(&self) -> u64 {
+    pub fn lost_samples(&self) -> u64 {
         lock(&self.shared.ring).lost
     }
 
@@ -170,8 +170,8 @@ impl<P: Producer> Stream<P> {
     }
 
     /// Returns a signal for the end of the stream. It remains valid after the stream is dropped.
-    pub fn end(&self) -> End {
-        End(self.ended.clone())
+    pub fn end_signal(&self) -> StreamEnd {
+        StreamEnd(self.ended.clone())
     }
 }
 
@@ -231,9 +231,9 @@ fn run_loop<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock,
     while !shared.stop.load(Ordering::SeqCst) {
         let request = lock(&shared.request).take();
         if let Some(request) = request {
-            producer.change(request);
+            producer.apply_change(request);
         }
-        match producer.next(clock, PATIENCE) {
+        match producer.next(clock, MAX_WAIT) {
             Ok(Some(batch)) => {
                 let dropped = lock(&shared.ring).push(batch);
                 drop(dropped);
@@ -246,7 +246,7 @@ fn run_loop<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock,
             }
         }
         let now = clock.now();
-        if unread && woken.is_none_or(|woken| now.since(woken) >= WAKE) {
+        if unread && woken.is_none_or(|woken| now.duration_since(woken) >= WAKE) {
             (end.wake)();
             (woken, unread) = (Some(now), false);
         }

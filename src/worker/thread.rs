@@ -8,16 +8,16 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
 use super::event_sender::EventSender;
-use super::live::{Live, WatchList};
+use super::live::{LiveRequests, WatchList};
 use super::poll_scheduler::{DueRequest, PollScheduler};
-use super::{Device, Event, JobId, JobInterruption as _, Ring, Session, Watched};
+use super::{Device, Event, JobId, JobInterruption as _, Ring, Session, WatchReply};
 use crate::link::CancelToken;
 
 /// Interval between attempts to send while the channel is full.
 const RETRY: Duration = Duration::from_millis(5);
 
 /// A job being passed to the thread.
-pub(super) struct Order<D: Device> {
+pub(super) struct SubmittedJob<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
     pub(super) cancel: CancelToken,
@@ -27,11 +27,11 @@ pub(super) struct Order<D: Device> {
 pub(super) enum Never {}
 
 /// State of the thread of a session.
-pub(super) struct Bench<D: Device> {
+pub(super) struct SessionThread<D: Device> {
     pub(super) session: Session<D>,
-    pub(super) orders: Receiver<Order<D>>,
+    pub(super) orders: Receiver<SubmittedJob<D>>,
     pub(super) changes: Receiver<()>,
-    pub(super) live: Live,
+    pub(super) live: LiveRequests,
     pub(super) watches: WatchList<D::Watch>,
     pub(super) samples: Ring<D::Sample>,
     pub(super) events: EventSender<D>,
@@ -42,7 +42,7 @@ pub(super) struct Bench<D: Device> {
 ///
 /// # Errors
 /// Returns an error if the system cannot start another thread.
-pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io::Result<()> {
+pub(super) fn start<D: Device>(bench: SessionThread<D>, alive: Sender<Never>) -> std::io::Result<()> {
     std::thread::Builder::new().name("session".to_owned()).spawn(move || {
         let _alive = alive;
         let _slot = Slot(bench.busy.clone());
@@ -60,7 +60,7 @@ impl Drop for Slot {
     }
 }
 
-fn run_loop<D: Device>(mut bench: Bench<D>) {
+fn run_loop<D: Device>(mut bench: SessionThread<D>) {
     let mut agenda = PollScheduler::default();
     let mut known = 0;
     let mut paced = None;
@@ -71,7 +71,7 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
         bench.live.sampling_cancel_token().reset();
         match bench.orders.try_recv() {
             Ok(order) => {
-                bench.carry_out(order);
+                bench.run_job(order);
                 lost = false;
                 next_check = Instant::now() + bench.session.idle_interval();
                 continue;
@@ -81,9 +81,9 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
         }
         bench.events.flush_and_wake();
         if let Some(watches) = bench.watches.changed_entries(&mut known) {
-            agenda.watch(watches);
+            agenda.set_watched(watches);
         }
-        let polling = bench.live.polling();
+        let polling = bench.live.polling_interval();
         if std::mem::replace(&mut paced, polling) != polling {
             bench.session.set_sample_interval(polling);
         }
@@ -92,7 +92,7 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
         if let Some((at, due)) = &due
             && *at <= now
         {
-            if bench.take(due) {
+            if bench.serve_due(due) {
                 agenda.mark_completed(due, Instant::now());
             }
             bench.run_idle_work();
@@ -102,7 +102,7 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
         }
         if now >= next_check || bench.session.is_urgent() {
             next_check = now + bench.session.idle_interval();
-            if !lost && let Err(error) = bench.session.check() {
+            if !lost && let Err(error) = bench.session.check_connection() {
                 lost = true;
                 bench.events.send(Event::Lost(error));
             }
@@ -110,16 +110,16 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
         }
         let retry = (!bench.events.is_empty()).then(|| now + RETRY);
         let until = [due.map(|(at, _)| at), retry].into_iter().flatten().fold(next_check, Instant::min);
-        bench.wait(until.saturating_duration_since(Instant::now()));
+        bench.wait_for_work(until.saturating_duration_since(Instant::now()));
     }
     if paced.is_some() {
         bench.session.set_sample_interval(None);
     }
-    bench.session.leave();
+    bench.session.restore_state();
 }
 
-impl<D: Device> Bench<D> {
-    fn carry_out(&mut self, order: Order<D>) {
+impl<D: Device> SessionThread<D> {
+    fn run_job(&mut self, order: SubmittedJob<D>) {
         self.session.set_cancel(order.cancel);
         let outbox = &mut self.events;
         let end = self.session.run(order.id, order.job, &mut |event| outbox.send(event));
@@ -130,15 +130,15 @@ impl<D: Device> Bench<D> {
 
     /// Takes a sample or watched value that is due. Returns false if a job or another request interrupted the
     /// operation, which is then still due.
-    fn take(&mut self, due: &DueRequest<D::Watch>) -> bool {
+    fn serve_due(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
-        let request = self.live.number();
+        let request = self.live.request_number();
         let taken = match due {
-            DueRequest::Sample => self.session.sample(),
+            DueRequest::Sample => self.session.take_sample(),
             DueRequest::Watch(what) => self.session.watch_value(what).map(|watched| match watched {
-                Watched::Sample(sample) => sample,
-                Watched::Refused(sample) => {
-                    self.watches.refuse(what);
+                WatchReply::Sample(sample) => sample,
+                WatchReply::Refused(sample) => {
+                    self.watches.mark_unsupported(what);
                     sample
                 }
             }),
@@ -160,14 +160,14 @@ impl<D: Device> Bench<D> {
     fn run_idle_work(&mut self) {
         // A job interrupts this request, as it interrupts a sample.
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
-        if let Some(remark) = self.session.idle() {
+        if let Some(remark) = self.session.maintain() {
             self.events.send(Event::Remark(remark));
         }
     }
 
     /// Waits until a job arrives, a request changes or `patience` has passed. The main loop takes the job from its
     /// channel.
-    fn wait(&self, patience: Duration) {
+    fn wait_for_work(&self, patience: Duration) {
         let mut ready = Select::new();
         ready.recv(&self.orders);
         ready.recv(&self.changes);

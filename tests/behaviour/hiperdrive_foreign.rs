@@ -18,13 +18,13 @@ use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber
 use encoder_studio::link::{CancelToken, RealClock, UdpBroadcast};
 use encoder_studio::profile::Consent;
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Session, Watched};
+use encoder_studio::worker::{Session, WatchReply};
 
 use super::support::{Bench, Foreign, Ran};
 
 fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Hiperdrive> {
     let url = format!("{}{query}", foreign.url).parse().unwrap();
-    open(&url, Store::at(&bench.path("store"))).unwrap()
+    open(&url, Store::at_root(&bench.path("store"))).unwrap()
 }
 
 fn image(values: &[(u16, i64)]) -> Box<Image> {
@@ -133,7 +133,7 @@ fn devices_are_found_by_broadcast() {
     let Some(other) = bench.target(&["--product=Valve island"]) else { return };
     let address = |foreign: &Foreign| foreign.place.parse::<SocketAddrV4>().unwrap();
     let clock = Arc::new(RealClock::start());
-    let mut shout = UdpBroadcast::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
+    let mut shout = UdpBroadcast::new(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
     let found = discover(&mut shout, &*clock, &CancelToken::default()).unwrap();
     let of = |foreign: &Foreign| -> &DiscoveredDevice {
         found.iter().find(|found| found.port == address(foreign).port()).unwrap()
@@ -314,7 +314,7 @@ fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
         let drives: Vec<u8> = view.drives.iter().map(|own| own.number.get()).collect();
         assert_eq!(drives, if options.contains(&"--drives=2,3") { vec![2, 3] } else { vec![1] }, "{options:?}");
         session.run_inline(HiperdriveJob::Watch(view.drives[0].number)).unwrap();
-        let sample = session.sample().unwrap();
+        let sample = session.take_sample().unwrap();
         assert!(
             matches!(sample, Sample::Position(reading) if reading.actual.position == 4711),
             "{options:?}: {sample:?}"
@@ -346,7 +346,9 @@ fn temperatures_are_read_through_the_parameter_words() {
         session.run_inline(HiperdriveJob::Take).unwrap();
         comes("what the drive says", || motion.snapshot().link.received > 3);
         let mut watch = |what, celsius| {
-            let Watched::Sample(Sample::Temperature(reading)) = session.watch_value(&what).unwrap() else { panic!() };
+            let WatchReply::Sample(Sample::Temperature(reading)) = session.watch_value(&what).unwrap() else {
+                panic!()
+            };
             assert_eq!(reading.celsius, Some(celsius), "{options:?}");
         };
         let readings = || motion.snapshot().parameters;
@@ -385,7 +387,7 @@ fn another_master_is_reported_and_a_lost_target_ends_the_connection() {
     comes("what the drive says", || motion.snapshot().link.received > 3);
     foreign.kill();
     comes("the loss", || motion.snapshot().lost.is_some());
-    assert!(first.sample().is_err() && !motion.is_open());
+    assert!(first.take_sample().is_err() && !motion.is_open());
 }
 
 #[test]

@@ -43,7 +43,7 @@ impl Drive {
         let bench = Bench::new();
         let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0"]);
         let url = format!("enip:{}", simulated.place).parse().unwrap();
-        let observer = open(&url, Store::at(&bench.path("observer"))).unwrap();
+        let observer = open(&url, Store::at_root(&bench.path("observer"))).unwrap();
         Drive { bench, simulated, observer }
     }
 
@@ -91,7 +91,7 @@ struct Host {
 impl Host {
     fn in_control(bench: &Bench, place: &str) -> Self {
         let url = format!("enip:{place}?{RPI}").parse().unwrap();
-        let session = open(&url, Store::at(&bench.path("host"))).unwrap();
+        let session = open(&url, Store::at_root(&bench.path("host"))).unwrap();
         let motion = session.motion();
         let mut host = Host { worker: Worker::spawn(session, Arc::new(|| ())).unwrap(), motion };
         host.run(HiperdriveJob::Take);

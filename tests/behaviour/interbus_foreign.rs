@@ -20,7 +20,7 @@ const PROGRAMS: &str = r#"{"2": {"mask": 129, "cams": {"0": [10, 20], "7": [3000
 
 fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Interbus> {
     let url = format!("{}{query}", foreign.url).parse().unwrap();
-    open(&url, Store::at(&bench.path("store"))).unwrap()
+    open(&url, Store::at_root(&bench.path("store"))).unwrap()
 }
 
 fn prepare(session: &mut Session<Interbus>) -> Result<Prepared, JobError> {
@@ -83,7 +83,7 @@ fn gateways_of_any_behaviour_can_read_write_and_lead_back() {
             Some("W 00000000"),
             "{options:?}"
         );
-        let reading = session.sample().unwrap();
+        let reading = session.take_sample().unwrap();
         assert!(reading.mode == Some(cams) && reading.cams().is_some(), "{options:?}: {reading:?}");
     }
 }

@@ -12,9 +12,9 @@ use encoder_studio::sim::sine_cosine::{ReferenceLevel, Settings, Source};
 /// Returns a second and a half of one revolution per second, 512 periods each, 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
-    let source = Source::new(settings.checked().unwrap(), SampleTime::ORIGIN);
+    let source = Source::new(settings.validate().unwrap(), SampleTime::ORIGIN);
     let time = (0..75_000).map(|at| source.time(at).unwrap().seconds_since(SampleTime::ORIGIN)).collect();
-    (time, source.samples(0, 75_000).unwrap())
+    (time, source.samples_from(0, 75_000).unwrap())
 }
 
 fn diagnosed(settings: Settings) -> (Result<Analysis, AnalysisError>, Diagnosis) {

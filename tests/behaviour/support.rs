@@ -67,7 +67,7 @@ impl Bench {
         let spent = cycles - logbook.write_cycles(device).unwrap();
         let items = vec![ChangedItem::new("long ago", None, None)];
         let intent = Intent { kind: EntryKind::Write, items, planned_cycles: spent, backup: None };
-        let id = logbook.intend(Timestamp::now(), device, &intent).unwrap();
+        let id = logbook.record_intent(Timestamp::now(), device, &intent).unwrap();
         logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     }
 

@@ -30,7 +30,7 @@ impl Desk {
         let folder = tempfile::tempdir().unwrap();
         let world = StudioEnvironment {
             ports: Arc::new(|| Ok(vec![])),
-            ..StudioEnvironment::production(Store::at(folder.path()), program().studio)
+            ..StudioEnvironment::production(Store::at_root(folder.path()), program().studio)
         };
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }

@@ -77,7 +77,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
         .collect();
     assert!(!format!("{names:?} {log:?}").contains("4711"), "{names:?} {log:?}");
     desk.until("the link is kept", |desk| {
-        let settings = std::fs::read_to_string(Store::at(desk.folder.path()).settings_path());
+        let settings = std::fs::read_to_string(Store::at_root(desk.folder.path()).settings_path());
         settings.is_ok_and(|text| text.contains("sim:?serial=77"))
     });
     let mut folders = vec![desk.folder.path().to_owned()];

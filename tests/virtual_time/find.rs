@@ -90,7 +90,7 @@ fn a_power_cycle_opens_the_factory_settings_window() {
         let bus = desk.bus.clone();
         let clock = desk.clock.clone();
         let mut questions = 0;
-        desk.session.watch(move |_| {
+        desk.session.add_watcher(move |_| {
             questions += 1;
             if questions == 20 {
                 let mut bus = bus.lock().unwrap();
@@ -124,7 +124,7 @@ fn an_interrupted_search_reports_its_findings() {
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
         desk.tap().sent.clear();
-        desk.session.set_cancel(CancelToken::after(questions));
+        desk.session.set_cancel(CancelToken::after_transactions(questions));
         let EncoderSearchResult::Searched { found, complete } = find(&mut desk, FindOptions::default()) else {
             panic!()
         };

@@ -201,7 +201,7 @@ fn cancelling_at_any_transaction_ends_cleanly() {
     while !disturbed(
         &scene,
         format!("cancelled after {steps}"),
-        |desk| desk.session.set_cancel(CancelToken::after(steps)),
+        |desk| desk.session.set_cancel(CancelToken::after_transactions(steps)),
         |ending, told| ending.assert_cancelled_cleanly(told),
     ) {
         steps += 1;
@@ -216,7 +216,7 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     for code in [StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW] {
         for steps in 0.. {
             let warn = |desk: &mut Desk| {
-                desk.session.set_cancel(CancelToken::after(steps));
+                desk.session.set_cancel(CancelToken::after_transactions(steps));
                 for _ in 0..4 {
                     desk.bus().encoder_mut(0).unwrap().report(code);
                 }
@@ -239,11 +239,11 @@ fn a_warning_during_a_write_hides_no_operation() {
             desk.remember_code(2, 0x66);
             let (before, worn_before) = (desk.memory(), desk.wear());
             let prepared = desk.prepare(restore_of(&wanted)).unwrap();
-            desk.session.set_cancel(CancelToken::after(steps));
+            desk.session.set_cancel(CancelToken::after_transactions(steps));
             let (bus, mut stores) = (desk.bus.clone(), 0);
             let mut raised = false;
             // The trace receives a request before it is sent.
-            desk.session.watch(move |entry| {
+            desk.session.add_watcher(move |entry| {
                 stores += usize::from(entry.bytes.to_string().starts_with("40 4B"));
                 if stores == store && !raised {
                     raised = true;

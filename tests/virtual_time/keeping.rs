@@ -39,7 +39,7 @@ fn without_a_backup_nothing_is_written() {
 fn a_broken_logbook_stops_an_unforced_write() {
     for garbage in [true, false] {
         let mut desk = Desk::new("");
-        let path = Store::at(desk.folder.path()).logbook_path();
+        let path = Store::at_root(desk.folder.path()).logbook_path();
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         if garbage {
             fs::write(&path, "this is no database, and longer than the hundred bytes of the header that SQLite looks for in a file: it is text").unwrap();

@@ -50,8 +50,8 @@ impl ByteLink for Slow {
         self.line.set_format(format)
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.line.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.line.check_connection()
     }
 }
 
@@ -66,11 +66,11 @@ fn a_late_reply_is_never_mistaken_for_the_next() {
         let slow = Slow { line, clock: clock.clone(), delay, on_the_way: VecDeque::new() };
         let folder = tempfile::tempdir().unwrap();
         let station = Station::new(Duration::from_millis(100));
-        let (store, types) = (Store::at(folder.path()), EncoderTypes::built_in());
+        let (store, types) = (Store::at_root(folder.path()), EncoderTypes::built_in());
         let mut session = Session::new(Box::new(slow), clock.clone(), station, store, types, true);
         let sent = Arc::new(Mutex::new(Moment::START));
         let last = sent.clone();
-        session.watch(move |entry| {
+        session.add_watcher(move |entry| {
             if entry.direction == Direction::Sent {
                 *last.lock().unwrap() = entry.at;
             }

@@ -50,7 +50,7 @@ fn position(sample: &Sample) -> Option<Option<u64>> {
 #[test]
 fn samples_arrive_without_a_job_and_jobs_run_in_between() {
     let mut bench = in_virtual_time("");
-    assert_eq!(bench.worker.polling(), None);
+    assert_eq!(bench.worker.polling_interval(), None);
     bench.worker.poll(BACK_TO_BACK);
     let blind = samples(&bench.worker, 3);
     assert_eq!(position(&blind[0]), Some(None), "nobody has asked what encoder it is");
@@ -64,7 +64,7 @@ fn samples_arrive_without_a_job_and_jobs_run_in_between() {
         let seen = samples(&bench.worker, 2);
         assert!(position(&seen[1]).flatten().is_some(), "{:?}", seen[1]);
     }
-    assert_eq!(bench.worker.polling(), BACK_TO_BACK);
+    assert_eq!(bench.worker.polling_interval(), BACK_TO_BACK);
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn a_new_interval_applies_immediately() {
     samples(&bench.worker, 10);
     bench.worker.poll(None);
     nothing_comes(&bench);
-    assert_eq!(bench.worker.polling(), None);
+    assert_eq!(bench.worker.polling_interval(), None);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn a_stop_ends_polling() {
         bench.worker.poll(BACK_TO_BACK);
         samples(&bench.worker, 3);
         stop(&bench.worker);
-        assert_eq!(bench.worker.polling(), None);
+        assert_eq!(bench.worker.polling_interval(), None);
         nothing_comes(&bench);
     }
     bench.worker.poll(BACK_TO_BACK);
@@ -105,7 +105,7 @@ fn failed_polling_ends_and_is_reported_once() {
     let told = bench.worker.events().recv_timeout(LONG).unwrap();
     let Event::PollFailed(error) = &told else { panic!("{told:?}") };
     assert!(matches!(**error, JobError::Device(Error::NoReply { .. })), "{error:?}");
-    assert_eq!(bench.worker.polling(), None);
+    assert_eq!(bench.worker.polling_interval(), None);
     assert_eq!(bench.worker.samples().drain().0.len(), 4, "five replies, the first of which is the type label");
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "once");
     bench.worker.submit(identify()).unwrap();
@@ -137,12 +137,12 @@ fn a_job_interrupts_the_retries_of_a_sample() {
 fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");
     for _ in 0..3 {
-        let Sample::NoPosition { codes, .. } = desk.session.sample().unwrap() else { panic!("too fast") };
+        let Sample::NoPosition { codes, .. } = desk.session.take_sample().unwrap() else { panic!("too fast") };
         assert!(codes.contains(&StatusCode::TOO_FAST), "{codes:?}");
         assert!(desk.session.station().codes_met.is_empty(), "they are told with the sample");
     }
     let now = desk.clock.now();
     desk.bus().encoder_mut(0).unwrap().set_rpm(now, 0.0);
-    let sample = desk.session.sample().unwrap();
+    let sample = desk.session.take_sample().unwrap();
     assert!(matches!(&sample, Sample::Position(reading) if reading.valid), "{sample:?}");
 }

@@ -46,7 +46,7 @@ fn the_previous_position_is_recorded() {
     let mut desk = Desk::new("");
     let done = desk.change(set(0, true)).unwrap();
     assert_eq!(backup(&done.backup.unwrap()).recorded.position, Some(0x000E_0531));
-    let store = encoder_studio::store::Store::at(desk.folder.path());
+    let store = encoder_studio::store::Store::at_root(desk.folder.path());
     let key = encoder_studio::store::DeviceKey {
         kind: "hiperface".to_owned(),
         device_type: "37h".to_owned(),
@@ -121,7 +121,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
         for _ in 0..100 {
             desk.run(HiperfaceJob::Position(None)).unwrap();
         }
-        let cycle = desk.clock.now().since(before).as_secs_f64() / 100.0;
+        let cycle = desk.clock.now().duration_since(before).as_secs_f64() / 100.0;
         // A request of three characters, a reply of seven, 11 bits each; silence before and after the reply; 10 ms of
         // processing.
         let silence = if settings.has_long_timeout() { 44.0 } else { 11.0 };

@@ -98,7 +98,7 @@ fn an_encoder_that_warns_while_changing_settings_is_followed() {
 
 fn warn_at(desk: &mut Desk, frame: usize) {
     let (bus, mut frames) = (desk.bus.clone(), 0);
-    desk.session.watch(move |entry| {
+    desk.session.add_watcher(move |entry| {
         if entry.direction == encoder_studio::link::Direction::Sent {
             if frames == frame {
                 bus.lock().unwrap().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);

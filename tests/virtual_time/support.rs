@@ -145,7 +145,7 @@ impl ByteLink for TestLink {
         !self.tap.lock().unwrap().formatless
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         self.check_plug()
     }
 }
@@ -199,10 +199,10 @@ impl Desk {
         let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let mut link = TestLink::new(bus.clone(), clock.clone(), tap.clone());
         link.set_format(station.format).unwrap();
-        let (store, types) = (Store::at(folder.path()), EncoderTypes::built_in());
+        let (store, types) = (Store::at_root(folder.path()), EncoderTypes::built_in());
         let mut session = Session::new(Box::new(link), clock.clone(), station, store, types, true);
         let (entries, raw) = (trace.clone(), tap.clone());
-        session.watch(move |entry| {
+        session.add_watcher(move |entry| {
             check_secrets(entry, raw.lock().unwrap().sent.last());
             entries.lock().unwrap().push(entry.clone());
         });

@@ -32,7 +32,7 @@ fn a_survey_is_complete_and_reads_each_byte_once() {
     assert_eq!(desk.tap().count(Command::ReadData), memory.len());
     assert_eq!(desk.wear(), 0);
     // The geometry is still known: a sample contains it.
-    let sample = desk.session.sample().unwrap();
+    let sample = desk.session.take_sample().unwrap();
     assert!(matches!(&sample, Sample::Position(reading) if reading.position.is_some()), "{sample:?}");
     assert!(desk.session.station().codes_met.is_empty());
 }
@@ -127,7 +127,7 @@ fn a_silent_encoder_ends_the_survey() {
 
 /// Codes that the logbook has of the virtual encoder, the newest reading first.
 fn noted(desk: &Desk) -> Vec<String> {
-    let path = Store::at(desk.folder.path()).logbook_path();
+    let path = Store::at_root(desk.folder.path()).logbook_path();
     let key = DeviceKey {
         kind: "hiperface".to_owned(),
         device_type: "37h".to_owned(),
@@ -135,9 +135,13 @@ fn noted(desk: &Desk) -> Vec<String> {
         is_virtual: true,
     };
     match path.exists() {
-        true => {
-            Logbook::open(&path).unwrap().statuses(&key, 9).unwrap().into_iter().map(|own| own.description).collect()
-        }
+        true => Logbook::open(&path)
+            .unwrap()
+            .status_entries(&key, 9)
+            .unwrap()
+            .into_iter()
+            .map(|own| own.description)
+            .collect(),
         false => Vec::new(),
     }
 }
@@ -167,7 +171,7 @@ fn a_status_code_that_was_read_is_logged() {
     desk.tap().mute_from = None;
     for _ in 0..5 {
         report(&desk, &[StatusCode::TEMPERATURE]);
-        desk.session.sample().unwrap();
+        desk.session.take_sample().unwrap();
     }
     assert_eq!(noted(&desk)[..2], ["1Eh critical encoder temperature", "20h singleturn position unreliable"]);
 }

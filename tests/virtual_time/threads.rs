@@ -29,7 +29,7 @@ fn bench(query: &str, clock: Arc<dyn Clock>) -> Bench {
     let folder = tempfile::tempdir().unwrap();
     let tap = Arc::<Mutex<Tap>>::default();
     let link = TestLink::new(Arc::new(Mutex::new(bus(query))), clock.clone(), tap.clone());
-    let store = Store::at(folder.path());
+    let store = Store::at_root(folder.path());
     let session =
         Session::new(Box::new(link), clock.clone(), Station::new(MARGIN), store, EncoderTypes::built_in(), true);
     let wakes = Arc::new(AtomicUsize::new(0));
@@ -175,7 +175,7 @@ fn an_ending_worker_still_reports_the_end_of_its_job() {
     let mut bench = in_real_time("settings=0xE0");
     let id = bench.worker.submit(search()).unwrap();
     let ending = bench.worker.end();
-    assert!(ending.wait(LONG));
+    assert!(ending.wait_for_end(LONG));
     assert!(ending.is_finished());
     assert_eq!(ending.events().iter().filter_map(|event| is_end(&event)).collect::<Vec<_>>(), [id]);
 }

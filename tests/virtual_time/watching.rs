@@ -7,7 +7,7 @@ use encoder_studio::devices::hiperface::jobs::{Hiperface, JobError};
 use encoder_studio::devices::hiperface::procedures::{Error, Sample, Watch, WatchedReading};
 use encoder_studio::devices::hiperface::protocol::{Command, StatusCode};
 use encoder_studio::units::Moment;
-use encoder_studio::worker::{Event, Watched, Worker};
+use encoder_studio::worker::{Event, WatchReply, Worker};
 
 use crate::polling::{BACK_TO_BACK, SELDOM, nothing_comes, samples};
 use crate::support::Desk;
@@ -37,7 +37,7 @@ fn at(sample: &Sample) -> Moment {
 /// Returns the samples of a polled worker after a new list takes effect: `count` of them, beginning with a position.
 fn course(worker: &Worker<Hiperface>, wished: &[Watch], count: usize) -> Vec<Option<(Watch, Option<i64>)>> {
     worker.poll(None);
-    worker.watch(wished.iter().map(|what| (*what, ALWAYS)).collect());
+    worker.watch_values(wished.iter().map(|what| (*what, ALWAYS)).collect());
     // The requests in progress have ended.
     std::thread::sleep(Duration::from_millis(100));
     worker.samples().drain();
@@ -70,14 +70,14 @@ fn watched_values_alternate_with_positions() {
 #[test]
 fn nothing_is_watched_without_polling() {
     let bench = in_virtual_time("");
-    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     nothing_comes(&bench);
     assert_eq!(bench.tap.lock().unwrap().count(Command::ReadAnalogue), 0);
     bench.worker.poll(BACK_TO_BACK);
     samples(&bench.worker, 5);
     bench.worker.stop();
     nothing_comes(&bench);
-    assert_eq!(bench.worker.watching(), [(TEMPERATURE, ALWAYS)], "the wish outlives a stop");
+    assert_eq!(bench.worker.watched_values(), [(TEMPERATURE, ALWAYS)], "the wish outlives a stop");
     bench.worker.poll(SELDOM);
     let seen = samples(&bench.worker, 2);
     assert_eq!(seen.iter().map(watched).collect::<Vec<_>>(), [None, Some((TEMPERATURE, Some(42)))]);
@@ -92,23 +92,23 @@ fn a_missing_channel_is_reported_once_and_polling_continues() {
         course(&bench.worker, &[MISSING, TEMPERATURE], 8),
         [None, Some((MISSING, None)), None, temperature, None, temperature, None, temperature]
     );
-    assert_eq!(bench.worker.watching(), [(TEMPERATURE, ALWAYS)]);
+    assert_eq!(bench.worker.watched_values(), [(TEMPERATURE, ALWAYS)]);
     assert!(bench.worker.events().is_empty(), "it is told as a sample");
     // With another value in the list it is not requested again; after it was removed and added it is.
     course(&bench.worker, &[SINE, MISSING], 1);
-    assert_eq!(bench.worker.watching(), [(SINE, ALWAYS)]);
+    assert_eq!(bench.worker.watched_values(), [(SINE, ALWAYS)]);
     course(&bench.worker, &[], 1);
     assert_eq!(course(&bench.worker, &[MISSING], 4), [None, Some((MISSING, None)), None, None]);
-    assert_eq!(bench.worker.polling(), BACK_TO_BACK);
+    assert_eq!(bench.worker.polling_interval(), BACK_TO_BACK);
 }
 
 #[test]
 fn a_watched_reading_includes_its_status_codes() {
     let mut desk = Desk::new("");
-    let Watched::Refused(Sample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else { panic!() };
+    let WatchReply::Refused(Sample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else { panic!() };
     assert!(matches!(&refusal.value, Err(Error::Rejected { codes, .. }) if codes == &[StatusCode::ARGUMENT]));
     desk.bus().encoder_mut(0).unwrap().set_temperature(130);
-    let Watched::Sample(Sample::Watched(hot)) = desk.session.watch_value(&TEMPERATURE).unwrap() else { panic!() };
+    let WatchReply::Sample(Sample::Watched(hot)) = desk.session.watch_value(&TEMPERATURE).unwrap() else { panic!() };
     assert_eq!((hot.value, hot.codes), (Ok(130), vec![StatusCode::TEMPERATURE]));
     assert!(desk.session.station().codes_met.is_empty(), "they are told with the reading");
     let now = |code| WatchedReading {
@@ -125,7 +125,7 @@ fn a_watched_reading_includes_its_status_codes() {
 #[test]
 fn watching_continues_around_jobs() {
     let mut bench = in_virtual_time("");
-    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);
     for _ in 0..10 {
         bench.worker.submit(identify()).unwrap();
@@ -142,16 +142,16 @@ fn watching_continues_around_jobs() {
 fn a_lost_line_ends_polling_and_is_reported_once() {
     // Five replies: the type label, position, temperature, position, temperature.
     let bench = in_virtual_time("fault=silent-after:5");
-    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);
     let told = bench.worker.events().recv_timeout(LONG).unwrap();
     let Event::PollFailed(error) = &told else { panic!("{told:?}") };
     assert!(matches!(**error, JobError::Device(Error::NoReply { .. })), "{error:?}");
-    assert_eq!(bench.worker.polling(), None);
+    assert_eq!(bench.worker.polling_interval(), None);
     assert_eq!(bench.worker.samples().drain().0.len(), 4);
     // The same during the request for a watched value.
     let bench = in_virtual_time("fault=silent-after:4");
-    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);
     let told = bench.worker.events().recv_timeout(LONG).unwrap();
     let Event::PollFailed(error) = &told else { panic!("{told:?}") };
@@ -165,11 +165,11 @@ fn a_lost_line_ends_polling_and_is_reported_once() {
 fn rarely_watched_values_do_not_delay_others() {
     let bench = in_virtual_time("");
     bench.worker.poll(BACK_TO_BACK);
-    bench.worker.watch(vec![(TEMPERATURE, Duration::from_secs(3600))]);
+    bench.worker.watch_values(vec![(TEMPERATURE, Duration::from_secs(3600))]);
     let seen: Vec<_> = samples(&bench.worker, 200).iter().filter_map(watched).collect();
     assert_eq!(seen, [(TEMPERATURE, Some(42))], "one at once, and no burst");
     let started = Instant::now();
-    (0..1000).for_each(|_| bench.worker.watch(vec![(SINE, ALWAYS)]));
+    (0..1000).for_each(|_| bench.worker.watch_values(vec![(SINE, ALWAYS)]));
     assert!(started.elapsed() < Duration::from_secs(1));
     samples(&bench.worker, 10);
 }

@@ -258,7 +258,7 @@ fn all_answering_encoders_are_found_and_one_is_chosen() {
     assert_eq!(*desk.phase(), Phase::Connected);
     assert_eq!(desk.encoder().identity.as_ref().unwrap().address, 0x44);
     assert_ne!((format.baud, format.parity), (Baud::new(9600).unwrap(), Parity::Even));
-    let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.word());
+    let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.keyword());
     assert_eq!(desk.encoder().session.source, Source::Link(link.parse().unwrap()));
     assert_eq!(desk.studio.settings.links_of(crate::tabs::HIPERFACE), [link]);
 }

@@ -547,7 +547,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
                     if all {
                         let comparison = compared(&read(&whole).body, &lost.body);
                         assert!(comparison.compared > 0 && comparison.differences.is_empty(), "{:?}", case.tab);
-                        assert!(comparison.missing().is_empty(), "{:?}", comparison.missing());
+                        assert!(comparison.one_sided_items().is_empty(), "{:?}", comparison.one_sided_items());
                     }
                 }
             }

@@ -100,8 +100,8 @@ impl ByteLink for Damaging {
         self.0.set_format(format)
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.0.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.0.check_connection()
     }
 }
 

@@ -16,7 +16,7 @@ fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
     let desk = Desk::new_form("");
     let encoder = desk.encoder();
     assert_eq!(encoder.session.phase, Phase::Connected);
-    assert_eq!(encoder.session.source, Source::Link(LinkUrl::sim()));
+    assert_eq!(encoder.session.source, Source::Link(LinkUrl::simulated()));
     assert!(encoder.session.is_virtual());
     let identity = encoder.identity.as_ref().unwrap();
     assert_eq!(identity.name, "SKM36");

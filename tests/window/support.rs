@@ -104,7 +104,7 @@ impl Outside {
     }
 
     pub(crate) fn store(&self) -> Store {
-        Store::at(self.folder.path())
+        Store::at_root(self.folder.path())
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
@@ -148,7 +148,7 @@ impl Outside {
                 }))
                 .with_value(LinkOpener::new(move |url, store| {
                     let Some(wire) = novos.get(&url.target) else { return crate::novo::jobs::open(url, store) };
-                    Ok(Session::with(Novo(Box::new(TestLink::plug_into(wire)?)), wire.clock(), store, false))
+                    Ok(Session::from_device(Novo(Box::new(TestLink::plug_into(wire)?)), wire.clock(), store, false))
                 }))
                 .with_value(LinkOpener::new(move |url, store| {
                     if url.to_string() == HANGING {
@@ -171,7 +171,7 @@ impl Outside {
                 .with_value(DiscoveryStub::new(move || Ok(found.clone()))),
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
-            folders: BaseFolders::at(&self.path("work"), &self.path("home")),
+            folders: BaseFolders::with_base_folders(&self.path("work"), &self.path("home")),
             ..StudioEnvironment::production(self.store(), self.program.studio)
         }
     }

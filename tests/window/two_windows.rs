@@ -193,7 +193,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
 
 fn studio_of_process() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
-    let world = StudioEnvironment::production(Store::at(folder.as_ref()), program().studio);
+    let world = StudioEnvironment::production(Store::at_root(folder.as_ref()), program().studio);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
 }
 
@@ -201,7 +201,7 @@ fn studio_of_process() -> (Studio, String) {
 #[ignore = "run in processes of their own by `concurrent_processes_lose_no_settings`"]
 fn process_using_links() {
     let (mut studio, name) = studio_of_process();
-    let path = Store::at(env::var_os(FOLDER).unwrap().as_ref()).settings_path();
+    let path = Store::at_root(env::var_os(FOLDER).unwrap().as_ref()).settings_path();
     for number in 0..6 {
         let link = format!("tcp:{name}:{number}");
         studio.settings.use_link(crate::tabs::HIPERFACE, &link);

@@ -285,7 +285,7 @@ impl ByteLink for TestLink {
         self.line.set_format(format)
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         self.wire.check_plug()
     }
 }

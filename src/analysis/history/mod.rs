@@ -61,7 +61,7 @@ impl<'a> ColumnPart<'a> {
         ColumnPart { values: Values::Real(values), flags: &[] }
     }
 
-    /// Creates values for a [`Kind::Whole`] column.
+    /// Creates values for a [`Kind::WholeNumbers`] column.
     pub fn from_integers(values: &'a [i64]) -> Self {
         ColumnPart { values: Values::Whole(values), flags: &[] }
     }

@@ -151,7 +151,7 @@ mod tests {
         vec![
             AllowedValues::words(&["auto", "on", "off"]),
             AllowedValues::OneOf(vec!["skm36".to_owned(), "sks36".to_owned()]),
-            AllowedValues::number(1, 8),
+            AllowedValues::number_range(1, 8),
             AllowedValues::Whole,
             AllowedValues::Number32,
             AllowedValues::Speed { most: 12_000 },

@@ -300,7 +300,7 @@ mod tests {
     #[test]
     fn a_setting_out_of_range_is_reported_with_its_range() {
         let said = |quantity, value| {
-            let error = Settings::default().with(quantity, value).checked().unwrap_err();
+            let error = Settings::default().with_value(quantity, value).validate().unwrap_err();
             [Language::English, Language::German].map(|language| setting(&error).to_string_in(language))
         };
         assert_eq!(

@@ -126,7 +126,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         services.tasks.run("draft", move || {
             let began = Instant::now();
             let claim = loop {
-                match drafts.claim(&key.kind, &key.name) {
+                match drafts.claim_draft(&key.kind, &key.name) {
                     Ok(None) if began.elapsed() < CLAIM_TIMEOUT => std::thread::sleep(RETRY),
                     Ok(claim) => break Ok(claim),
                     Err(error) => break Err(error),

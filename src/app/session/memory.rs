@@ -255,7 +255,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             // The number of completed operations is not known.
             (EarlyEnd::Lost, ..) => (true, 0),
             (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
-                let done = error.done();
+                let done = error.operations_done();
                 if done.is_some() {
                     self.schedule_rereads();
                 }

@@ -111,12 +111,12 @@ impl DeviceHistory {
     const WRITES: u32 = 200;
 
     pub(in crate::app) fn load(key: &DeviceKey, store: &Store) -> Self {
-        let backups = store.backups().list(&key.kind, &key.serial_number);
+        let backups = store.backups().list_for(&key.kind, &key.serial_number);
         let (writes, cycles, statuses) = match store.logbook_path() {
             path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0), Vec::new()),
             path => match Logbook::open(&path) {
                 Ok(logbook) => {
-                    let statuses = logbook.statuses(key, Self::STATUSES).unwrap_or_default();
+                    let statuses = logbook.status_entries(key, Self::STATUSES).unwrap_or_default();
                     (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok(), statuses)
                 }
                 Err(error) => (Err(error), None, Vec::new()),

@@ -87,7 +87,7 @@ pub trait HasProfile: HasMemory {
 
     fn apply_backup(&mut self, path: &Path, result: Result<Box<ProfileDocument>, ReadError>, services: &mut Services) {
         let restored = result.and_then(|own| {
-            let known = own.known().map_err(ReadError::Profile)?;
+            let known = own.check_schema().map_err(ReadError::Profile)?;
             self.restore(known.body, services).map_err(ReadError::Profile)
         });
         if let Err(error) = restored {

@@ -37,7 +37,7 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
     let Cli { common, profile } = Cli::from_arg_matches(matches)?;
     let common = CommonArgs { commands, ..common };
     let own = matches.subcommand().and_then(|(name, own)| {
-        let command = commands.own().find(|command| command.command().get_name() == name)?;
+        let command = commands.kind_commands().find(|command| command.command().get_name() == name)?;
         Some(ParsedCommand::Own(command, own.clone()))
     });
     let command = match own {
@@ -55,23 +55,23 @@ pub fn command(commands: Commands) -> clap::Command {
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
         if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(AFTER_SHARED)) } else { front }
     });
-    let shared = Command::augment_subcommands(front).after_help(summary(commands));
+    let shared = Command::augment_subcommands(front).after_help(command_summary(commands));
     let extended = CommandId::ALL
         .into_iter()
-        .fold(shared, |all, id| all.mut_subcommand(id.name(), |command| extended(command, id, commands)));
+        .fold(shared, |all, id| all.mut_subcommand(id.name(), |command| add_kind_options(command, id, commands)));
     // The entries are about devices, so the names are those of a command for any device.
-    let names = names(CommandId::Identify, commands);
+    let names = kind_name_parser(CommandId::Identify, commands);
     let extended = extended.mut_subcommand("log", |log| log.mut_arg("device", |device| device.value_parser(names)));
-    extended.subcommands(commands.own().map(|own| own.command()))
+    extended.subcommands(commands.kind_commands().map(|own| own.command()))
 }
 
 /// Adds the options of the kinds of device to a shared command.
-fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
+fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
     let mut command = command;
     // In place: `mut_arg` would move it after the other arguments.
     command = command.mut_args(|argument| match argument.get_id().as_str() {
-        "device" | "protocol" => argument.value_parser(names(id, commands)),
-        "action" => argument.value_parser(actions(commands)),
+        "device" | "protocol" => argument.value_parser(kind_name_parser(id, commands)),
+        "action" => argument.value_parser(action_parser(commands)),
         _ => argument,
     });
     for device in commands.devices() {
@@ -84,26 +84,26 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
             }
         }
     }
-    let of_devices = commands.devices().iter().filter_map(|device| Some((device.name(), device.help(id)?)));
+    let of_devices = commands.devices().iter().filter_map(|device| Some((device.name(), device.command_help(id)?)));
     let protocols = commands.protocols().iter().filter(|_| id == CommandId::Decode);
-    let of_protocols = protocols.map(|protocol| (protocol.name(), protocol.help().to_owned()));
+    let of_protocols = protocols.map(|protocol| (protocol.name(), protocol.help_text().to_owned()));
     let help: Vec<String> =
         of_devices.chain(of_protocols).map(|(name, help)| format!("{name}: {}", help.trim_end())).collect();
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
 /// Returns the kinds of device that a command accepts, including protocols if the command accepts them.
-fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
+fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
-    let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.about()));
+    let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.description()));
     let protocols = commands.protocols().iter().filter(|_| id == CommandId::Decode);
-    let protocols = protocols.map(|protocol| PossibleValue::new(protocol.name()).help(protocol.about()));
+    let protocols = protocols.map(|protocol| PossibleValue::new(protocol.name()).help(protocol.description()));
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
 }
 
 /// Returns the actions of all kinds of device, each with its meaning for the kinds that support it.
-fn actions(commands: Commands) -> PossibleValuesParser {
-    let single = commands.devices().iter().map(|device| (device.name(), device.actions()));
+fn action_parser(commands: Commands) -> PossibleValuesParser {
+    let single = commands.devices().iter().map(|device| (device.name(), device.action_values()));
     let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));
     let mut actions: Vec<(PossibleValue, Vec<String>)> = Vec::new();
     for (kind, of_kind) in single.chain(combined) {
@@ -121,7 +121,7 @@ fn actions(commands: Commands) -> PossibleValuesParser {
 }
 
 /// Returns a summary of which commands exist for which kinds of device.
-fn summary(commands: Commands) -> String {
+fn command_summary(commands: Commands) -> String {
     let devices = commands.devices();
     let list = |is: &dyn Fn(&dyn DeviceCommands) -> bool| {
         let names: Vec<&str> = devices.iter().filter(|device| is(**device)).map(|device| device.name()).collect();
@@ -132,7 +132,8 @@ fn summary(commands: Commands) -> String {
     };
     let all = list(&|_| true);
     let searchable = list(&|device| device.is_searchable());
-    let notes: String = devices.iter().filter_map(|device| device.note()).map(|note| format!("{note}\n")).collect();
+    let notes: String =
+        devices.iter().filter_map(|device| device.help_note()).map(|note| format!("{note}\n")).collect();
     let example = devices.first().map(|device| device.name()).unwrap_or_default();
     format!(
         "Kinds of device: {all}.\ndiff, verify and restore take the kind from the profile. find supports {searchable}. The \

@@ -8,25 +8,25 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::Scope;
 use std::time::Duration;
 
-use super::PATIENCE;
+use super::IDLE_WAIT;
 use crate::link::{Clock, RealClock, request_realtime_priority};
 use crate::sim::DatagramDevice;
 
 /// Maximum sleep of the sender. Every packet is due at least this long after its request.
-const REST: Duration = Duration::from_millis(4);
+const MAX_SLEEP: Duration = Duration::from_millis(4);
 /// Number of ports to try if the port is not specified.
-const TRIES: usize = 50;
+const PORTS_TO_TRY: usize = 50;
 /// Buffer size in bytes, larger than any packet.
-const ROOM: usize = 2048;
+const BUFFER_SIZE: usize = 2048;
 
 /// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects a port that is free for both.
 pub(super) fn bind_tcp_and_udp(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
     for place in address.to_socket_addrs()? {
         let SocketAddr::V4(place) = place else { continue };
-        let tries = if place.port() == 0 { TRIES } else { 1 };
+        let tries = if place.port() == 0 { PORTS_TO_TRY } else { 1 };
         for _ in 0..tries {
-            match both(place) {
+            match bind_both(place) {
                 Ok(bound) => return Ok(bound),
                 Err(error) => last = error,
             }
@@ -35,11 +35,11 @@ pub(super) fn bind_tcp_and_udp(address: &str) -> std::io::Result<(TcpListener, U
     Err(last)
 }
 
-fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
+fn bind_both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let listener = TcpListener::bind(place)?;
     let at = SocketAddrV4::new(*place.ip(), listener.local_addr()?.port());
     let socket = UdpSocket::bind(at)?;
-    socket.set_read_timeout(Some(PATIENCE))?;
+    socket.set_read_timeout(Some(IDLE_WAIT))?;
     Ok((listener, socket, at))
 }
 
@@ -72,12 +72,12 @@ impl ServedDevice {
 
     fn receive(&self, ended: &AtomicBool) {
         request_realtime_priority();
-        let mut buffer = [0; ROOM];
+        let mut buffer = [0; BUFFER_SIZE];
         while !ended.load(Ordering::SeqCst) {
             match self.socket.recv_from(&mut buffer) {
                 Ok((count, SocketAddr::V4(from))) => {
                     let packet = buffer.get(..count).unwrap_or_default();
-                    self.pump(|device, clock| device.on_datagram(clock.now(), from, packet));
+                    self.drive_device(|device, clock| device.on_datagram(clock.now(), from, packet));
                 }
                 Ok(_) => {}
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
@@ -90,19 +90,19 @@ impl ServedDevice {
     fn send(&self, ended: &AtomicBool) {
         request_realtime_priority();
         while !ended.load(Ordering::SeqCst) {
-            let next = self.pump(|_, _| ());
-            std::thread::sleep(next.min(REST));
+            let next = self.drive_device(|_, _| ());
+            std::thread::sleep(next.min(MAX_SLEEP));
         }
     }
 
     /// Calls `work` with the device and sends all packets that are due. Returns the time until the next packet.
-    fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
+    fn drive_device(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);
         for (to, packet) in device.poll_datagrams(self.clock.now()) {
             // A packet that cannot be sent is lost, as on any network.
             let _ = self.socket.send_to(&packet, to);
         }
-        device.poll_datagrams_at().map_or(REST, |next| next.since(self.clock.now()))
+        device.poll_datagrams_at().map_or(MAX_SLEEP, |next| next.duration_since(self.clock.now()))
     }
 }

@@ -3,11 +3,11 @@
 use crate::buses::bridge::sim::{Adapter, keys};
 use crate::kinds::attachable_kinds;
 use crate::sim::ConfigError;
-use crate::sim::setting::pairs;
+use crate::sim::setting::query_pairs;
 use proptest::prelude::*;
 
 fn error(query: &str) -> Option<ConfigError> {
-    Adapter::from_pairs(&pairs(query), attachable_kinds()).err()
+    Adapter::from_pairs(&query_pairs(query), attachable_kinds()).err()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tests of profiles saved over edited texts, for every kind.
 
 use super::program;
-use crate::profile::{Carried, ProfileDocument};
+use crate::profile::{ProfileDocument, UpdatedText};
 
 fn ready_made() -> Vec<(&'static str, String)> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
@@ -30,7 +30,7 @@ fn unchanged_text_is_kept_verbatim() {
             let carried = ProfileDocument::parse(&text, program().studio.formats)
                 .unwrap()
                 .rewrite_text(&text, program().studio.formats);
-            assert_eq!(carried, Carried { text, lost: Vec::new() });
+            assert_eq!(carried, UpdatedText { text, lost: Vec::new() });
         }
     }
 }
@@ -63,7 +63,7 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
             let own = ProfileDocument::parse(text, program().studio.formats)
                 .unwrap()
                 .rewrite_text(&commented, program().studio.formats);
-            assert_eq!(own, Carried { text: commented, lost: Vec::new() });
+            assert_eq!(own, UpdatedText { text: commented, lost: Vec::new() });
         }
     }
 }
@@ -134,7 +134,7 @@ proptest::proptest! {
         let before = ProfileDocument::parse(&spaced, program().studio.formats).unwrap();
         proptest::prop_assert_eq!(before.emit(), ProfileDocument::parse(text, program().studio.formats).unwrap().emit());
         let same = before.rewrite_text(&spaced, program().studio.formats);
-        proptest::prop_assert_eq!(same, Carried { text: spaced.clone(), lost: Vec::new() });
+        proptest::prop_assert_eq!(same, UpdatedText { text: spaced.clone(), lost: Vec::new() });
         let carried = document.rewrite_text(&spaced, program().studio.formats);
         proptest::prop_assert_eq!(ProfileDocument::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
         for at in 0..comments {

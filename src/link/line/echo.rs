@@ -1,6 +1,6 @@
 //! Echoes: some adapters return the bytes that the host sends.
 
-use crate::parameter::Words;
+use crate::parameter::Keywords;
 
 /// Whether the adapter echoes sent bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,10 +15,11 @@ pub enum Echo {
 
 impl Echo {
     /// Accepted values of the `echo=` parameter.
-    pub(crate) const WORDS: Words<Echo> = Words(&[("auto", Echo::Unknown), ("on", Echo::On), ("off", Echo::Off)]);
+    pub(crate) const KEYWORDS: Keywords<Echo> =
+        Keywords(&[("auto", Echo::Unknown), ("on", Echo::On), ("off", Echo::Off)]);
 
     /// Returns the received bytes without the echo of `sent`, or `None` if the echo may still be incomplete.
-    pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
+    pub(crate) fn strip_echo<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
         match self {
             Echo::Off => Some(line),
             Echo::On => line.get(sent.len()..),
@@ -31,7 +32,7 @@ impl Echo {
     }
 
     /// Stores whether there was an echo, unless this is already known.
-    pub(crate) fn learn(&mut self, echo_heard: bool) {
+    pub(crate) fn store_heard(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };
         }

@@ -23,15 +23,15 @@ pub struct LineQuality {
 }
 
 impl LineQuality {
-    const ANSWERS: usize = 1000;
+    const MAX_REPLY_TIMES: usize = 1000;
 
     /// Returns whether any error has been counted.
     pub fn has_errors(&self) -> bool {
-        self.troubles() != [0; 4]
+        self.counts() != [0; 4]
     }
 
     /// Returns the numbers of retries, damaged replies, unanswered requests and late replies.
-    pub fn troubles(&self) -> [u64; 4] {
+    pub fn counts(&self) -> [u64; 4] {
         [self.retries, self.damaged, self.silent, self.late]
     }
 
@@ -44,7 +44,7 @@ impl LineQuality {
     }
 
     pub(super) fn record_answer_time(&mut self, time: Duration) {
-        if self.answers.len() == Self::ANSWERS {
+        if self.answers.len() == Self::MAX_REPLY_TIMES {
             self.answers.pop_front();
         }
         self.answers.push_back(time);

@@ -55,19 +55,19 @@ impl LineState {
         self.outstanding_since = None;
     }
 
-    pub(crate) fn sent(&mut self, at: Moment) {
+    pub(crate) fn mark_sent(&mut self, at: Moment) {
         self.outstanding_since.get_or_insert(at);
         self.last_sent = at;
         self.quality.requests += 1;
     }
 
-    pub(crate) fn answered(&mut self) {
+    pub(crate) fn mark_replied(&mut self) {
         self.outstanding_since = None;
         self.quality.replies += 1;
     }
 
     pub(crate) fn record_answer_start(&mut self, at: Moment) {
-        self.quality.record_answer_time(at.since(self.last_sent));
+        self.quality.record_answer_time(at.duration_since(self.last_sent));
     }
 
     pub(crate) fn clear_error(&mut self) {

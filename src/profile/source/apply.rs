@@ -2,22 +2,22 @@
 
 use std::ops::Range;
 
-use super::changes::{Change, Step, is_equivalent_value, steps};
-use super::tree::{Kind, Part, SourceNode, read, trailing_comment};
+use super::changes::{Change, PathStep, is_equivalent_value, path_steps};
+use super::tree::{Kind, NodePart, SourceNode, read, trailing_comment};
 
 /// Applies the changes in order. Returns `None` if a change does not fit the text.
 pub(in crate::profile) fn apply_all(text: &str, changes: &[Change]) -> Option<String> {
-    changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
+    changes.iter().try_fold(text.to_owned(), |text, change| apply_change(&text, change))
 }
 
 /// Applies a change. Returns `None` if the change does not fit the text.
-pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
+pub(in crate::profile) fn apply_change(text: &str, change: &Change) -> Option<String> {
     let root = read(text)?;
     let (last, way) = match change.path.split_last() {
         Some(split) => split,
         None => {
             let to = change.to.as_deref()?;
-            return replaced(text, &root.span, to);
+            return replace_range(text, &root.span, to);
         }
     };
     let within = way.iter().try_fold(&root, |node, step| part_at(text, node, step).map(|part| &part.value))?;
@@ -25,41 +25,41 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
         (Some(part), Some(to)) => {
             let own = text.get(part.value.span.clone())?;
             // Elements identified only by their index are the same only if their content is the same.
-            if let (Step::At(_), Some(from)) = (last, &change.from)
+            if let (PathStep::At(_), Some(from)) = (last, &change.from)
                 && !is_equivalent_value(own, from)
             {
                 return None;
             }
             let text = replace_comment(text, part.end, &change.comments)?;
-            replaced(&text, &part.value.span, &indent_value(to, indent_at(&text, part.start()), line_end(&text)))
+            replace_range(&text, &part.value.span, &indent_value(to, indent_at(&text, part.start()), line_end(&text)))
         }
-        (Some(part), None) => without(text, part),
-        (None, Some(to)) => with(text, within, change, last, to),
+        (Some(part), None) => remove_entry(text, part),
+        (None, Some(to)) => insert_entry(text, within, change, last, to),
         (None, None) => Some(text.to_owned()),
     }
 }
 
 /// Returns the value at a path and the steps to the preceding values, nearest first.
-pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)> {
+pub(super) fn value_at(text: &str, path: &[PathStep]) -> Option<(String, Vec<PathStep>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
     let within = way.iter().try_fold(&root, |node, step| part_at(text, node, step).map(|part| &part.value))?;
     let part = part_at(text, within, last)?;
-    let behind = steps(text, within).into_iter().take_while(|step| step != last);
-    let mut behind: Vec<Step> = behind.collect();
+    let behind = path_steps(text, within).into_iter().take_while(|step| step != last);
+    let mut behind: Vec<PathStep> = behind.collect();
     behind.reverse();
     Some((text.get(part.value.span.clone())?.to_owned(), behind))
 }
 
-fn part_at<'n>(text: &str, node: &'n SourceNode, step: &Step) -> Option<&'n Part> {
-    if let Step::At(at) = step {
+fn part_at<'n>(text: &str, node: &'n SourceNode, step: &PathStep) -> Option<&'n NodePart> {
+    if let PathStep::At(at) = step {
         // An element with a name is not addressed by its index.
         return if matches!(node.kind, Kind::List(_)) { node.parts().get(*at) } else { None };
     }
-    steps(text, node).iter().position(|own| own == step).and_then(|at| node.parts().get(at))
+    path_steps(text, node).iter().position(|own| own == step).and_then(|at| node.parts().get(at))
 }
 
-fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
+fn replace_range(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
@@ -68,15 +68,15 @@ fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<Str
     let found = trailing_comment(text, at);
     match (found, comments) {
         (Some((place, own)), (Some(from), to)) if own == from => match to {
-            Some(to) => replaced(text, &place, &format!("// {to}")),
-            None => replaced(text, &(at..place.end), ""),
+            Some(to) => replace_range(text, &place, &format!("// {to}")),
+            None => replace_range(text, &(at..place.end), ""),
         },
         _ => Some(text.to_owned()),
     }
 }
 
 /// Returns the text without an entry. If the entry is alone on its line, the line is removed.
-fn without(text: &str, part: &Part) -> Option<String> {
+fn remove_entry(text: &str, part: &NodePart) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;
     let line = before.rfind('\n').map_or(0, |at| at + 1);
@@ -84,39 +84,39 @@ fn without(text: &str, part: &Part) -> Option<String> {
     let rest = text.get(behind..)?;
     let ends = rest.trim_start_matches([' ', '\t', '\r']);
     if before.get(line..)?.trim().is_empty() && ends.starts_with('\n') {
-        return replaced(text, &(line..text.len() - ends.len() + 1), "");
+        return replace_range(text, &(line..text.len() - ends.len() + 1), "");
     }
     let blanks = text.get(after..)?.len() - text.get(after..)?.trim_start_matches([' ', '\t']).len();
     if part.comma {
-        return replaced(text, &(part.start()..after + blanks), "");
+        return replace_range(text, &(part.start()..after + blanks), "");
     }
     // The last entry on a line is removed with the comma before it.
     let start = before.trim_end().len();
     let start = if before.get(..start)?.ends_with(',') { start - 1 } else { part.start() };
-    replaced(text, &(start..after), "")
+    replace_range(text, &(start..after), "")
 }
 
 /// Returns the text with a new entry inserted after its predecessor.
-fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str) -> Option<String> {
-    if matches!(within.kind, Kind::Plain) || matches!(last, Step::At(_)) {
+fn insert_entry(text: &str, within: &SourceNode, change: &Change, last: &PathStep, to: &str) -> Option<String> {
+    if matches!(within.kind, Kind::Plain) || matches!(last, PathStep::At(_)) {
         return None;
     }
     let key = match last {
-        Step::Entry(name) => format!("{name}: "),
+        PathStep::Entry(name) => format!("{name}: "),
         _ => String::new(),
     };
     let (end, parts) = (line_end(text), within.parts());
     let anchor = change.behind.iter().find_map(|step| part_at(text, within, step));
     let open = within.span.start + text.get(within.span.clone())?.find(['(', '[', '{'])? + 1;
-    let first_line = text.get(open..parts.first().map_or(within.span.end, Part::start))?;
+    let first_line = text.get(open..parts.first().map_or(within.span.end, NodePart::start))?;
     let stands_in_lines = first_line.contains('\n') || parts.is_empty();
     let comma_before = anchor.is_some_and(|part| !part.comma);
     if !stands_in_lines {
         let more = format!("{key}{}", to_single_line(to)?);
         return match anchor {
-            Some(part) if comma_before => replaced(text, &(part.end..part.end), &format!(", {more}")),
-            Some(part) => replaced(text, &(part.end..part.end), &format!(" {more},")),
-            None => replaced(text, &(open..open), &format!("{more}, ")),
+            Some(part) if comma_before => replace_range(text, &(part.end..part.end), &format!(", {more}")),
+            Some(part) => replace_range(text, &(part.end..part.end), &format!(" {more},")),
+            None => replace_range(text, &(open..open), &format!("{more}, ")),
         };
     }
     let indent = match parts.first() {
@@ -137,9 +137,9 @@ fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str)
         _ if parts.is_empty() => format!("{end}{}", indent_at(text, within.span.start)),
         _ => format!("{end}{indent}"),
     };
-    let text = replaced(text, &(place..place), &format!("{line}{close}"))?;
+    let text = replace_range(text, &(place..place), &format!("{line}{close}"))?;
     match anchor.filter(|_| comma_before) {
-        Some(part) => replaced(&text, &(part.end..part.end), ","),
+        Some(part) => replace_range(&text, &(part.end..part.end), ","),
         None => Some(text),
     }
 }
@@ -174,7 +174,7 @@ fn to_single_line(value: &str) -> Option<String> {
     if !value.contains('\n') {
         return Some(value.to_owned());
     }
-    let plain = super::tree::comments(value).is_empty();
+    let plain = super::tree::comments_in(value).is_empty();
     plain.then(|| value.lines().map(str::trim).collect::<Vec<_>>().join(" "))
 }
 

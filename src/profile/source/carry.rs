@@ -1,12 +1,12 @@
 //! Transfer of changes between two generated texts to the user's text.
 
-use super::apply::{apply, value_at};
-use super::changes::{Change, changes};
-use super::tree::comments;
+use super::apply::{apply_change, value_at};
+use super::changes::{Change, find_changes};
+use super::tree::comments_in;
 
 /// A text with updated content.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Carried {
+pub struct UpdatedText {
     /// Updated text.
     pub text: String,
     /// User comments that the new text does not contain.
@@ -17,13 +17,13 @@ pub struct Carried {
 /// content as the user's text.
 ///
 /// Returns `None` if a change does not fit. The caller must check that the result means the same as `after`.
-pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option<Carried> {
+pub(in crate::profile) fn carry_changes(text: &str, before: &str, after: &str) -> Option<UpdatedText> {
     let mut carried = text.to_owned();
-    for change in changes(before, after)? {
-        carried = apply(&carried, &change).or_else(|| replace_enclosing_value(&carried, &change, after))?;
+    for change in find_changes(before, after)? {
+        carried = apply_change(&carried, &change).or_else(|| replace_enclosing_value(&carried, &change, after))?;
     }
-    let lost = lost(text, &carried, before);
-    Some(Carried { text: carried, lost })
+    let lost = lost_comments(text, &carried, before);
+    Some(UpdatedText { text: carried, lost })
 }
 
 /// Replaces the nearest enclosing value that can be replaced.
@@ -32,15 +32,15 @@ fn replace_enclosing_value(text: &str, change: &Change, after: &str) -> Option<S
         let path = change.path.get(..length)?.to_vec();
         let (to, behind) = value_at(after, &path)?;
         let (comments, heading) = ((None, None), Vec::new());
-        apply(text, &Change { path, from: None, to: Some(to), behind, comments, heading })
+        apply_change(text, &Change { path, from: None, to: Some(to), behind, comments, heading })
     })
 }
 
 /// Returns the user's comments that are missing from the new text.
-pub(in crate::profile) fn lost(text: &str, now: &str, generated: &str) -> Vec<String> {
-    let (mut there, own) = (comments(now), comments(generated));
+pub(in crate::profile) fn lost_comments(text: &str, now: &str, generated: &str) -> Vec<String> {
+    let (mut there, own) = (comments_in(now), comments_in(generated));
     let mut lost = Vec::new();
-    for comment in comments(text) {
+    for comment in comments_in(text) {
         match there.iter().position(|other| *other == comment) {
             Some(at) => {
                 there.swap_remove(at);

@@ -6,9 +6,9 @@ mod carry;
 mod changes;
 mod tree;
 
-pub use carry::Carried;
-pub(in crate::profile) use carry::{carry, lost};
-pub(in crate::profile) use changes::changes;
-pub use changes::{Change, Step};
+pub use carry::UpdatedText;
+pub(in crate::profile) use carry::{carry_changes, lost_comments};
+pub(in crate::profile) use changes::find_changes;
+pub use changes::{Change, PathStep};
 
 pub(in crate::profile) use apply::apply_all;

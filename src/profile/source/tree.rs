@@ -15,13 +15,13 @@ pub(super) enum Kind {
     /// A number, a string, an identifier or a tuple.
     Plain,
     /// A list, `[…]`.
-    List(Vec<Part>),
+    List(Vec<NodePart>),
     /// A structure or map, `(name: …)` or `{key: …}`.
-    Entries(Vec<Part>),
+    Entries(Vec<NodePart>),
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct NodePart {
     pub(super) key: Option<Range<usize>>,
     pub(super) value: SourceNode,
     /// End of the value, including a comma after it.
@@ -29,14 +29,14 @@ pub(super) struct Part {
     pub(super) comma: bool,
 }
 
-impl Part {
+impl NodePart {
     pub(super) fn start(&self) -> usize {
         self.key.as_ref().map_or(self.value.span.start, |key| key.start)
     }
 }
 
 impl SourceNode {
-    pub(super) fn parts(&self) -> &[Part] {
+    pub(super) fn parts(&self) -> &[NodePart] {
         match &self.kind {
             Kind::Plain => &[],
             Kind::List(parts) | Kind::Entries(parts) => parts,
@@ -47,25 +47,25 @@ impl SourceNode {
 /// Parses a text, or returns `None` if its syntax is not supported.
 pub(super) fn read(text: &str) -> Option<SourceNode> {
     let mut reader = TreeReader { text, at: 0 };
-    reader.skip();
-    while reader.takes("#!") {
-        reader.at += reader.rest().find(']')? + 1;
-        reader.skip();
+    reader.skip_blanks();
+    while reader.take_sign("#!") {
+        reader.at += reader.remaining().find(']')? + 1;
+        reader.skip_blanks();
     }
     let node = reader.value()?;
-    reader.skip();
-    reader.rest().is_empty().then_some(node)
+    reader.skip_blanks();
+    reader.remaining().is_empty().then_some(node)
 }
 
-pub(super) fn comments(text: &str) -> Vec<&str> {
+pub(super) fn comments_in(text: &str) -> Vec<&str> {
     let mut reader = TreeReader { text, at: 0 };
     let mut found = Vec::new();
-    while !reader.rest().is_empty() {
+    while !reader.remaining().is_empty() {
         let before = reader.at;
-        if let Some(comment) = reader.comment() {
+        if let Some(comment) = reader.read_comment() {
             found.push(comment);
-        } else if reader.quoted().is_none() {
-            reader.at = before + reader.rest().chars().next().map_or(1, char::len_utf8);
+        } else if reader.skip_literal().is_none() {
+            reader.at = before + reader.remaining().chars().next().map_or(1, char::len_utf8);
         }
     }
     found
@@ -76,10 +76,10 @@ pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
     let mut reader = TreeReader { text, at: at + blanks };
-    if !reader.rest().starts_with("//") {
+    if !reader.remaining().starts_with("//") {
         return None;
     }
-    let comment = reader.comment()?;
+    let comment = reader.read_comment()?;
     Some((at + blanks..reader.at, comment))
 }
 
@@ -89,29 +89,29 @@ struct TreeReader<'t> {
 }
 
 impl<'t> TreeReader<'t> {
-    fn rest(&self) -> &'t str {
+    fn remaining(&self) -> &'t str {
         self.text.get(self.at..).unwrap_or_default()
     }
 
-    fn takes(&mut self, sign: &str) -> bool {
-        let takes = self.rest().starts_with(sign);
+    fn take_sign(&mut self, sign: &str) -> bool {
+        let takes = self.remaining().starts_with(sign);
         if takes {
             self.at += sign.len();
         }
         takes
     }
 
-    fn skip(&mut self) {
+    fn skip_blanks(&mut self) {
         loop {
-            self.at += self.rest().len() - self.rest().trim_start().len();
-            if self.comment().is_none() {
+            self.at += self.remaining().len() - self.remaining().trim_start().len();
+            if self.read_comment().is_none() {
                 return;
             }
         }
     }
 
-    fn comment(&mut self) -> Option<&'t str> {
-        let rest = self.rest();
+    fn read_comment(&mut self) -> Option<&'t str> {
+        let rest = self.remaining();
         if let Some(line) = rest.strip_prefix("//") {
             // A carriage return belongs to the end of the line.
             let line = line.lines().next().unwrap_or_default();
@@ -135,8 +135,8 @@ impl<'t> TreeReader<'t> {
     }
 
     /// Skips a string or character literal, which may contain any character.
-    fn quoted(&mut self) -> Option<()> {
-        let rest = self.rest();
+    fn skip_literal(&mut self) -> Option<()> {
+        let rest = self.remaining();
         let plain = rest.strip_prefix('b').unwrap_or(rest);
         if let Some(raw) = plain.strip_prefix('r') {
             let hashes = raw.len() - raw.trim_start_matches('#').len();
@@ -158,8 +158,8 @@ impl<'t> TreeReader<'t> {
         None
     }
 
-    fn word(&mut self) -> Option<&'t str> {
-        let rest = self.rest();
+    fn read_word(&mut self) -> Option<&'t str> {
+        let rest = self.remaining();
         let ends = |c: char| c.is_whitespace() || "()[]{},:\"'".contains(c) || c == '/';
         let length = rest.find(ends).unwrap_or(rest.len());
         self.at += length;
@@ -168,18 +168,18 @@ impl<'t> TreeReader<'t> {
 
     fn value(&mut self) -> Option<SourceNode> {
         let start = self.at;
-        let kind = match self.rest().chars().next()? {
-            '[' => Kind::List(self.parts('[', ']')?.0),
-            '{' => Kind::Entries(self.parts('{', '}')?.0),
-            '(' => self.bracket()?,
-            _ if self.quoted().is_some() => Kind::Plain,
+        let kind = match self.remaining().chars().next()? {
+            '[' => Kind::List(self.read_parts('[', ']')?.0),
+            '{' => Kind::Entries(self.read_parts('{', '}')?.0),
+            '(' => self.read_bracketed()?,
+            _ if self.skip_literal().is_some() => Kind::Plain,
             _ => {
-                let word = self.word()?;
+                let word = self.read_word()?;
                 let before = self.at;
-                self.skip();
-                match self.rest().starts_with('(') {
-                    true if word == "Some" => return self.wrapped(),
-                    true => self.bracket()?,
+                self.skip_blanks();
+                match self.remaining().starts_with('(') {
+                    true if word == "Some" => return self.read_wrapped(),
+                    true => self.read_bracketed()?,
                     false => {
                         self.at = before;
                         Kind::Plain
@@ -191,52 +191,52 @@ impl<'t> TreeReader<'t> {
     }
 
     /// Parses a structure, or a tuple as a single value.
-    fn bracket(&mut self) -> Option<Kind> {
-        let (parts, named) = self.parts('(', ')')?;
+    fn read_bracketed(&mut self) -> Option<Kind> {
+        let (parts, named) = self.read_parts('(', ')')?;
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })
     }
 
-    fn wrapped(&mut self) -> Option<SourceNode> {
-        self.takes("(");
-        self.skip();
+    fn read_wrapped(&mut self) -> Option<SourceNode> {
+        self.take_sign("(");
+        self.skip_blanks();
         let node = self.value()?;
-        self.skip();
-        if self.takes(",") {
-            self.skip();
+        self.skip_blanks();
+        if self.take_sign(",") {
+            self.skip_blanks();
         }
-        self.takes(")").then_some(node)
+        self.take_sign(")").then_some(node)
     }
 
     /// Parses the values between brackets, and returns whether they have keys.
-    fn parts(&mut self, open: char, close: char) -> Option<(Vec<Part>, bool)> {
+    fn read_parts(&mut self, open: char, close: char) -> Option<(Vec<NodePart>, bool)> {
         self.at += open.len_utf8();
         let (mut parts, mut named) = (Vec::new(), false);
         loop {
-            self.skip();
-            if self.rest().starts_with(close) {
+            self.skip_blanks();
+            if self.remaining().starts_with(close) {
                 self.at += close.len_utf8();
                 return Some((parts, named));
             }
             let first = self.value()?;
             let behind = self.at;
-            self.skip();
-            let (key, value) = if self.takes(":") {
+            self.skip_blanks();
+            let (key, value) = if self.take_sign(":") {
                 named = true;
-                self.skip();
+                self.skip_blanks();
                 (Some(first.span), self.value()?)
             } else {
                 self.at = behind;
                 (None, first)
             };
             let mut end = self.at;
-            self.skip();
-            let comma = self.takes(",");
+            self.skip_blanks();
+            let comma = self.take_sign(",");
             if comma {
                 end = self.at;
-            } else if !self.rest().starts_with(close) {
+            } else if !self.remaining().starts_with(close) {
                 return None;
             }
-            parts.push(Part { key, value, end, comma });
+            parts.push(NodePart { key, value, end, comma });
         }
     }
 }
@@ -248,7 +248,7 @@ mod tests {
     fn slices(text: &str) -> Vec<(String, String)> {
         let node = read(text).unwrap();
         let slice = |range: &Range<usize>| text.get(range.clone()).unwrap().to_owned();
-        let key = |part: &Part| part.key.as_ref().map(slice).unwrap_or_default();
+        let key = |part: &NodePart| part.key.as_ref().map(slice).unwrap_or_default();
         node.parts().iter().map(|part| (key(part), slice(&part.value.span))).collect()
     }
 
@@ -265,7 +265,7 @@ mod tests {
             ("h", "{158: -5}"),
         ];
         assert_eq!(slices(text), own.map(|(key, value)| (key.to_owned(), value.to_owned())));
-        assert_eq!(comments(text), ["head", "\"one", "b: /* 2 */", "end"]);
+        assert_eq!(comments_in(text), ["head", "\"one", "b: /* 2 */", "end"]);
     }
 
     #[test]

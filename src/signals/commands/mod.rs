@@ -20,8 +20,8 @@ use crate::app::explain;
 use crate::cli::args::CommonArgs;
 use crate::cli::commands::{CliCommand, parse};
 use crate::cli::output::{Lines, Output};
-use crate::cli::runner::{Bar, failed};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::runner::{TerminalProgressBar, to_failure};
+use crate::cli::{Failure, Result, Success};
 use crate::store::read_capture;
 
 pub(crate) struct AnalyseCommand;
@@ -41,12 +41,12 @@ fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
     let path = &arguments.file;
     let hints =
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
-    let bar = Bar::default();
+    let bar = TerminalProgressBar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
     // Never cancelled here: Ctrl-C ends the whole process, since the command only reads.
     let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
-    let (layout, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
+    let (layout, capture) = read.map_err(|error| to_failure(&explain::signal::read(path, &error)))?;
     print_remarks(output, &layout, &capture);
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();
@@ -73,16 +73,19 @@ fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
         rows_left_out: capture.left_out,
     };
     output.show(&report.json(), &report.text())?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {
     if let Some(clock) = layout.clock {
         let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
-        output.remark(&text.terminal_text());
+        output.print_message(&text.terminal_text());
     }
     if capture.left_out > 0 {
-        output.remark(&format!("{} rows without a value (empty, NaN or overload) were left out.", capture.left_out));
+        output.print_message(&format!(
+            "{} rows without a value (empty, NaN or overload) were left out.",
+            capture.left_out
+        ));
     }
 }
 
@@ -96,13 +99,16 @@ fn analyse_revolution(
 ) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {
-        output.remark("The table contains the angle of a reference encoder. Add --periods N to get DNL and INL.");
+        output
+            .print_message("The table contains the angle of a reference encoder. Add --periods N to get DNL and INL.");
         return None;
     };
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
     let revolution =
         Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
-    revolution.inspect_err(|error| output.remark(&explain::signal::revolution_error_text(error).terminal_text())).ok()
+    revolution
+        .inspect_err(|error| output.print_message(&explain::signal::revolution_error_text(error).terminal_text()))
+        .ok()
 }
 
 struct CaptureReport<'a> {
@@ -176,26 +182,26 @@ impl CaptureReport<'_> {
         });
         let mut lines = Lines::default();
         lines
-            .add("samples", format!("{}{left_out}", self.analysis.samples))
-            .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
+            .add_line("samples", format!("{}{left_out}", self.analysis.samples))
+            .add_line("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
         if let Some(frequency) = self.analysis.frequency_hz() {
             let speed = self.speed_rpm().map_or_else(String::new, |speed| format!(", {speed:.3} 1/min"));
             let mark = if self.analysis.is_angle_tracked() { "" } else { " (uncertain: too few samples per period)" };
-            lines.add("frequency", format!("{frequency:.3} Hz{speed}{mark}"));
+            lines.add_line("frequency", format!("{frequency:.3} Hz{speed}{mark}"));
         }
         lines
-            .add(
+            .add_line(
                 "amplitude",
                 format!("{:.4} V cosine, {:.4} V sine (peak)", ellipse.amplitude_v, ellipse.amplitude_sine_v()),
             )
-            .add("vector", format!("{least:.4} … {most:.4} V"))
-            .add("offset sine", share(ellipse.offset_sine_v))
-            .add("offset cosine", share(ellipse.offset_cosine_v))
-            .add("gain ratio", format!("{:.4} (cosine / sine)", ellipse.gain_ratio))
-            .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
-            .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
-            .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_peak_to_peak_deg()))
-            .add(
+            .add_line("vector", format!("{least:.4} … {most:.4} V"))
+            .add_line("offset sine", share(ellipse.offset_sine_v))
+            .add_line("offset cosine", share(ellipse.offset_cosine_v))
+            .add_line("gain ratio", format!("{:.4} (cosine / sine)", ellipse.gain_ratio))
+            .add_line("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
+            .add_line("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
+            .add_line("position error", format!("{:.3}° peak to peak (electrical)", error.raw_peak_to_peak_deg()))
+            .add_line(
                 "corrected",
                 format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, error_basis_text(error.basis)),
             );
@@ -204,17 +210,17 @@ impl CaptureReport<'_> {
                 format!("±{:.1}″ as measured, ±{:.1}″ corrected (mechanical)", raw * 3_600.0, corrected * 3_600.0)
             };
             lines
-                .add("DNL", both(raw.differential_deg, corrected.differential_deg))
-                .add("INL", both(raw.integral_deg, corrected.integral_deg));
+                .add_line("DNL", both(raw.differential_deg, corrected.differential_deg))
+                .add_line("INL", both(raw.integral_deg, corrected.integral_deg));
             if raw.revolutions < 1.0 {
-                lines.add("", format!("over only {:.2} of a revolution", raw.revolutions));
+                lines.add_line("", format!("over only {:.2} of a revolution", raw.revolutions));
             }
         }
         if self.findings.is_empty() {
-            lines.add("verdict", format!("within the limits of {}", self.family.name()));
+            lines.add_line("verdict", format!("within the limits of {}", self.family.name()));
         }
         for (at, finding) in self.findings.iter().enumerate() {
-            lines.add(if at == 0 { "verdict" } else { "" }, finding);
+            lines.add_line(if at == 0 { "verdict" } else { "" }, finding);
         }
         lines.text()
     }

@@ -15,10 +15,10 @@ use crate::buses::bridge::procedures::{AdapterStreamError, Streaming};
 use crate::buses::bridge::state as bridge;
 use crate::kinds::attachable_kinds;
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
-use crate::sim::sine_cosine::Checked;
+use crate::sim::sine_cosine::CheckedSettings;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
-use crate::worker::stream::{AnalogueSource, Batch, End, Producer, Stream};
+use crate::worker::stream::{AnalogueSource, Batch, Producer, Stream, StreamEnd};
 
 /// Sine and cosine in volts, with equal numbers of samples.
 #[derive(Clone, Debug)]
@@ -123,7 +123,7 @@ impl SignalFeed {
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
-    pub(super) fn start_virtual(checked: Checked, services: &Services) -> Result<Self, Text> {
+    pub(super) fn start_virtual(checked: CheckedSettings, services: &Services) -> Result<Self, Text> {
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let producer = AnalogueSource::new(checked, clock.now());
         Ok(SignalFeed::Virtual(spawn_stream(producer, clock, services)?))
@@ -132,15 +132,15 @@ impl SignalFeed {
     /// Returns the batches received since the last call.
     pub(super) fn take_batches(&self) -> Vec<Batch<ChannelSamples>> {
         match self {
-            SignalFeed::Virtual(stream) => stream.take().into_iter().map(to_channels).collect(),
-            SignalFeed::Adapter { stream, .. } => stream.take().into_iter().map(to_channels).collect(),
+            SignalFeed::Virtual(stream) => stream.take_batches().into_iter().map(to_channels).collect(),
+            SignalFeed::Adapter { stream, .. } => stream.take_batches().into_iter().map(to_channels).collect(),
         }
     }
 
     pub(super) fn lost_samples(&self) -> u64 {
         match self {
-            SignalFeed::Virtual(stream) => stream.lost(),
-            SignalFeed::Adapter { stream, .. } => stream.lost(),
+            SignalFeed::Virtual(stream) => stream.lost_samples(),
+            SignalFeed::Adapter { stream, .. } => stream.lost_samples(),
         }
     }
 
@@ -177,9 +177,9 @@ impl SignalFeed {
         }
     }
 
-    pub(super) fn change_settings(&self, checked: Checked) {
+    pub(super) fn change_settings(&self, checked: CheckedSettings) {
         if let SignalFeed::Virtual(stream) = self {
-            stream.change(checked);
+            stream.request_change(checked);
         }
     }
 
@@ -195,7 +195,7 @@ impl SignalFeed {
     /// Releases the feed. The adapter ends its stream in the background.
     pub(super) fn release(self, services: &mut Services) {
         if let SignalFeed::Adapter { stream, url, .. } = self {
-            let end: End = stream.end();
+            let end: StreamEnd = stream.end_signal();
             drop(stream);
             services.close_stream(end, url);
         }

@@ -190,7 +190,7 @@ impl Source {
     }
 
     fn change_settings(&mut self, settings: Settings) -> bool {
-        match settings.checked() {
+        match settings.validate() {
             Ok(checked) => {
                 self.settings = checked.settings().clone();
                 self.problem = None;
@@ -207,7 +207,7 @@ impl Source {
     }
 
     fn start_encoder(&mut self, services: &mut Services) -> bool {
-        let checked = match self.settings.clone().checked() {
+        let checked = match self.settings.clone().validate() {
             Ok(checked) => checked,
             Err(error) => {
                 self.problem = Some(explain::signal::setting(&error));
@@ -321,7 +321,7 @@ impl Signals {
                 }
             }
             SourceAction::Set(quantity, value) => {
-                self.set_source(settings.with(quantity, value), quantity == Quantity::Periods, services);
+                self.set_source(settings.with_value(quantity, value), quantity == Quantity::Periods, services);
             }
             SourceAction::SetOpenWire(open_wire) => {
                 self.set_source(Settings { open_wire, ..settings }, false, services)

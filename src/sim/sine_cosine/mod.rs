@@ -19,7 +19,7 @@ mod settings;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-pub use settings::{Checked, Quantity, ReferenceLevel, SettingError, Settings};
+pub use settings::{CheckedSettings, Quantity, ReferenceLevel, SettingError, Settings};
 
 use crate::analysis::SampleTime;
 use crate::analysis::wiring::{Wire, Wires};
@@ -29,7 +29,7 @@ const TURN: u64 = 60_000 * 1_000_000_000;
 /// Parts per interference period. At 0.001 Hz, the phase advances by one part per nanosecond.
 const CYCLE: u64 = 1_000 * 1_000_000_000;
 /// Maximum number of setting changes remembered.
-const REMEMBERED: usize = 64;
+const MAX_CHANGES: usize = 64;
 
 /// An analogue source whose samples are numbered from 0.
 #[derive(Clone, Debug)]
@@ -46,24 +46,24 @@ struct Segment {
     elapsed: u64,
     /// Shaft position at the first sample of the segment, in parts of a turn.
     turn: u64,
-    checked: Checked,
+    checked: CheckedSettings,
 }
 
 impl Source {
     /// Creates a source. Its first sample is taken at `start`, at angle 0.
-    pub fn new(checked: Checked, start: SampleTime) -> Self {
+    pub fn new(checked: CheckedSettings, start: SampleTime) -> Self {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
     /// Changes the settings from sample `at` on. The shaft continues from its position. A change at or before the
     /// latest one replaces it.
-    pub fn change(&mut self, at: u64, checked: Checked) {
+    pub fn change_settings(&mut self, at: u64, checked: CheckedSettings) {
         let at = self.segments.back().map_or(at, |last| at.max(last.from));
         let Some(before) = self.segments.back() else { return };
         let segment = Segment { from: at, elapsed: before.elapsed_at(at), turn: before.turn_at(at), checked };
         if before.from == at {
             self.segments.pop_back();
-        } else if self.segments.len() == REMEMBERED {
+        } else if self.segments.len() == MAX_CHANGES {
             self.segments.pop_front();
         }
         self.segments.push_back(segment);
@@ -76,20 +76,20 @@ impl Source {
 
     /// Returns the time of a sample. Returns `None` if the changes before the sample are no longer stored.
     pub fn time(&self, index: u64) -> Option<SampleTime> {
-        let segment = self.segment(index)?;
+        let segment = self.segment_at(index)?;
         Some(self.start.saturating_add_ns(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
     /// Returns `count` samples from `first` on. Returns `None` if the changes before these samples are no longer
     /// stored. The latest 64 changes are stored.
-    pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
+    pub fn samples_from(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
         let mut wires =
             Wires { sin_v: column(), refsin_v: column(), cos_v: column(), refcos_v: column(), reference_deg: column() };
         let end = first.saturating_add(count as u64);
         let mut next = first;
         while next < end {
-            let segment = self.segment(next)?;
+            let segment = self.segment_at(next)?;
             let follower = self.segments.iter().map(|segment| segment.from).find(|from| *from > next);
             let until = follower.map_or(end, |from| from.min(end));
             segment.append(next, until - next, &mut wires);
@@ -98,7 +98,7 @@ impl Source {
         Some(wires)
     }
 
-    fn segment(&self, index: u64) -> Option<&Segment> {
+    fn segment_at(&self, index: u64) -> Option<&Segment> {
         self.segments.iter().rev().find(|segment| segment.from <= index)
     }
 }
@@ -113,40 +113,40 @@ impl Segment {
     }
 
     /// Returns the rotation from one sample to the next in parts of a turn, modulo a turn.
-    fn step(&self) -> u64 {
+    fn phase_step(&self) -> u64 {
         let speed = (self.checked.settings().speed_rpm * 1_000.0).round() as i128;
-        remainder(speed * i128::from(self.period()), TURN)
+        modulo(speed * i128::from(self.period()), TURN)
     }
 
     fn turn_at(&self, index: u64) -> u64 {
         let samples = i128::from(index.saturating_sub(self.from));
-        remainder(i128::from(self.turn) + samples * i128::from(self.step()), TURN)
+        modulo(i128::from(self.turn) + samples * i128::from(self.phase_step()), TURN)
     }
 
     /// Appends `count` samples starting at `first`.
     fn append(&self, first: u64, count: u64, wires: &mut Wires) {
         let settings = self.checked.settings();
-        let model = Model::of(settings);
+        let model = Model::from_settings(settings);
         let elapsed = i128::from(self.elapsed_at(first));
         let line = |hertz: f64| {
             let millihertz = (hertz * 1_000.0).round() as i128;
             let (now, step) = (elapsed * millihertz, i128::from(self.period()) * millihertz);
-            PhaseAccumulator { at: remainder(now, CYCLE), step: remainder(step, CYCLE), whole: CYCLE }
+            PhaseAccumulator { at: modulo(now, CYCLE), step: modulo(step, CYCLE), whole: CYCLE }
         };
-        let mut shaft = PhaseAccumulator { at: self.turn_at(first), step: self.step(), whole: TURN };
+        let mut shaft = PhaseAccumulator { at: self.turn_at(first), step: self.phase_step(), whole: TURN };
         let (mut interference, mut hum) = (line(settings.interference_hz), line(settings.hum_hz));
         for index in first..first + count {
-            let common = settings.hum_v * hum.angle().sin();
-            let disturbed = settings.interference_v * interference.angle().sin();
-            let (sine, cosine) = model.channels(shaft);
+            let common = settings.hum_v * hum.angle_radians().sin();
+            let disturbed = settings.interference_v * interference.angle_radians().sin();
+            let (sine, cosine) = model.channel_voltages(shaft);
             let [sin, refsin, cos, refcos] =
-                model.wires(index, [sine + common + disturbed, cosine + common - disturbed / 2.0]);
+                model.wire_voltages(index, [sine + common + disturbed, cosine + common - disturbed / 2.0]);
             wires.sin_v.push(sin);
             wires.refsin_v.push(refsin);
             wires.cos_v.push(cos);
             wires.refcos_v.push(refcos);
-            wires.reference_deg.push(360.0 * shaft.share());
-            [&mut shaft, &mut interference, &mut hum].into_iter().for_each(PhaseAccumulator::turn);
+            wires.reference_deg.push(360.0 * shaft.turn_fraction());
+            [&mut shaft, &mut interference, &mut hum].into_iter().for_each(PhaseAccumulator::advance);
         }
     }
 }
@@ -160,18 +160,18 @@ struct PhaseAccumulator {
 }
 
 impl PhaseAccumulator {
-    fn turn(&mut self) {
+    fn advance(&mut self) {
         self.at += self.step;
         self.at -= if self.at >= self.whole { self.whole } else { 0 };
     }
 
     /// Returns the position within the turn as a fraction, at least 0 and below 1.
-    fn share(self) -> f64 {
+    fn turn_fraction(self) -> f64 {
         self.at as f64 / self.whole as f64
     }
 
-    fn angle(self) -> f64 {
-        TAU * self.share()
+    fn angle_radians(self) -> f64 {
+        TAU * self.turn_fraction()
     }
 }
 
@@ -188,7 +188,7 @@ struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    fn of(settings: &'a Settings) -> Self {
+    fn from_settings(settings: &'a Settings) -> Self {
         Model {
             settings,
             periods: settings.periods as u64,
@@ -200,12 +200,12 @@ impl<'a> Model<'a> {
     }
 
     /// Returns the sine and cosine channels in volts, without disturbances.
-    fn channels(&self, shaft: PhaseAccumulator) -> (f64, f64) {
+    fn channel_voltages(&self, shaft: PhaseAccumulator) -> (f64, f64) {
         let settings = self.settings;
-        let (once_sine, once_cosine) = shaft.angle().sin_cos();
+        let (once_sine, once_cosine) = shaft.angle_radians().sin_cos();
         // The angle is still in whole parts when it is multiplied by the periods. 65 536 turns fit into 64 bits.
         let signal = PhaseAccumulator { at: shaft.at * self.periods % TURN, ..shaft };
-        let angle = signal.angle() + self.eccentricity * once_sine;
+        let angle = signal.angle_radians() + self.eccentricity * once_sine;
         let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);
         let cosine = angle.cos() - self.third * (3.0 * angle).cos();
         let late = angle - self.phase_error;
@@ -214,7 +214,7 @@ impl<'a> Model<'a> {
     }
 
     /// Returns SIN, REFSIN, COS and REFCOS at the receiver for the given differences.
-    fn wires(&self, index: u64, [sine, cosine]: [f64; 2]) -> [f64; 4] {
+    fn wire_voltages(&self, index: u64, [sine, cosine]: [f64; 2]) -> [f64; 4] {
         let level = self.settings.level_v;
         let pair = |difference: f64| match self.settings.references {
             ReferenceLevel::Level => (level + difference, level),
@@ -241,7 +241,7 @@ impl<'a> Model<'a> {
     }
 }
 
-fn remainder(number: i128, whole: u64) -> u64 {
+fn modulo(number: i128, whole: u64) -> u64 {
     // The remainder of a division by a 64-bit number fits into 64 bits.
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }

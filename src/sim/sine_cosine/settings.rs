@@ -115,7 +115,7 @@ pub struct SettingError {
 
 /// Settings that are all within their ranges.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checked(Settings);
+pub struct CheckedSettings(Settings);
 
 impl Quantity {
     /// All quantities, in the order of the settings.
@@ -159,7 +159,7 @@ impl Quantity {
     }
 
     /// Returns the minimum and maximum value.
-    pub const fn range(self) -> (f64, f64) {
+    pub const fn value_range(self) -> (f64, f64) {
         match self {
             Quantity::Periods => (1.0, 65_536.0),
             Quantity::Speed => (-60_000.0, 60_000.0),
@@ -182,13 +182,13 @@ impl Quantity {
 impl Settings {
     /// Returns the value of a quantity.
     pub fn get(&self, quantity: Quantity) -> f64 {
-        *self.clone().place(quantity)
+        *self.clone().value_mut(quantity)
     }
 
     /// Returns a copy of the settings with one quantity changed to `value`.
     #[must_use]
-    pub fn with(mut self, quantity: Quantity, value: f64) -> Self {
-        *self.place(quantity) = value;
+    pub fn with_value(mut self, quantity: Quantity, value: f64) -> Self {
+        *self.value_mut(quantity) = value;
         self
     }
 
@@ -203,18 +203,18 @@ impl Settings {
     /// # Errors
     /// Returns a [`SettingError`] with the first setting outside its range, and the range. A number of periods that is
     /// not whole is also refused.
-    pub fn checked(self) -> Result<Checked, SettingError> {
+    pub fn validate(self) -> Result<CheckedSettings, SettingError> {
         for quantity in Quantity::ALL {
-            let (value, (least, most)) = (self.get(quantity), quantity.range());
+            let (value, (least, most)) = (self.get(quantity), quantity.value_range());
             let whole = quantity != Quantity::Periods || value.fract() == 0.0;
             if !(least..=most).contains(&value) || !whole {
                 return Err(SettingError { quantity, value, least, most });
             }
         }
-        Ok(Checked(self))
+        Ok(CheckedSettings(self))
     }
 
-    fn place(&mut self, quantity: Quantity) -> &mut f64 {
+    fn value_mut(&mut self, quantity: Quantity) -> &mut f64 {
         match quantity {
             Quantity::Periods => &mut self.periods,
             Quantity::Speed => &mut self.speed_rpm,
@@ -237,7 +237,7 @@ impl Settings {
     }
 }
 
-impl Checked {
+impl CheckedSettings {
     /// Returns the validated settings.
     pub fn settings(&self) -> &Settings {
         &self.0
@@ -282,25 +282,25 @@ mod tests {
     #[test]
     fn out_of_range_values_are_refused_with_the_range() {
         for quantity in Quantity::ALL {
-            let (least, most) = quantity.range();
+            let (least, most) = quantity.value_range();
             for value in [least, most] {
-                let settings = Settings::default().with(quantity, value);
+                let settings = Settings::default().with_value(quantity, value);
                 assert_eq!(settings.get(quantity), value);
-                assert!(settings.checked().is_ok(), "{quantity:?} {value}");
+                assert!(settings.validate().is_ok(), "{quantity:?} {value}");
             }
             for value in [least.next_down(), most.next_up(), f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-                let error = Settings::default().with(quantity, value).checked().unwrap_err();
+                let error = Settings::default().with_value(quantity, value).validate().unwrap_err();
                 assert_eq!((error.quantity, error.least, error.most), (quantity, least, most), "{value}");
             }
         }
-        let error = Settings::default().with(Quantity::Periods, 16.5).checked().unwrap_err();
+        let error = Settings::default().with_value(Quantity::Periods, 16.5).validate().unwrap_err();
         assert_eq!(error.to_string(), "Periods must be from 1 to 65536, not 16.5");
     }
 
     #[test]
     fn each_quantity_has_a_separate_field() {
         for quantity in Quantity::ALL {
-            let changed = Settings::default().with(quantity, 0.123);
+            let changed = Settings::default().with_value(quantity, 0.123);
             let others = Quantity::ALL.into_iter().filter(|other| *other != quantity);
             others.for_each(|other| assert_eq!(changed.get(other), Settings::default().get(other), "{quantity:?}"));
         }
@@ -309,7 +309,7 @@ mod tests {
     #[test]
     fn the_sample_period_is_whole_nanoseconds() {
         for (rate, nanoseconds) in [(1e6, 1_000), (44_100.0, 22_676), (10.0, 100_000_000), (30_000.0, 33_333)] {
-            assert_eq!(Settings::default().with(Quantity::Rate, rate).period_ns(), nanoseconds);
+            assert_eq!(Settings::default().with_value(Quantity::Rate, rate).period_ns(), nanoseconds);
         }
     }
 }

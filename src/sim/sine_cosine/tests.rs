@@ -8,7 +8,7 @@ fn silence_duration() -> Settings {
 }
 
 fn source(settings: Settings) -> Source {
-    Source::new(settings.checked().unwrap(), SampleTime::ORIGIN)
+    Source::new(settings.validate().unwrap(), SampleTime::ORIGIN)
 }
 
 #[track_caller]
@@ -30,7 +30,7 @@ fn samples_match_section_7() {
         phase_error_deg: 3.0,
         ..silence_duration()
     });
-    let wires = source.samples(0, 361).unwrap();
+    let wires = source.samples_from(0, 361).unwrap();
     let cases = [
         (0, 0.520000, -0.054922),
         (40, 0.4030222, 0.2565786),
@@ -52,21 +52,21 @@ fn samples_match_section_7() {
 fn any_range_of_samples_is_reproducible_after_days() {
     let settings = Settings { interference_v: 0.01, hum_v: 0.02, speed_rpm: 1234.567, ..Settings::default() };
     let mut source = source(settings.clone());
-    let whole = source.samples(0, 3000).unwrap();
-    let part = source.samples(1234, 500).unwrap();
+    let whole = source.samples_from(0, 3000).unwrap();
+    let part = source.samples_from(1234, 500).unwrap();
     assert_eq!(part.sin_v, whole.sin_v[1234..1734]);
     assert_eq!(part.refcos_v, whole.refcos_v[1234..1734]);
     // Ten days at 100 kHz, by whole numbers from the start.
     let days = 86_400_000_000;
     assert_eq!(source.time(days).unwrap(), SampleTime::from_nanoseconds(864_000_000_000_000));
     let turn = 1_234_567_i128 * 10_000 * i128::from(days) % 60_000_000_000_000;
-    let late = source.samples(days, 1).unwrap();
+    let late = source.samples_from(days, 1).unwrap();
     near(late.reference_deg[0], 360.0 * turn as f64 / 6e13, 1e-9);
     // Ten days are whole periods of 8 kHz and 50 Hz: the added signals are zero, and noise is 0.5 mV.
     let angle = TAU * (turn * 1024 % 60_000_000_000_000) as f64 / 6e13;
     near(late.sine_v()[0], 0.5 * angle.sin(), 0.003);
-    source.change(days, settings.checked().unwrap());
-    assert_eq!(source.samples(days, 1).unwrap(), late, "a change to the same changes nothing");
+    source.change_settings(days, settings.validate().unwrap());
+    assert_eq!(source.samples_from(days, 1).unwrap(), late, "a change to the same changes nothing");
 }
 
 #[test]
@@ -75,9 +75,9 @@ fn settings_change_at_a_sample_and_the_angle_is_continuous() {
     let slow = Settings { rate_hz: 1_000.0, ..silence_duration() };
     let mut source = source(slow.clone());
     let fast = Settings { speed_rpm: -600.0, rate_hz: 10_000.0, offset_cosine_v: 0.1, ..slow };
-    source.change(500, fast.clone().checked().unwrap());
+    source.change_settings(500, fast.clone().validate().unwrap());
     assert_eq!(source.settings(), Some(&fast));
-    let wires = source.samples(499, 4).unwrap();
+    let wires = source.samples_from(499, 4).unwrap();
     for (found, expected) in wires.reference_deg.iter().zip([179.64, 180.0, 179.64, 179.28]) {
         near(*found, expected, 1e-9);
     }
@@ -85,28 +85,28 @@ fn settings_change_at_a_sample_and_the_angle_is_continuous() {
     assert_eq!(source.time(501).unwrap(), SampleTime::from_nanoseconds(500_100_000));
     // Sample 500 is half a turn later: 512 whole periods, cosine 1.
     near(wires.cosine_v()[1], 0.6, 1e-9);
-    assert_eq!(source.samples(0, 10_000).unwrap().len(), 10_000);
+    assert_eq!(source.samples_from(0, 10_000).unwrap().len(), 10_000);
     // Of two changes at one sample the later counts, and a change before the latest replaces it there.
-    source.change(500, Settings { speed_rpm: 0.0, ..fast.clone() }.checked().unwrap());
-    source.change(3, Settings { speed_rpm: 0.0, ..fast }.checked().unwrap());
-    near(source.samples(9_000, 1).unwrap().reference_deg[0], 180.0, 1e-9);
+    source.change_settings(500, Settings { speed_rpm: 0.0, ..fast.clone() }.validate().unwrap());
+    source.change_settings(3, Settings { speed_rpm: 0.0, ..fast }.validate().unwrap());
+    near(source.samples_from(9_000, 1).unwrap().reference_deg[0], 180.0, 1e-9);
 }
 
 #[test]
 fn old_changes_are_discarded_and_not_invented() {
     let mut source = source(silence_duration());
     for at in 1..=200 {
-        source.change(at * 10, silence_duration().checked().unwrap());
+        source.change_settings(at * 10, silence_duration().validate().unwrap());
     }
-    assert_eq!(source.samples(100, 10), None);
+    assert_eq!(source.samples_from(100, 10), None);
     assert_eq!(source.time(0), None);
-    assert_eq!(source.samples(1_990, 100).unwrap().len(), 100);
+    assert_eq!(source.samples_from(1_990, 100).unwrap().len(), 100);
 }
 
 #[test]
 fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
     let settings = Settings { amplitude_v: 0.0, noise_v: 0.01, ..Settings::default() };
-    let wires = source(settings.clone()).samples(0, 40_000).unwrap();
+    let wires = source(settings.clone()).samples_from(0, 40_000).unwrap();
     let columns = [&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v];
     let product = |a: &[f64], b: &[f64]| {
         a.iter().zip(b).map(|(a, b)| (a - 2.5) * (b - 2.5)).sum::<f64>() / 40_000.0 / (0.01 * 0.01 / 2.0)
@@ -122,7 +122,7 @@ fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
         // No correlation with itself one sample later.
         near(product(&column[1..], &column[..39_999]), 0.0, 0.025);
     }
-    let other = source(Settings { seed: 2, ..settings }).samples(0, 40_000).unwrap();
+    let other = source(Settings { seed: 2, ..settings }).samples_from(0, 40_000).unwrap();
     near(product(&wires.sin_v, &other.sin_v), 0.0, 0.025);
 }
 
@@ -139,7 +139,7 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
             references,
             ..silence_duration()
         };
-        let wires = source(settings).samples(10, 1).unwrap();
+        let wires = source(settings).samples_from(10, 1).unwrap();
         (wires.sine_v()[0], wires.sin_v[0], wires.refsin_v[0])
     };
     use ReferenceLevel::{Complement, Level};
@@ -173,7 +173,7 @@ fn harmonic_modulation_and_eccentricity_are_simulated() {
         eccentricity_arcsec: 100.0,
         ..silence_duration()
     };
-    let wires = source(settings).samples(300, 1).unwrap();
+    let wires = source(settings).samples_from(300, 1).unwrap();
     near(wires.sine_v()[0], -0.448_673_821, 1e-9);
     near(wires.cosine_v()[0], 0.169_058_171, 1e-9);
 }
@@ -182,10 +182,10 @@ fn harmonic_modulation_and_eccentricity_are_simulated() {
 fn hum_is_in_phase_in_both_channels_and_interference_is_not() {
     let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..silence_duration() };
     // A quarter period of 50 Hz is 5 ms, of 8 kHz 31.25 µs: three samples of 10 µs are 0.24 of a period.
-    let hum = source(Settings { hum_v: 0.1, ..settings.clone() }).samples(500, 1).unwrap();
+    let hum = source(Settings { hum_v: 0.1, ..settings.clone() }).samples_from(500, 1).unwrap();
     near(hum.sine_v()[0], 0.1, 1e-12);
     near(hum.cosine_v()[0], 0.1, 1e-12);
-    let drive = source(Settings { interference_v: 0.1, ..settings }).samples(3, 1).unwrap();
+    let drive = source(Settings { interference_v: 0.1, ..settings }).samples_from(3, 1).unwrap();
     near(drive.sine_v()[0], 0.1 * (TAU * 0.24).sin(), 1e-12);
     near(drive.cosine_v()[0], -0.05 * (TAU * 0.24).sin(), 1e-12);
 }

@@ -20,7 +20,7 @@ pub struct DeviceKey {
 }
 
 impl DeviceKey {
-    pub fn of(kind: &str, device_type: &str, serial_number: &str, is_virtual: bool) -> Self {
+    pub fn new(kind: &str, device_type: &str, serial_number: &str, is_virtual: bool) -> Self {
         let [kind, device_type, serial_number] = [kind, device_type, serial_number].map(str::to_owned);
         DeviceKey { kind, device_type, serial_number, is_virtual }
     }
@@ -56,7 +56,7 @@ impl EntryKind {
         [EntryKind::Status, EntryKind::Write, EntryKind::Restore, EntryKind::Preset, EntryKind::Procedure];
 
     /// Returns the word in the file and on the command line.
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             EntryKind::Status => "status",
             EntryKind::Write => "write",
@@ -67,7 +67,7 @@ impl EntryKind {
     }
 
     pub(super) fn parse(word: &str) -> Option<Self> {
-        EntryKind::ALL.into_iter().find(|kind| kind.word() == word)
+        EntryKind::ALL.into_iter().find(|kind| kind.keyword() == word)
     }
 }
 
@@ -80,7 +80,7 @@ pub enum Outcome {
 
 impl Outcome {
     /// Returns the word in the file and on the command line.
-    pub const fn word(&self) -> &'static str {
+    pub const fn keyword(&self) -> &'static str {
         match self {
             Outcome::Done => "done",
             Outcome::Failed(_) => "failed",
@@ -145,7 +145,7 @@ pub struct Entry {
 impl Entry {
     /// Returns the write cycles spent. A write without a result counts with its planned cycles, because the program may
     /// have died after the last byte.
-    pub fn cycles(&self) -> u64 {
+    pub fn write_cycles(&self) -> u64 {
         self.conclusion.as_ref().map_or(self.planned_cycles, |end| end.cycles_spent)
     }
 }

@@ -51,7 +51,7 @@ pub enum LogbookErrorKind {
 }
 
 impl LogbookErrorKind {
-    pub(super) fn of(self, path: &Path) -> LogbookError {
+    pub(super) fn into_error(self, path: &Path) -> LogbookError {
         LogbookError { path: path.to_owned(), problem: self }
     }
 }

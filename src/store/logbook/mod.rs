@@ -22,7 +22,7 @@ pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Intent, Origi
 pub use error::{LogbookError, LogbookErrorKind};
 
 /// Maximum time to wait for another window that is writing.
-const PATIENCE: Duration = Duration::from_secs(2);
+const LOCK_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// An open logbook. Opening and reading may wait for another window, so they must not run on the UI thread.
 #[derive(Debug)]
@@ -39,11 +39,11 @@ impl Logbook {
     /// Returns an error if the file is damaged, not a database, in use for longer than two seconds, not writable, or
     /// created by a newer version of the program. The file is then left unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
-        Self::open_with_timeout(path, PATIENCE)
+        Self::open_with_timeout(path, LOCK_TIMEOUT)
     }
 
     fn open_with_timeout(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
-        let database = schema::open(path, patience).map_err(|problem| problem.of(path))?;
+        let database = schema::open(path, patience).map_err(|problem| problem.into_error(path))?;
         Ok(Logbook { path: path.to_owned(), database, origin: Origin::of_this_process() })
     }
 
@@ -51,12 +51,17 @@ impl Logbook {
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be written.
-    pub fn intend(&mut self, at: Timestamp, device: &DeviceKey, intent: &Intent) -> Result<EntryId, LogbookError> {
+    pub fn record_intent(
+        &mut self,
+        at: Timestamp,
+        device: &DeviceKey,
+        intent: &Intent,
+    ) -> Result<EntryId, LogbookError> {
         let description = intent.items.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        self.add(at, device, &description, intent)
+        self.insert_intent(at, device, &description, intent)
     }
 
-    fn add(
+    fn insert_intent(
         &mut self,
         at: Timestamp,
         device: &DeviceKey,
@@ -70,7 +75,7 @@ impl Logbook {
                            :description, :items, :planned_cycles, :backup, :bench, :user, :version)";
         let parameters = named_params! {
             ":at": at.to_string(),
-            ":what": intent.kind.word(),
+            ":what": intent.kind.keyword(),
             ":kind": device.kind,
             ":device_type": device.device_type,
             ":serial_number": device.serial_number,
@@ -83,7 +88,7 @@ impl Logbook {
             ":user": user,
             ":version": version,
         };
-        self.database.execute(sql, parameters).map_err(|error| self.failed(error))?;
+        self.database.execute(sql, parameters).map_err(|error| self.database_error(error))?;
         Ok(EntryId(self.database.last_insert_rowid()))
     }
 
@@ -101,7 +106,7 @@ impl Logbook {
     ) -> Result<(), LogbookError> {
         let sql = "INSERT OR IGNORE INTO result (event, at, outcome, failure, cycles_spent)
                    SELECT uid, :at, :outcome, :failure, :cycles_spent FROM event WHERE id = :id";
-        let word = outcome.word();
+        let word = outcome.keyword();
         let failure = match outcome {
             Outcome::Failed(reason) => Some(reason),
             Outcome::Done | Outcome::Cancelled => None,
@@ -113,8 +118,8 @@ impl Logbook {
             ":cycles_spent": saturating_cycle_count(cycles_spent),
             ":id": id.0,
         };
-        match self.database.execute(sql, parameters).map_err(|error| self.failed(error))? {
-            0 => Err(LogbookErrorKind::NotOpen { entry: id }.of(&self.path)),
+        match self.database.execute(sql, parameters).map_err(|error| self.database_error(error))? {
+            0 => Err(LogbookErrorKind::NotOpen { entry: id }.into_error(&self.path)),
             _ => Ok(()),
         }
     }
@@ -132,7 +137,7 @@ impl Logbook {
         let key = (&device.kind, &device.device_type, &device.serial_number, device.is_virtual);
         self.database
             .query_row(sql, key, |row| row.get(0).and_then(schema::parse_cycles))
-            .map_err(|error| self.failed(error))
+            .map_err(|error| self.database_error(error))
     }
 
     /// Records status codes that were read from a device. The record is on disk when this function returns.
@@ -141,7 +146,7 @@ impl Logbook {
     /// Returns an error if the logbook cannot be written.
     pub fn record_status(&mut self, at: Timestamp, device: &DeviceKey, codes: &str) -> Result<(), LogbookError> {
         let event = Intent { kind: EntryKind::Status, items: Vec::new(), planned_cycles: 0, backup: None };
-        self.add(at, device, codes, &event).map(drop)
+        self.insert_intent(at, device, codes, &event).map(drop)
     }
 
     /// Returns the last `limit` entries that match the filter, newest first.
@@ -149,7 +154,7 @@ impl Logbook {
     /// # Errors
     /// Returns an error if the logbook cannot be read.
     pub fn entries(&self, filter: &EntryFilter, limit: u32) -> Result<Vec<Entry>, LogbookError> {
-        query::entries(&self.database, filter, limit).map_err(|error| self.failed(error))
+        query::entries(&self.database, filter, limit).map_err(|error| self.database_error(error))
     }
 
     /// Returns the last `limit` writes to a device, newest first.
@@ -157,19 +162,19 @@ impl Logbook {
     /// # Errors
     /// Returns an error if the logbook cannot be read.
     pub fn history(&self, device: &DeviceKey, limit: u32) -> Result<Vec<Entry>, LogbookError> {
-        query::writes(&self.database, device, limit).map_err(|error| self.failed(error))
+        query::write_entries(&self.database, device, limit).map_err(|error| self.database_error(error))
     }
 
     /// Returns the last `limit` status readings from a device, newest first.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
-    pub fn statuses(&self, device: &DeviceKey, limit: u32) -> Result<Vec<Entry>, LogbookError> {
-        query::statuses(&self.database, device, limit).map_err(|error| self.failed(error))
+    pub fn status_entries(&self, device: &DeviceKey, limit: u32) -> Result<Vec<Entry>, LogbookError> {
+        query::status_entries(&self.database, device, limit).map_err(|error| self.database_error(error))
     }
 
-    fn failed(&self, error: rusqlite::Error) -> LogbookError {
-        LogbookErrorKind::from(error).of(&self.path)
+    fn database_error(&self, error: rusqlite::Error) -> LogbookError {
+        LogbookErrorKind::from(error).into_error(&self.path)
     }
 }
 

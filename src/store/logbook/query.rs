@@ -32,15 +32,15 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
     select(database, condition, ":limit", parameters)
 }
 
-pub(super) fn writes(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    of_device(database, device, "what <> 'status'", limit)
+pub(super) fn write_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+    query_device(database, device, "what <> 'status'", limit)
 }
 
-pub(super) fn statuses(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    of_device(database, device, "what = 'status'", limit)
+pub(super) fn status_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+    query_device(database, device, "what = 'status'", limit)
 }
 
-fn of_device(database: &Connection, device: &DeviceKey, which: &str, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+fn query_device(database: &Connection, device: &DeviceKey, which: &str, limit: u32) -> rusqlite::Result<Vec<Entry>> {
     let condition = format!("kind = ?1 AND serial_number = ?2 AND device_type = ?3 AND is_virtual = ?4 AND {which}");
     let key = (&device.kind, &device.serial_number, &device.device_type, device.is_virtual, limit);
     select(database, &condition, "?5", key)
@@ -66,7 +66,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
     Ok(Entry {
         id: EntryId(row.get("id")?),
         kind: row.get("what").and_then(|word: String| {
-            EntryKind::parse(&word).ok_or_else(|| invalid(format!("{word:?} is not a kind of entry").into()))
+            EntryKind::parse(&word).ok_or_else(|| invalid_column(format!("{word:?} is not a kind of entry").into()))
         })?,
         at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
         device: DeviceKey {
@@ -78,7 +78,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
         description: row.get("description")?,
         items: row
             .get("items")
-            .and_then(|text: String| serde_json::from_str(&text).map_err(|error| invalid(Box::new(error))))?,
+            .and_then(|text: String| serde_json::from_str(&text).map_err(|error| invalid_column(Box::new(error))))?,
         planned_cycles: row.get("planned_cycles").and_then(schema::parse_cycles)?,
         backup: row.get::<_, Option<String>>("backup")?.map(PathBuf::from),
         origin: Origin { bench: row.get("bench")?, user: row.get("user")?, version: row.get("version")? },
@@ -86,7 +86,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
     })
 }
 
-fn invalid(why: Box<dyn std::error::Error + Send + Sync>) -> rusqlite::Error {
+fn invalid_column(why: Box<dyn std::error::Error + Send + Sync>) -> rusqlite::Error {
     rusqlite::Error::FromSqlConversionFailure(0, Type::Text, why)
 }
 

@@ -96,7 +96,7 @@ pub(super) const STEPS: [&str; 3] = [
 ",
 ];
 
-pub(super) const KNOWN: i64 = STEPS.len() as i64;
+pub(super) const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 
 pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookErrorKind> {
     if let Some(folder) = path.parent() {
@@ -113,7 +113,7 @@ pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, Logboo
         return Err(problem);
     }
     use_write_ahead_log(&database)?;
-    migrate(&mut database)?;
+    migrate_schema(&mut database)?;
     Ok(database)
 }
 
@@ -140,7 +140,7 @@ fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
     database.pragma_update(None, "synchronous", "FULL")
 }
 
-fn migrate(database: &mut Connection) -> Result<(), LogbookErrorKind> {
+fn migrate_schema(database: &mut Connection) -> Result<(), LogbookErrorKind> {
     // The schema is almost always current, and then no lock is needed.
     if check_version(database)? == STEPS.len() {
         return Ok(());
@@ -151,7 +151,7 @@ fn migrate(database: &mut Connection) -> Result<(), LogbookErrorKind> {
     for step in STEPS.iter().skip(done) {
         transaction.execute_batch(step)?;
     }
-    transaction.pragma_update(None, "user_version", KNOWN)?;
+    transaction.pragma_update(None, "user_version", SCHEMA_VERSION)?;
     Ok(transaction.commit()?)
 }
 
@@ -160,6 +160,6 @@ fn check_version(database: &Connection) -> Result<usize, LogbookErrorKind> {
     let found: i64 = database.pragma_query_value(None, "user_version", |row| row.get(0))?;
     match usize::try_from(found) {
         Ok(done) if done <= STEPS.len() => Ok(done),
-        _ => Err(LogbookErrorKind::Newer { found, known: KNOWN }),
+        _ => Err(LogbookErrorKind::Newer { found, known: SCHEMA_VERSION }),
     }
 }

@@ -22,7 +22,7 @@ fn device(serial_number: &str) -> DeviceKey {
 /// Returns a folder, and the path of a logbook in it.
 fn place() -> (tempfile::TempDir, PathBuf) {
     let root = tempfile::tempdir().unwrap();
-    let path = Store::at(root.path()).logbook_path();
+    let path = Store::at_root(root.path()).logbook_path();
     (root, path)
 }
 
@@ -48,13 +48,13 @@ fn cycles_add_up_for_each_device() {
     ];
     assert_eq!(logbook.write_cycles(&own), Ok(0));
     for (spent, outcome) in [(8, Outcome::Done), (3, Outcome::Failed("no reply".into())), (0, Outcome::Cancelled)] {
-        let id = logbook.intend(at(0), &own, &intent("data field 1", 8, None)).unwrap();
+        let id = logbook.record_intent(at(0), &own, &intent("data field 1", 8, None)).unwrap();
         logbook.record_outcome(id, at(1), outcome, spent).unwrap();
     }
     assert_eq!(logbook.write_cycles(&own), Ok(11));
     for other in &others {
         assert_eq!(logbook.write_cycles(other), Ok(0), "{other:?}");
-        logbook.intend(at(0), other, &intent("x", 100, None)).unwrap();
+        logbook.record_intent(at(0), other, &intent("x", 100, None)).unwrap();
     }
     assert_eq!(logbook.write_cycles(&own), Ok(11));
 }
@@ -63,7 +63,7 @@ fn cycles_add_up_for_each_device() {
 fn an_intent_without_conclusion_counts_as_planned() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    logbook.intend(at(0), &device("1"), &intent("data field 1", 8, None)).unwrap();
+    logbook.record_intent(at(0), &device("1"), &intent("data field 1", 8, None)).unwrap();
     // The program dies here.
     drop(logbook);
     let logbook = Logbook::open(&path).unwrap();
@@ -77,9 +77,9 @@ fn history_is_newest_first_and_complete() {
     let mut logbook = Logbook::open(&path).unwrap();
     let own = device("A/B ä\0");
     let backup = path.with_file_name("a backup.ron");
-    let first = logbook.intend(at(0), &own, &intent("first", 1, Some(&backup))).unwrap();
-    let second = logbook.intend(at(5), &own, &intent("second", 2, None)).unwrap();
-    logbook.intend(at(6), &device("2"), &intent("another", 1, None)).unwrap();
+    let first = logbook.record_intent(at(0), &own, &intent("first", 1, Some(&backup))).unwrap();
+    let second = logbook.record_intent(at(5), &own, &intent("second", 2, None)).unwrap();
+    logbook.record_intent(at(6), &device("2"), &intent("another", 1, None)).unwrap();
     logbook.record_outcome(first, at(1), Outcome::Failed(String::new()), 1).unwrap();
 
     let history = logbook.history(&own, 10).unwrap();
@@ -107,7 +107,7 @@ fn history_is_newest_first_and_complete() {
 fn an_entry_is_concluded_once() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    let id = logbook.intend(at(0), &device("1"), &intent("x", 8, None)).unwrap();
+    let id = logbook.record_intent(at(0), &device("1"), &intent("x", 8, None)).unwrap();
     logbook.record_outcome(id, at(1), Outcome::Done, 8).unwrap();
     let not_open = LogbookErrorKind::NotOpen { entry: id };
     assert_eq!(problem(logbook.record_outcome(id, at(2), Outcome::Cancelled, 0)), not_open);
@@ -120,7 +120,7 @@ fn an_absurd_count_does_not_break_the_sum() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     for _ in 0..3 {
-        logbook.intend(at(0), &device("1"), &intent("x", u64::MAX, None)).unwrap();
+        logbook.record_intent(at(0), &device("1"), &intent("x", u64::MAX, None)).unwrap();
     }
     assert_eq!(logbook.write_cycles(&device("1")), Ok(3 * u64::from(u32::MAX)));
 }
@@ -130,9 +130,9 @@ fn two_windows_share_a_logbook() {
     let (_root, path) = place();
     let mut first = Logbook::open(&path).unwrap();
     let mut second = Logbook::open(&path).unwrap();
-    let id = first.intend(at(0), &device("1"), &intent("x", 8, None)).unwrap();
+    let id = first.record_intent(at(0), &device("1"), &intent("x", 8, None)).unwrap();
     assert_eq!(second.write_cycles(&device("1")), Ok(8));
-    second.intend(at(0), &device("1"), &intent("y", 1, None)).unwrap();
+    second.record_intent(at(0), &device("1"), &intent("y", 1, None)).unwrap();
     second.record_outcome(id, at(1), Outcome::Done, 2).unwrap();
     assert_eq!(first.write_cycles(&device("1")), Ok(3));
 }
@@ -145,7 +145,7 @@ fn concurrent_writers_do_not_lose_entries() {
             scope.spawn(|| {
                 let mut logbook = Logbook::open(&path).unwrap();
                 for _ in 0..5 {
-                    logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap();
+                    logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap();
                 }
             });
         }
@@ -160,21 +160,21 @@ fn a_locked_logbook_is_reported() {
     let mut logbook = Logbook::open_with_timeout(&path, patience).unwrap();
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
-    assert_eq!(problem(logbook.intend(at(0), &device("1"), &intent("x", 1, None))), LogbookErrorKind::Locked);
+    assert_eq!(problem(logbook.record_intent(at(0), &device("1"), &intent("x", 1, None))), LogbookErrorKind::Locked);
     // Reading, and opening to read, do not wait.
     assert_eq!(Logbook::open_with_timeout(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
     other.execute_batch("ROLLBACK").unwrap();
-    logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap();
+    logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap();
 }
 
 #[test]
 fn a_newer_logbook_is_not_changed() {
     let (_root, path) = place();
     drop(Logbook::open(&path).unwrap());
-    for found in [schema::KNOWN + 1, i64::from(i32::MAX), -1] {
+    for found in [schema::SCHEMA_VERSION + 1, i64::from(i32::MAX), -1] {
         Connection::open(&path).unwrap().pragma_update(None, "user_version", found).unwrap();
         let before = fs::read(&path).unwrap();
-        assert_eq!(problem(Logbook::open(&path)), LogbookErrorKind::Newer { found, known: schema::KNOWN });
+        assert_eq!(problem(Logbook::open(&path)), LogbookErrorKind::Newer { found, known: schema::SCHEMA_VERSION });
         assert_eq!(fs::read(&path).unwrap(), before, "{found}");
     }
 }
@@ -210,7 +210,7 @@ fn a_damaged_logbook_is_an_error_and_is_kept() {
     for (label, content) in cases {
         fs::write(&path, &content).unwrap();
         let result = Logbook::open(&path).and_then(|mut logbook| {
-            logbook.intend(at(0), &device("1"), &intent("x", 1, None))?;
+            logbook.record_intent(at(0), &device("1"), &intent("x", 1, None))?;
             logbook.write_cycles(&device("1"))
         });
         assert!(
@@ -225,7 +225,7 @@ fn a_damaged_logbook_is_an_error_and_is_kept() {
 fn an_invalid_value_is_reported_as_damage() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap();
+    logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap();
     Connection::open(&path).unwrap().execute("UPDATE event SET at = 'yesterday'", []).unwrap();
     assert!(matches!(problem(logbook.history(&device("1"), 1)), LogbookErrorKind::Damaged { .. }));
     assert_eq!(logbook.write_cycles(&device("1")), Ok(1));
@@ -264,7 +264,8 @@ fn an_older_logbook_keeps_its_entries() {
     let mut logbook = Logbook::open(&path).unwrap();
     assert_eq!(logbook.write_cycles(&device("1")), Ok(4));
     let entries = logbook.entries(&EntryFilter::default(), 10).unwrap();
-    let told: Vec<_> = entries.iter().map(|entry| (entry.kind, entry.description.as_str(), entry.cycles())).collect();
+    let told: Vec<_> =
+        entries.iter().map(|entry| (entry.kind, entry.description.as_str(), entry.write_cycles())).collect();
     let expected =
         [(EntryKind::Write, "counter", 1), (EntryKind::Status, "08h, 1Eh", 0), (EntryKind::Write, "field:1@3+2", 3)];
     assert_eq!(told, expected);
@@ -274,17 +275,17 @@ fn an_older_logbook_keeps_its_entries() {
     assert_eq!(end.outcome, Outcome::Failed("no reply".to_owned()));
     // The open intent can still be concluded, and new entries follow the old ones.
     logbook.record_outcome(entries[0].id, at(0), Outcome::Done, 1).unwrap();
-    assert!(logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap() > entries[0].id);
+    assert!(logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap() > entries[0].id);
 }
 
 #[test]
 fn entries_are_filtered_and_searched() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    logbook.intend(at(0), &device("GB1"), &intent("field:1", 1, None)).unwrap();
+    logbook.record_intent(at(0), &device("GB1"), &intent("field:1", 1, None)).unwrap();
     logbook.record_status(at(10), &device("GB2"), "08h overheated, 100 % of 5_0").unwrap();
     let biss = DeviceKey { kind: "biss".into(), ..device("GB1") };
-    logbook.intend(at(20), &biss, &intent("0x6E", 1, None)).unwrap();
+    logbook.record_intent(at(20), &biss, &intent("0x6E", 1, None)).unwrap();
     let found = |filter: EntryFilter| {
         let entries = logbook.entries(&filter, 10).unwrap();
         entries.into_iter().map(|entry| entry.at).collect::<Vec<_>>()
@@ -307,6 +308,6 @@ fn entries_are_filtered_and_searched() {
     assert_eq!((search("100 %"), search("5_0")), (vec![at(10)], vec![at(10)]), "no character has a special meaning");
     assert_eq!(search("5%0"), []);
     assert_eq!(search("gb2"), [at(10)]);
-    assert_eq!(logbook.statuses(&device("GB2"), 10).unwrap().len(), 1);
+    assert_eq!(logbook.status_entries(&device("GB2"), 10).unwrap().len(), 1);
     assert_eq!(logbook.history(&device("GB2"), 10).unwrap(), []);
 }

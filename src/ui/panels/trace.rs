@@ -249,7 +249,7 @@ fn line_ui(
     });
     row.col(|ui| {
         let Some(before) = before else { return };
-        let seconds = line.at.since(before.at).as_secs_f64();
+        let seconds = line.at.duration_since(before.at).as_secs_f64();
         let gap = match seconds {
             10.0.. => format!("+{} s", theme.format_number(seconds, 1)),
             _ => format!("+{} ms", theme.format_number(seconds * 1e3, 1)),

@@ -31,7 +31,7 @@ pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
     theme.sunken_frame().show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         header_ui(ui, theme, &columns);
-        for row in bits::typed(bytes) {
+        for row in bits::interpret(bytes) {
             line_ui(ui, theme, &columns, &row);
         }
     });

@@ -64,13 +64,13 @@ impl Write for Spy {
 
     fn confirm_base(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
         self.steps.push("confirm");
-        assert!(self.store.backups().list("spy", "1").unwrap().is_empty());
+        assert!(self.store.backups().list_for("spy", "1").unwrap().is_empty());
         if self.refuses { Err(()) } else { Ok(()) }
     }
 
     fn begin(&mut self) -> Result<(), Cancelled> {
         self.steps.push("begin");
-        assert_eq!(self.store.backups().list("spy", "1").unwrap().len(), 1);
+        assert_eq!(self.store.backups().list_for("spy", "1").unwrap().len(), 1);
         assert_eq!(self.open_intents(), 1);
         Ok(())
     }
@@ -172,7 +172,7 @@ fn every_write_takes_all_steps_in_order() {
     ];
     for (label, seen, refuses, ends_early, steps, spent) in cases {
         let root = tempfile::tempdir().unwrap();
-        let mut spy = Spy::new(&Store::at(root.path()), refuses, ends_early);
+        let mut spy = Spy::new(&Store::at_root(root.path()), refuses, ends_early);
         let ended = write(&mut spy, &confirm_plan(Some(seen), &[1, 2], false));
         assert_eq!(spy.steps, steps, "{label}");
         assert_eq!(cycles_seen(&spy.store, &device()), Some(spent), "{label}");
@@ -192,7 +192,7 @@ fn every_write_takes_all_steps_in_order() {
 #[test]
 fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     let root = tempfile::tempdir().unwrap();
-    let mut spy = Spy::new(&Store::at(root.path()), false, false);
+    let mut spy = Spy::new(&Store::at_root(root.path()), false, false);
     let done = write(&mut spy, &confirm_plan(Some(0), &[], false)).ok().unwrap();
     assert_eq!((done.written, done.backup), (WrittenChanges::default(), None));
     let consent = confirm_plan(Some(0), &[2], false).consent;
@@ -221,7 +221,7 @@ fn an_unusable_logbook_prevents_a_write() {
         fn end_state(&mut self, _: &Cancelled) {}
     }
     let root = tempfile::tempdir().unwrap();
-    let store = Store::at(root.path());
+    let store = Store::at_root(root.path());
     std::fs::create_dir_all(store.logbook_path()).unwrap();
     let seen = cycles_seen(&store, &device());
     assert_eq!(seen, None);

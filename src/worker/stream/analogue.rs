@@ -7,7 +7,7 @@ use super::{Batch, Producer};
 use crate::analysis::SampleTime;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
-use crate::sim::sine_cosine::{Checked, Source};
+use crate::sim::sine_cosine::{CheckedSettings, Source};
 use crate::units::Moment;
 
 /// Duration of a batch at full rate, in nanoseconds.
@@ -29,18 +29,18 @@ pub struct AnalogueSource {
 
 impl AnalogueSource {
     /// Creates a source that starts at `start` according to the clock of its stream.
-    pub fn new(checked: Checked, start: Moment) -> Self {
+    pub fn new(checked: CheckedSettings, start: Moment) -> Self {
         AnalogueSource { source: Source::new(checked, SampleTime::from(start)), next: 0 }
     }
 }
 
 impl Producer for AnalogueSource {
-    type Request = Checked;
+    type Request = CheckedSettings;
     type Samples = Wires;
     type Error = StaleSettings;
 
-    fn change(&mut self, request: Checked) {
-        self.source.change(self.next, request);
+    fn apply_change(&mut self, request: CheckedSettings) {
+        self.source.change_settings(self.next, request);
     }
 
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, StaleSettings> {
@@ -61,7 +61,7 @@ impl Producer for AnalogueSource {
         let most = (LATE_NS / period_ns).max(1).unsigned_abs();
         let (lost, count) = (due.saturating_sub(most), due.min(most));
         let first = self.next + lost;
-        let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).ok_or(StaleSettings)?;
+        let samples = self.source.samples_from(first, usize::try_from(count).unwrap_or(0)).ok_or(StaleSettings)?;
         self.next = first + count;
         let time = time.saturating_add_ns(i64::try_from(lost).unwrap_or(i64::MAX).saturating_mul(period_ns));
         Ok(Some(Batch { first, time, period_ns, lost, samples }))

@@ -32,7 +32,7 @@ impl Producer for Numbers {
     type Samples = Vec<u64>;
     type Error = &'static str;
 
-    fn change(&mut self, wish: u64) {
+    fn apply_change(&mut self, wish: u64) {
         self.heard.send(wish).unwrap();
     }
 
@@ -72,14 +72,14 @@ fn an_idle_reader_does_not_block_and_losses_are_counted() {
     let (producer, ..) = numbers(sizes, true);
     let stream = Stream::spawn(producer, 1_000, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
     wait_until(|| stream.is_finished());
-    let batches = stream.take();
+    let batches = stream.take_batches();
     let held: usize = batches.iter().map(|batch| batch.samples.len()).sum();
     assert!(held <= 1_000 && held > 900, "{held}");
     assert_eq!(check(&batches, 0), total as u64);
-    assert_eq!(stream.lost(), (total - held) as u64);
-    assert_eq!(batches[0].lost, stream.lost(), "all of it before what is left");
+    assert_eq!(stream.lost_samples(), (total - held) as u64);
+    assert_eq!(batches[0].lost, stream.lost_samples(), "all of it before what is left");
     assert_eq!((stream.take_error(), stream.take_error()), (Some("unplugged"), None));
-    assert!(stream.take().is_empty());
+    assert!(stream.take_batches().is_empty());
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn an_occasional_reader_can_locate_gaps() {
     let (mut next, mut read, mut lost) = (0, 0, 0);
     loop {
         let over = stream.is_finished();
-        let batches = stream.take();
+        let batches = stream.take_batches();
         next = check(&batches, next);
         read += batches.iter().map(|batch| batch.samples.len() as u64).sum::<u64>();
         lost += batches.iter().map(|batch| batch.lost).sum::<u64>();
@@ -98,7 +98,7 @@ fn an_occasional_reader_can_locate_gaps() {
         }
         std::thread::sleep(Duration::from_micros(300));
     }
-    assert_eq!((next, read + lost, stream.lost()), (210_000, 210_000, lost));
+    assert_eq!((next, read + lost, stream.lost_samples()), (210_000, 210_000, lost));
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn the_last_batch_before_a_silence_wakes_the_reader() {
     let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), wake).unwrap();
     wakes.recv_timeout(HANGS).unwrap();
     wakes.recv_timeout(HANGS).unwrap();
-    assert_eq!(check(&stream.take(), 0), 2);
+    assert_eq!(check(&stream.take_batches(), 0), 2);
     assert!(!stream.is_finished());
     assert!(wakes.recv_timeout(Duration::from_millis(120)).is_err(), "silence wakes nobody");
 }
@@ -154,19 +154,19 @@ fn the_last_batch_before_a_silence_wakes_the_reader() {
 fn the_latest_change_arrives_and_a_dropped_stream_ends() {
     let (producer, wishes, gone) = numbers([], false);
     let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), Arc::new(|| ())).unwrap();
-    (0..1_000).for_each(|wish| stream.change(wish));
+    (0..1_000).for_each(|wish| stream.request_change(wish));
     while wishes.recv_timeout(HANGS).unwrap() != 999 {}
     assert!(wishes.is_empty());
     drop(stream);
     assert!(matches!(gone.recv_timeout(HANGS), Err(crossbeam_channel::RecvTimeoutError::Disconnected)));
 }
 
-fn settings(rate_hz: f64) -> crate::sim::sine_cosine::Checked {
-    Settings { rate_hz, ..Settings::default() }.checked().unwrap()
+fn settings(rate_hz: f64) -> crate::sim::sine_cosine::CheckedSettings {
+    Settings { rate_hz, ..Settings::default() }.validate().unwrap()
 }
 
 fn next(source: &mut AnalogueSource, clock: &VirtualClock) -> Option<Batch<Wires>> {
-    source.next(clock, PATIENCE).unwrap()
+    source.next(clock, MAX_WAIT).unwrap()
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn the_virtual_source_follows_the_clock() {
     assert_eq!((late.first, late.samples.count(), late.lost), (5_975_001, 25_000, 5_973_001));
     assert_eq!(late.time, first.time.saturating_add_ns(5_975_001 * 10_000));
     // Another rate from the next sample on, 10 µs after the last.
-    source.change(settings(10.0));
+    source.apply_change(settings(10.0));
     let slow: Vec<_> = (0..12).map(|_| next(&mut source, &clock)).collect();
     let slow: Vec<_> = slow.into_iter().flatten().collect();
     assert_eq!((slow[0].first, slow[0].samples.count(), slow[0].lost), (6_000_001, 1, 0));
@@ -199,7 +199,8 @@ fn the_virtual_source_follows_the_clock() {
 fn the_virtual_source_yields_the_samples_by_index() {
     let clock = VirtualClock::default();
     let mut source = AnalogueSource::new(settings(50_000.0), clock.now());
-    let whole = crate::sim::sine_cosine::Source::new(settings(50_000.0), SampleTime::ORIGIN).samples(0, 5_000).unwrap();
+    let whole =
+        crate::sim::sine_cosine::Source::new(settings(50_000.0), SampleTime::ORIGIN).samples_from(0, 5_000).unwrap();
     let mut sines = Vec::new();
     (0..10).filter_map(|_| next(&mut source, &clock)).for_each(|batch| sines.extend(batch.samples.sin_v));
     assert_eq!(sines, whole.sin_v);
@@ -209,7 +210,8 @@ fn the_virtual_source_yields_the_samples_by_index() {
 fn no_sample_is_missing_while_the_computer_keeps_up() {
     // At 44.1 kHz a sample takes 22 676 ns.
     let clock = VirtualClock::default();
-    let checked = Settings::default().with(Quantity::Rate, 44_100.0).with(Quantity::Noise, 0.0).checked().unwrap();
+    let checked =
+        Settings::default().with_value(Quantity::Rate, 44_100.0).with_value(Quantity::Noise, 0.0).validate().unwrap();
     let mut source = AnalogueSource::new(checked, clock.now());
     let mut expected = 0;
     while clock.now().since_start() < Duration::from_secs(4) {

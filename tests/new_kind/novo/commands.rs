@@ -2,9 +2,9 @@
 
 use encoder_studio::app::TypeMap;
 use encoder_studio::cli::{
-    Command, CommonArgs, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs,
-    SaveArgs, SimulateArgs, Simulated, UnrestoredItems, check_wear, confirm_plan, plan, profile_to_restore, readings,
-    restore_options, save_profile, settings, write_restore,
+    CliDevice, Command, CommonArgs, DeviceCommands, Failure, Output, Position, ProfileCommands, Restore, Result,
+    SaveArgs, ServableDevice, SimulateArgs, Success, UnrestoredItems, check_wear, confirm_plan, plan, print_readings,
+    profile_to_restore, restore_options, save_profile, settings, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -18,13 +18,13 @@ use super::sim::Virtual;
 
 type Runner = encoder_studio::cli::Runner<Novo>;
 
-impl Runs for Novo {
+impl CliDevice for Novo {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &NovoCommands;
 
-    fn begin(_: &mut Session<Self>, _: &TypeMap) {}
+    fn prepare_context(_: &mut Session<Self>, _: &TypeMap) {}
 
-    fn step(item: &usize) -> String {
+    fn describe_step(item: &usize) -> String {
         name_of(*item).to_owned()
     }
 }
@@ -35,7 +35,7 @@ impl DeviceCommands for NovoCommands {
     fn name(&self) -> &'static str {
         KIND
     }
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "Novo encoder"
     }
     fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
@@ -46,9 +46,9 @@ impl DeviceCommands for NovoCommands {
             _ => return None,
         })
     }
-    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+    fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
         let device = Virtual::from_pairs(&settings(output, arguments)?);
-        device.map(|own| Box::new(own) as Box<dyn Simulated>).map_err(|error| Failure::Usage(error.to_string()))
+        device.map(|own| Box::new(own) as Box<dyn ServableDevice>).map_err(|error| Failure::Usage(error.to_string()))
     }
 }
 
@@ -66,10 +66,10 @@ impl ProfileCommands for NovoCommands {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = confirm_plan(output, &restore.consent, prepared, &[&shown.text])?;
             let written = result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(written) => *written);
-            Ok(plan::WriteSummary::of(output, written))
+            Ok(plan::WriteSummary::from_commit(output, written))
         })
     }
-    fn present(&self, common: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
+    fn read_for_comparison(&self, common: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
         survey(&mut Runner::open(common)?).map(Body::new)
     }
 }
@@ -77,16 +77,16 @@ impl ProfileCommands for NovoCommands {
 fn identify(common: &CommonArgs, output: &Output) -> Result {
     let NovoProfile { serial, .. } = survey(&mut Runner::open(common)?)?;
     output.show(&json!({ "serial": serial }), &format!("serial number  {serial}\n"))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     if position.csv {
-        output.print("position\n")?;
+        output.write_stdout("position\n")?;
     }
     let job = || Job::Position;
-    readings(&mut runner, position, job, |came| {
+    print_readings(&mut runner, position, job, |came| {
         let (_, position) = result_of!(came, Came::Position(sample) => sample);
         output.show(&json!({ "position": position }), &format!("{position}\n"))
     })
@@ -95,7 +95,7 @@ fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result
 fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     save_profile(&save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
     output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn survey(runner: &mut Runner) -> Result<NovoProfile> {
@@ -107,5 +107,5 @@ fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::PlanReport {
         let (old, new) = (Some(op.from.to_string()), Some(op.to.to_string()));
         plan::PlanStep { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
     };
-    plan::PlanReport::of(plan, plan.ops.iter().map(step).collect(), *seen, Some(LIFE))
+    plan::PlanReport::from_plan(plan, plan.ops.iter().map(step).collect(), *seen, Some(LIFE))
 }

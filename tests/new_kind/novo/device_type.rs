@@ -92,7 +92,7 @@ impl FormModel for NovoForm {
     type Finder = NoFinder<Self>;
 
     fn default_link() -> LinkUrl {
-        LinkUrl::sim()
+        LinkUrl::simulated()
     }
     fn from_url(url: &LinkUrl) -> Self {
         NovoForm { link: url.to_string() }

@@ -10,8 +10,8 @@ use encoder_studio::profile::{InterruptedWrite, RestoreOptions, WrittenChanges};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
-use encoder_studio::worker::open::{check_parameters, inside, open_byte_stream, wrong_target_error};
-use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, Watched};
+use encoder_studio::worker::open::{check_parameters, connect_simulated, open_byte_stream, wrong_target_error};
+use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, WatchReply};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
 use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
@@ -92,29 +92,29 @@ pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
 pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Novo>, OpenError> {
     check(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let virtual_one = || Ok(inside(Virtual::from_pairs(url.query.pairs())?, &clock));
+    let virtual_one = || Ok(connect_simulated(Virtual::from_pairs(url.query.pairs())?, &clock));
     let wire = open_byte_stream(url, CharacterFormat::FACTORY, &clock, virtual_one)?;
-    Ok(Session::with(Novo(wire), clock, store, url.scheme == LinkScheme::Sim))
+    Ok(Session::from_device(Novo(wire), clock, store, url.scheme == LinkScheme::Sim))
 }
 
 pub(crate) fn device_key(serial: u16, is_virtual: bool) -> DeviceKey {
-    DeviceKey::of(KIND, "N1", &serial.to_string(), is_virtual)
+    DeviceKey::new(KIND, "N1", &serial.to_string(), is_virtual)
 }
 
 impl Novo {
     pub(super) fn ask(&mut self, context: &mut SessionContext, request: Request) -> Result<u16, Error> {
-        let Ctx { wire, clock, cancel, trace } = context.ctx(&mut *self.0);
+        let Ctx { wire, clock, cancel, trace } = context.procedure_context(&mut *self.0);
         for _ in 0..TRIES {
             if cancel.stops_transaction() {
                 return Err(Error::Cancelled);
             }
-            trace.record(clock.now(), Direction::Sent, MaskedBytes::clear(&request.emit()));
+            trace.record_frame(clock.now(), Direction::Sent, MaskedBytes::clear(&request.emit()));
             wire.send(&request.emit())?;
             let (until, mut heard) = (clock.now() + PATIENCE, Vec::new());
             while heard.len() < REPLY && clock.now() < until {
                 wire.receive(until, &mut heard)?;
             }
-            trace.record(clock.now(), Direction::Received, MaskedBytes::clear(&heard));
+            trace.record_frame(clock.now(), Direction::Received, MaskedBytes::clear(&heard));
             if let Some(word) = parse_reply(request, &heard) {
                 return Ok(word);
             }
@@ -154,24 +154,24 @@ impl Device for Novo {
     fn run(&mut self, context: &mut SessionContext, job: Job, tell: Told<'_>) -> Result<Output, JobError> {
         Ok(match job {
             Job::Survey => Output::Surveyed(self.survey(context)?),
-            Job::Position => Output::Position(self.sample(context)?),
+            Job::Position => Output::Position(self.take_sample(context)?),
             Job::Prepare(change) => Output::Prepared(Box::new(self.prepare(context, &change)?)),
             Job::Commit(own) => {
                 let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-                let told = &mut |at: Progress<&Op>| tell(JobReport::Progress(at.map(|op| op.item)));
+                let told = &mut |at: Progress<&Op>| tell(JobReport::Progress(at.map_step(|op| op.item)));
                 let written = write_plan(&store, is_virtual, &own, &mut NovoWrite { novo: self, context }, told)?;
                 Output::Committed(Box::new(written))
             }
         })
     }
-    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         let position = self.ask(context, Request::Read(POSITION))?;
         Ok((context.clock.now(), position))
     }
-    fn watch(&mut self, _: &mut SessionContext, what: &Infallible) -> Result<Watched<Sample>, JobError> {
+    fn read_watched(&mut self, _: &mut SessionContext, what: &Infallible) -> Result<WatchReply<Sample>, JobError> {
         match *what {}
     }
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.0.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.0.check_connection()
     }
 }

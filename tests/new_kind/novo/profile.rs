@@ -5,7 +5,7 @@ use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, Pro
 
 use super::protocol::{ITEMS, KIND, Values, name_of};
 
-const WORD: AllowedValues = AllowedValues::between(0, 65_535);
+const WORD: AllowedValues = AllowedValues::whole_range(0, 65_535);
 
 /// The identity and the values.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ impl Profile for NovoProfile {
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for (item, (own, other)) in ITEMS.into_iter().zip(self.values.into_iter().zip(other.values)) {
-            comparison.add(item.to_owned(), Some(own), Some(other));
+            comparison.compare_item(item.to_owned(), Some(own), Some(other));
         }
         comparison
     }

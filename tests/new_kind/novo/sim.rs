@@ -1,8 +1,8 @@
 //! The virtual encoder.
 
-use encoder_studio::cli::Simulated;
+use encoder_studio::cli::ServableDevice;
 use encoder_studio::expected::Quantity;
-use encoder_studio::parameter::{OptionalValue, Parameters, Whole};
+use encoder_studio::parameter::{OptionalValue, ParameterGroup, WholeNumbers};
 use encoder_studio::parameters;
 use encoder_studio::sim::{ByteDevice, ConfigError, RPM, VirtualDevice, setting};
 use encoder_studio::units::Moment;
@@ -12,12 +12,12 @@ use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
 parameters! {
     /// The settings of a virtual encoder.
     struct Settings: ConfigError {
-        serial: u16 = 1001, "serial" => Whole(Quantity::Number, 0..=65535);
+        serial: u16 = 1001, "serial" => WholeNumbers(Quantity::Number, 0..=65535);
         rpm: f64 = 0.0, "rpm" => RPM;
         /// The address of a value that no longer changes.
-        stuck: Option<u8> = None, "stuck" => OptionalValue(Whole(Quantity::Address, 0..=255));
+        stuck: Option<u8> = None, "stuck" => OptionalValue(WholeNumbers(Quantity::Address, 0..=255));
         /// The number that it is locked with: no value changes.
-        pin: Option<u16> = None, secret "pin" => OptionalValue(Whole(Quantity::Number, 0..=9999));
+        pin: Option<u16> = None, secret "pin" => OptionalValue(WholeNumbers(Quantity::Number, 0..=9999));
     }
 }
 
@@ -81,4 +81,4 @@ impl ByteDevice for Virtual {
     }
 }
 
-impl Simulated for Virtual {}
+impl ServableDevice for Virtual {}

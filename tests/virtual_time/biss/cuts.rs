@@ -208,7 +208,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
             let (bench, ended) = disturbed(&original, &prepared, |bench| {
                 let (encoder, mut sent) = (bench.handle(), 0);
                 // The trace receives a request before it is sent.
-                bench.session.watch(move |entry| {
+                bench.session.add_watcher(move |entry| {
                     if entry.direction == Direction::Sent {
                         if sent == at {
                             encoder.with(|encoder, _| encoder.disconnect());
@@ -269,7 +269,7 @@ fn cancelling_at_any_exchange_leads_back() {
         let mut done = false;
         for steps in exchanges(&original, &prepared) {
             let context = format!("{}, cancelled after {steps}", scene.name);
-            let cancel = CancelToken::after(steps as u64);
+            let cancel = CancelToken::after_transactions(steps as u64);
             let (bench, ended) = disturbed(&original, &prepared, |bench| bench.session.set_cancel(cancel));
             assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
             let spent = u64::from(bench.flash_cycles() - before);

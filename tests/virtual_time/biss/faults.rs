@@ -111,7 +111,7 @@ fn a_lost_link_ends_everything_immediately() {
 fn cancelling_takes_effect_between_two_exchanges() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
-        bench.session.set_cancel(CancelToken::after(60));
+        bench.session.set_cancel(CancelToken::after_transactions(60));
         assert_eq!(survey(&mut bench), Err(Error::Cancelled));
         assert_eq!(bench.tap().sent.len(), 60);
     }
@@ -124,7 +124,7 @@ fn a_recording_of_either_interface_can_be_replayed() {
         let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let mut bench = Bench::new(way, "serial=4711");
         let heard = entries.clone();
-        bench.session.watch(move |entry| heard.lock().unwrap().push(entry.clone()));
+        bench.session.add_watcher(move |entry| heard.lock().unwrap().push(entry.clone()));
         let truth = timeless(survey(&mut bench).unwrap());
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.trace");
@@ -134,7 +134,7 @@ fn a_recording_of_either_interface_can_be_replayed() {
         fs::write(&path, text).unwrap();
         let bridge = if way == Transport::Adapter { "?bridge=on" } else { "" };
         let url: LinkUrl = format!("replay:{}{bridge}", path.display()).parse().unwrap();
-        let mut session = open(&url, Store::at(folder.path())).unwrap();
+        let mut session = open(&url, Store::at_root(folder.path())).unwrap();
         let BissOutput::Surveyed(again) = session.run_inline(BissJob::Survey).unwrap() else { panic!() };
         assert_eq!(timeless(*again), truth, "{way:?}");
     }

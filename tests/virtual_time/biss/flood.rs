@@ -41,7 +41,7 @@ impl ByteLink for Flood {
         Ok(())
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }
@@ -63,11 +63,16 @@ fn a_flood_of_noise_takes_bounded_memory_and_time() {
             portion[511] = 0;
             let lasts = Duration::from_millis(lasts);
             let link = Flood { clock: clock.clone(), lasts, until: Moment::START, portion };
-            let mut session: Session<Biss> =
-                Session::over(Box::new(link), clock.clone(), Station::new(way, MARGIN), Store::at(folder.path()), None);
+            let mut session: Session<Biss> = Session::over(
+                Box::new(link),
+                clock.clone(),
+                Station::new(way, MARGIN),
+                Store::at_root(folder.path()),
+                None,
+            );
             let longest = Arc::<Mutex<usize>>::default();
             let seen = longest.clone();
-            session.watch(move |entry| {
+            session.add_watcher(move |entry| {
                 let mut longest = seen.lock().unwrap();
                 *longest = entry.bytes.len().max(*longest);
             });

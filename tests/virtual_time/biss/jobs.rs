@@ -15,7 +15,7 @@ use encoder_studio::devices::biss::protocol::{
 };
 use encoder_studio::link::{CancelToken, LinkUrl};
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Event, JobId, OpenError, Session, Watched};
+use encoder_studio::worker::{Event, JobId, OpenError, Session, WatchReply};
 
 use super::support::{Bench, Pin, Transport, at};
 
@@ -239,7 +239,7 @@ fn a_save_reports_progress_and_can_be_cancelled() {
     assert_eq!(told.last().unwrap().2, JobStep::Bank(0x43));
     assert_eq!(told.iter().filter(|(.., what)| matches!(what, JobStep::Bank(_))).count(), 64);
     let mut stopped = Bench::new(Transport::ConfigPin, "");
-    stopped.session.set_cancel(CancelToken::after(1000));
+    stopped.session.set_cancel(CancelToken::after_transactions(1000));
     assert_eq!(device_error(save(&mut stopped).unwrap_err()), Error::Cancelled);
     assert_eq!(stopped.tap().sent.len(), 1000);
 }
@@ -295,23 +295,23 @@ fn a_device_id_without_a_description_is_reported() {
 fn samples_and_watched_registers_are_read_one_by_one() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=25&rpm=60");
-        let Ok(Sample::Position(first)) = bench.session.sample() else { panic!("no position") };
-        let Ok(Sample::Position(second)) = bench.session.sample() else { panic!("no position") };
+        let Ok(Sample::Position(first)) = bench.session.take_sample() else { panic!("no position") };
+        let Ok(Sample::Position(second)) = bench.session.take_sample() else { panic!("no position") };
         assert!(first.at < second.at && first.position() < second.position(), "{way:?}");
         let watched = bench.session.watch_value(&"0x66".parse().unwrap()).unwrap();
-        let Watched::Sample(Sample::Watched(reading)) = watched else { panic!("{watched:?}") };
+        let WatchReply::Sample(Sample::Watched(reading)) = watched else { panic!("{watched:?}") };
         assert_eq!((reading.range.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
-        assert!(matches!(refused, Watched::Refused(Sample::Watched(_))), "{refused:?}");
+        assert!(matches!(refused, WatchReply::Refused(Sample::Watched(_))), "{refused:?}");
         // Manual 6.5: data are not accessed while the shaft turns.
         let sent = bench.tap().sent.len();
         let refused = bench.session.watch_value(&"0x24:0x10".parse().unwrap()).unwrap();
-        let Watched::Refused(Sample::Watched(reading)) = refused else { panic!("{refused:?}") };
+        let WatchReply::Refused(Sample::Watched(reading)) = refused else { panic!("{refused:?}") };
         assert_eq!(
             (reading.value, bench.tap().sent.len()),
             (Err(Error::NotWatched { address: at("0x24:0x10") }), sent)
         );
-        assert!(matches!(bench.session.sample(), Ok(Sample::Position(_))));
+        assert!(matches!(bench.session.take_sample(), Ok(Sample::Position(_))));
     }
 }
 
@@ -321,7 +321,7 @@ fn samples_and_watched_registers_are_read_one_by_one() {
 fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
-        let sample = |bench: &mut Bench| match bench.session.sample() {
+        let sample = |bench: &mut Bench| match bench.session.take_sample() {
             Ok(Sample::Position(reading)) => (reading.error, reading.warning),
             other => panic!("{other:?}"),
         };
@@ -355,7 +355,7 @@ fn polling_survives_damaged_frames() {
     let mut bench = Bench::new(Transport::Adapter, "noise=0.6&seed=2");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..100 {
-        match bench.session.sample() {
+        match bench.session.take_sample() {
             Ok(Sample::Position(reading)) => {
                 right += 1;
                 wrong += reading.crc_errors;
@@ -370,7 +370,7 @@ fn polling_survives_damaged_frames() {
 #[test]
 fn links_open_the_interface_they_name() {
     let root = tempfile::tempdir().unwrap();
-    let open = |text: &str| open(&text.parse::<LinkUrl>().unwrap(), Store::at(root.path()));
+    let open = |text: &str| open(&text.parse::<LinkUrl>().unwrap(), Store::at_root(root.path()));
     for (text, line) in
         [("sim:?rpm=5", "UBICOM at 115200 8N1"), ("sim:?bridge=on&noise=0&clock=2000000", "BiSS at 2000000 Hz")]
     {
@@ -404,7 +404,7 @@ fn links_open_the_interface_they_name() {
 #[test]
 fn broken_descriptions_are_reported_once_with_the_first_job() {
     let root = tempfile::tempdir().unwrap();
-    let store = Store::at(root.path());
+    let store = Store::at_root(root.path());
     fs::create_dir_all(store.device_folder("biss")).unwrap();
     fs::write(store.device_folder("biss").join("mine.ron"), "(name: 7)").unwrap();
     let mut bench = Bench::in_store(Transport::ConfigPin, "", store);

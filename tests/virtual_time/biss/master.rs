@@ -167,7 +167,7 @@ fn a_write_that_cannot_be_read_back_is_unclear() {
 #[test]
 fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
     let mut pin = Pin::new("");
-    pin.cancel = CancelToken::after(3);
+    pin.cancel = CancelToken::after_transactions(3);
     assert_eq!(pin.master().read_consecutive(at("0x02:0x00"), 64), Err(Error::Cancelled));
     assert_eq!(pin.tap().sent.len(), 3);
     let mut master = pin.master();
@@ -247,7 +247,7 @@ fn replies_are_read_again_after_garbage() {
     pin.link_send(&[0x80, 0x01, 0x01, 0x02]);
     let from = pin.clock.now();
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
-    assert!(pin.clock.now().since(from) < Duration::from_secs(1));
+    assert!(pin.clock.now().duration_since(from) < Duration::from_secs(1));
 }
 
 /// Issue 22.11: damaged replies are counted, and the trace contains their bytes.

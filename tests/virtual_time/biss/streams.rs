@@ -15,7 +15,7 @@ use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
-use encoder_studio::worker::{Session, Watched};
+use encoder_studio::worker::{Session, WatchReply};
 
 use super::support::{Transport, at, pairs};
 use crate::support::{MARGIN, Tap, TestLink};
@@ -48,13 +48,13 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Transport::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
-    let session = Session::over(Box::new(link), clock.clone(), station, Store::at(folder.path()), None);
+    let session = Session::over(Box::new(link), clock.clone(), station, Store::at_root(folder.path()), None);
     Stand { clock, adapter, tap, session, _folder: folder }
 }
 
 impl Stand {
     fn run(&mut self) -> ConsecutiveFrames {
-        match self.session.sample().unwrap() {
+        match self.session.take_sample().unwrap() {
             Sample::Frames(run) => run,
             other => panic!("{other:?}"),
         }
@@ -101,7 +101,7 @@ fn check(runs: &[ConsecutiveFrames]) {
         for (moment, frame) in run.iter_with_times() {
             let position = run.layout.steps(&frame.unwrap());
             if let Some((earlier, from)) = before {
-                assert_eq!(moment.since(earlier), FAST);
+                assert_eq!(moment.duration_since(earlier), FAST);
                 assert!((327..=328).contains(&(position - from)), "{from} to {position}");
             }
             before = Some((moment, position));
@@ -118,7 +118,7 @@ fn short_polling_intervals_are_streamed() {
     assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start()));
     // The last samples may still be in transit.
     let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
-    let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
+    let streamed = stand.clock.now().duration_since(runs[0].at).as_micros() as usize / 50;
     assert!(frames > 50_000 && (streamed - 200..=streamed + 1).contains(&frames), "{frames} of {streamed}");
     assert_eq!(stand.count(Operation::BissStream), 1);
     stand.session.set_sample_interval(None);
@@ -138,10 +138,10 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         last = runs.last().and_then(|run| run.iter_with_times().last()).map(|(at, _)| at);
         stand.session.run_inline(BissJob::Status).unwrap();
         let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
-        assert!(matches!(watched, Watched::Sample(Sample::Watched(_))));
+        assert!(matches!(watched, WatchReply::Sample(Sample::Watched(_))));
     }
     stand.session.set_sample_interval(Some(Duration::from_millis(5)));
-    assert!(matches!(stand.session.sample(), Ok(Sample::Position(_))), "slow enough to be asked");
+    assert!(matches!(stand.session.take_sample(), Ok(Sample::Position(_))), "slow enough to be asked");
     assert_eq!(stand.unsolicited_byte_count(), 0);
     stand.session.set_sample_interval(Some(FAST));
     stand.run();
@@ -159,7 +159,7 @@ fn damaged_and_missing_frames_are_reported() {
     assert!((0.04..0.06).contains(&(wrong as f64 / frames as f64)), "{wrong} of {frames}");
     let mut open = stand("line=open");
     open.session.set_sample_interval(Some(FAST));
-    let error = open.session.sample().unwrap_err();
+    let error = open.session.take_sample().unwrap_err();
     assert!(matches!(error, JobError::Device(Error::NoAcknowledge { .. })), "{error}");
 }
 
@@ -170,7 +170,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     stand.run();
     let sent = stand.tap.lock().unwrap().sent.len();
     stand.tap.lock().unwrap().mute_from = Some(0);
-    let error = stand.session.sample().unwrap_err();
+    let error = stand.session.take_sample().unwrap_err();
     assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
     assert!(stand.tap.lock().unwrap().sent.len() > sent, "it was told to stop");
     stand.tap.lock().unwrap().mute_from = None;
@@ -178,7 +178,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     assert!(stand.run().is_stream_start());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
-    assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
+    assert!(matches!(stand.session.take_sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
 }
 
 /// 43 bits at 1 MHz, 7 µs of acknowledging and 20 µs of time-out are 70 µs.
@@ -206,7 +206,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
             stand.session.run_inline(BissJob::Status).unwrap();
         } else {
             // Data sent before still arrive.
-            let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
+            let error = (0..100).find_map(|_| stand.session.take_sample().err()).unwrap();
             assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
         }
         assert!(stand.run().is_stream_start());
@@ -225,7 +225,7 @@ fn a_supplied_encoder_is_powered_again_after_a_reset() {
     stand.session.set_sample_interval(Some(FAST));
     stand.run();
     stand.tap.lock().unwrap().mute_from = Some(0);
-    assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Adapter(AdapterError::Mute)))));
+    assert!(matches!(stand.session.take_sample(), Err(JobError::Device(Error::Adapter(AdapterError::Mute)))));
     stand.tap.lock().unwrap().mute_from = None;
     assert!(stand.run().is_stream_start());
     assert_eq!((stand.count(Operation::Hello), stand.count(Operation::Supply)), (2, 2));

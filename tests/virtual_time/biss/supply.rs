@@ -24,7 +24,7 @@ fn the_supply_is_switched_off_unless_found_on_or_kept() {
         bench = bench.supplied_again(after);
         bench.run(BissJob::Status).unwrap();
         assert!(has_power(&bench), "{after:?}");
-        bench.session.leave();
+        bench.session.restore_state();
         assert_eq!(has_power(&bench), left, "{found} {after:?}");
     }
 }
@@ -38,7 +38,7 @@ fn streaming_signals_restores_the_supply() {
     assert!(bench.stream_signals(Some(volts)) && !has_power(&bench));
     assert!(!bench.stream_signals(None) && !has_power(&bench));
     bench.run(BissJob::Status).unwrap();
-    bench.session.leave();
+    bench.session.restore_state();
     assert!(has_power(&bench));
     assert!(bench.stream_signals(Some(volts)) && has_power(&bench), "it was on before");
     assert!(bench.stream_signals(None) && has_power(&bench));
@@ -49,11 +49,11 @@ fn streaming_signals_restores_the_supply() {
 fn a_session_switches_off_only_its_own_supply() {
     let mut bench = Bench::supplied(On);
     bench.run(BissJob::Status).unwrap();
-    bench.session.leave();
+    bench.session.restore_state();
     let mut other = bench.reconnected();
     other.run(BissJob::Status).unwrap();
-    other.session.leave();
-    bench.supplied_again(AsFound).session.leave();
+    other.session.restore_state();
+    bench.supplied_again(AsFound).session.restore_state();
     assert!(has_power(&bench));
 }
 
@@ -63,14 +63,14 @@ fn power_is_not_cut_during_a_store_or_a_mode() {
     let mut bench = Bench::supplied(AsFound);
     bench.change(data()).unwrap();
     let before = bench.now();
-    bench.session.leave();
+    bench.session.restore_state();
     assert!(!has_power(&bench) && bench.now() - before > Duration::from_millis(900), "{:?}", bench.now() - before);
     let mut bench = Bench::supplied(AsFound);
     bench.change(data()).unwrap();
     bench.encoder(|encoder, now| {
         assert!(encoder.write(now, at("0x6B"), 0x2A) && encoder.write(now, at("0x6A"), 1));
     });
-    bench.session.leave();
+    bench.session.restore_state();
     assert!(has_power(&bench), "it may calibrate");
 }
 
@@ -79,11 +79,11 @@ fn power_is_not_cut_during_a_store_or_a_mode() {
 fn an_encoder_that_never_answers_keeps_its_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
     bench.run(BissJob::Status).unwrap_err();
-    bench.session.leave();
+    bench.session.restore_state();
     assert!(has_power(&bench));
     let mut bench = Bench::supplied_at("line=open", Off);
     bench.run(BissJob::Status).unwrap_err();
-    bench.session.leave();
+    bench.session.restore_state();
     assert!(has_power(&bench), "that it may be cut off is not said by a link");
 }
 
@@ -107,12 +107,12 @@ fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
         bench.tap().mute_from = None;
         let unknown =
             matches!(&error, JobError::Interrupted { interrupted, .. } if interrupted.end_state.standing.is_some());
-        bench.session.leave();
+        bench.session.restore_state();
         assert_eq!(has_power(&bench), unknown, "cut in part {part}: {error}");
         if unknown {
             kept += 1;
             bench.lead_back().unwrap();
-            bench.session.leave();
+            bench.session.restore_state();
             assert!(!has_power(&bench), "cut in part {part}");
         }
     }

@@ -81,7 +81,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         let mut trace = Trace::default();
         let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let watched = entries.clone();
-        trace.watch(move |entry| watched.lock().unwrap().push(entry.clone()));
+        trace.add_watcher(move |entry| watched.lock().unwrap().push(entry.clone()));
         let mut station = Station::new(way, MARGIN);
         station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
         Rig { device, clock, tap, entries, cancel: CancelToken::default(), station, link, trace }
@@ -151,7 +151,7 @@ enum End {
 impl Bench {
     pub(crate) fn new(way: Transport, query: &str) -> Self {
         let folder = folder();
-        let store = Store::at(folder.path());
+        let store = Store::at_root(folder.path());
         Self::made(way, query, store, folder)
     }
 
@@ -206,7 +206,7 @@ impl Bench {
 
     /// Returns the same device at the same time in a new session: a cable that was plugged in again.
     pub(crate) fn reconnected(&self) -> Bench {
-        let (store, folder) = (Store::at(self.folder.path()), self.folder.clone());
+        let (store, folder) = (Store::at_root(self.folder.path()), self.folder.clone());
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
@@ -253,7 +253,7 @@ impl Bench {
         let mut station = Station::new(Transport::Adapter, MARGIN);
         station.supply = Some(Supply { millivolt: 5_000, measured: None });
         station.adapter.leave_supply(after);
-        let store = Store::at(folder.path());
+        let store = Store::at_root(folder.path());
         Self::with_station(end, station, clock, store, folder)
     }
 
@@ -276,7 +276,7 @@ impl Bench {
             End::Pin(port) => End::Pin(Arc::new(Mutex::new(port.lock().unwrap().clone()))),
             End::Bus(adapter) => End::Bus(Arc::new(Mutex::new(adapter.lock().unwrap().clone()))),
         };
-        Self::plugged(end, self.session.station().transport, clock, Store::at(folder.path()), folder)
+        Self::plugged(end, self.session.station().transport, clock, Store::at_root(folder.path()), folder)
     }
 
     /// Returns a copy whose link has faults.
@@ -338,7 +338,7 @@ impl Bench {
     }
 
     pub(crate) fn store(&self) -> Store {
-        Store::at(self.folder.path())
+        Store::at_root(self.folder.path())
     }
 
     pub(crate) fn run(&mut self, job: BissJob) -> Result<BissOutput, JobError> {

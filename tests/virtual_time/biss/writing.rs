@@ -209,7 +209,7 @@ fn a_worn_encoder_is_written_only_by_force() {
     let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
     let items = vec![ChangedItem::new("long ago", None, None)];
     let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 999, backup: None };
-    let id = logbook.intend(Timestamp::now(), &device_key(&prepared.identity, true), &intent).unwrap();
+    let id = logbook.record_intent(Timestamp::now(), &device_key(&prepared.identity, true), &intent).unwrap();
     logbook.record_outcome(id, Timestamp::now(), CountedFinding::Done, 999).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!(prepared.cycles_seen, Some(999));

@@ -98,7 +98,7 @@ impl Rig {
         let cut_power = move |now| supplied.lock().unwrap().power_cycle(now);
         let mut link = FaultyLink::new(bus.clone(), clock.clone(), schedule.clone(), cut_power);
         link.set_format(station.format).unwrap();
-        let (store, types) = (Store::at(folder.path()), EncoderTypes::built_in());
+        let (store, types) = (Store::at_root(folder.path()), EncoderTypes::built_in());
         let session = Session::new(Box::new(link), clock.clone(), station, store, types, true);
         Rig { bus, clock, schedule, folder, session }
     }

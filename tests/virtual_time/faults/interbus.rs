@@ -86,7 +86,7 @@ fn session(
     };
     let device = Arc::new(Mutex::new(gateway.connection()));
     let link = FaultyLink::new(device, clock.clone(), schedule.clone(), cut_power);
-    let store = Store::at(folder.path());
+    let store = Store::at_root(folder.path());
     Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft()))
 }
 

@@ -130,7 +130,7 @@ impl ByteLink for FaultyLink {
             schedule.is_lost |= matches!(fault, Some(Fault::Lost));
             fault
         };
-        self.check()?;
+        self.check_connection()?;
         let mut bytes = bytes.to_vec();
         match &self.fault {
             Some(Fault::LoseRequest) => return Ok(()),
@@ -157,7 +157,7 @@ impl ByteLink for FaultyLink {
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         let before = into.len();
         loop {
-            self.check()?;
+            self.check_connection()?;
             let now = self.clock.now();
             while self.arriving.front().is_some_and(|(at, _)| *at <= now) {
                 into.extend(self.arriving.pop_front().map(|(_, byte)| byte));
@@ -179,7 +179,7 @@ impl ByteLink for FaultyLink {
         self.line.set_format(format)
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         match self.schedule.lock().unwrap().is_lost {
             true => Err(LinkError::new("test", LinkErrorKind::Lost)),
             false => Ok(()),

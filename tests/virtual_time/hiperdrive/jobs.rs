@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput,
 use encoder_studio::devices::hiperdrive::protocol::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
 use encoder_studio::link::{Clock, TraceEntry, write_entry, write_header};
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Event, JobId, Watched};
+use encoder_studio::worker::{Event, JobId, WatchReply};
 
 use super::support::{Stand, drive, number};
 
@@ -31,7 +31,7 @@ fn reading_writes_nothing() {
     for job in jobs {
         stand.run(job).unwrap();
     }
-    stand.session.sample().unwrap();
+    stand.session.take_sample().unwrap();
     let others: Vec<_> = stand.requests().into_iter().filter(|request| request.service != Service::GET).collect();
     assert!(others.is_empty(), "{others:?}");
     assert!(stand.requests().len() > 200);
@@ -105,7 +105,7 @@ fn a_recorded_trace_replays_the_devices_replies() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
     let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
     let told = entries.clone();
-    stand.session.watch(move |entry| told.lock().unwrap().push(entry.clone()));
+    stand.session.add_watcher(move |entry| told.lock().unwrap().push(entry.clone()));
     stand.run(HiperdriveJob::Identify).unwrap();
     let mut file = Vec::new();
     write_header(&mut file).unwrap();
@@ -116,7 +116,7 @@ fn a_recorded_trace_replays_the_devices_replies() {
     let path = folder.path().join("drives.trace");
     std::fs::write(&path, file).unwrap();
     let url = format!("replay:{}", path.display()).parse().unwrap();
-    let mut session = open(&url, Store::at(folder.path())).unwrap();
+    let mut session = open(&url, Store::at_root(folder.path())).unwrap();
     for _ in 0..2 {
         match session.run_inline(HiperdriveJob::Identify).unwrap() {
             HiperdriveOutput::Identity(identity) => {
@@ -130,7 +130,7 @@ fn a_recorded_trace_replays_the_devices_replies() {
 #[test]
 fn positions_of_the_watched_drive_are_read() {
     let mut stand = Stand::new("hub=4&drives=1,1&position=65536");
-    let position = |stand: &mut Stand| match stand.session.sample().unwrap() {
+    let position = |stand: &mut Stand| match stand.session.take_sample().unwrap() {
         Sample::Position(reading) => reading,
         other => panic!("{other:?}"),
     };
@@ -144,16 +144,18 @@ fn positions_of_the_watched_drive_are_read() {
 #[test]
 fn temperatures_are_watched_by_one_request_each() {
     let mut stand = Stand::new("hub=4&drives=1,1");
-    stand.session.sample().unwrap();
+    stand.session.take_sample().unwrap();
     let before = stand.requests().len();
     for (what, celsius) in [(Temperature::Device, 31), (Temperature::Drive(drive(2)), 25)] {
-        let Watched::Sample(Sample::Temperature(reading)) = stand.session.watch_value(&what).unwrap() else { panic!() };
+        let WatchReply::Sample(Sample::Temperature(reading)) = stand.session.watch_value(&what).unwrap() else {
+            panic!()
+        };
         assert_eq!((reading.what, reading.celsius), (what, Some(celsius)));
     }
     assert_eq!(stand.requests().len() - before, 2);
     let empty = stand.session.watch_value(&Temperature::Drive(drive(4))).unwrap();
     assert!(
-        matches!(empty, Watched::Refused(Sample::Temperature(reading)) if reading.celsius.is_none()),
+        matches!(empty, WatchReply::Refused(Sample::Temperature(reading)) if reading.celsius.is_none()),
         "an empty port is not asked again: {empty:?}"
     );
     assert!(stand.requests().iter().all(|request| request.service == Service::GET));
@@ -216,7 +218,7 @@ fn replies_are_timed_and_late_ones_distinguished_from_missing_ones() {
     let mut slow = Stand::new("fault=delay:300");
     let replies = slow.session.station().replies();
     slow.run(HiperdriveJob::Read(number(158))).unwrap();
-    let usual = replies.usual().unwrap();
+    let usual = replies.average().unwrap();
     assert!((300..400).contains(&usual.as_millis()) && replies.longest_reply_time() >= usual, "{usual:?}");
     let mut late = Stand::new("fault=delay:1300");
     let error = late.run(HiperdriveJob::Read(number(158))).unwrap_err();

@@ -102,7 +102,7 @@ impl ByteLink for Wire {
         Ok(())
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }

@@ -70,7 +70,7 @@ impl Stand {
     fn over(wire: Box<dyn ByteLink>, tap: Arc<Mutex<Tap>>, target: Target, clock: Arc<VirtualClock>) -> Self {
         let port = SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone());
         let folder = folder();
-        let store = Store::at(folder.path());
+        let store = Store::at_root(folder.path());
         let station = Station::new(MARGIN);
         let way = DeviceConnection { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
         let session = Session::for_target(way, clock.clone(), store);
@@ -119,7 +119,7 @@ impl Stand {
 
     /// Blocks the path of the logbook.
     pub(crate) fn block_logbook(&self) {
-        std::fs::create_dir_all(Store::at(self.folder.path()).logbook_path()).unwrap();
+        std::fs::create_dir_all(Store::at_root(self.folder.path()).logbook_path()).unwrap();
     }
 
     /// Returns a parameter as the device has it.

@@ -105,7 +105,7 @@ impl Model {
     pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: ActualValues, ended: Option<(u64, ActionEnd)>) {
         let out = self.outside(heard.position);
         let live = self.live.take().filter(|live| {
-            now.since(live.said) <= FRESH
+            now.duration_since(live.said) <= FRESH
                 && !heard.status.is_set(StatusBit::Fault)
                 && ended.is_none_or(|(number, _)| number < live.number)
         });

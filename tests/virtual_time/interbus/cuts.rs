@@ -138,7 +138,7 @@ fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
             // The cable is back: the encoder can be returned to its mode.
             *stand.tap() = Tap::default();
             stand.run(InterbusJob::LeadBack).unwrap();
-            assert!(stand.session.sample().unwrap().is_valid(), "{at}");
+            assert!(stand.session.take_sample().unwrap().is_valid(), "{at}");
             assert_eq!(stand.left().0, 0, "{at}");
         }
     }

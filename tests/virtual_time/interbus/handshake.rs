@@ -119,7 +119,7 @@ fn an_echo_equal_to_the_busy_word_must_last_longer() {
     let start = steps.iter().position(|step| step.out == 0x4000_0000).unwrap();
     let stop = steps.iter().position(|step| step.out == 0x6000_0000).unwrap();
     // Half of the patience.
-    assert!(steps[stop].at.since(steps[start].at).as_millis() >= 1000);
+    assert!(steps[stop].at.duration_since(steps[start].at).as_millis() >= 1000);
     // It was really busy, for 600 ms, and refuses then.
     let busy: Vec<u32> = std::iter::repeat_n(0xC000_0000, 120).chain([0x9800_0004]).collect();
     let interrupted = carry_out(Script::new().on(0x4000_0000, &busy), cams(0, 0, 0, 1)).0.unwrap_err();
@@ -216,7 +216,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let watched: Vec<u128> = steps
         .windows(2)
         .filter(|pair| pair[0].out == 0x4000_0015)
-        .map(|pair| pair[1].at.since(pair[0].at).as_millis())
+        .map(|pair| pair[1].at.duration_since(pair[0].at).as_millis())
         .collect();
     assert!(watched.len() == 3 && watched[0] >= 100 && watched[1] >= 200 && watched[2] >= 400, "{watched:?}");
     // It never accepts it.
@@ -264,7 +264,7 @@ fn a_preset_is_fired_until_the_position_matches() {
     let (ended, steps, sent) = carry_out(Script::new().on(0x4000_0000, &near), fire());
     assert!(ended.is_ok() && sent.ends_with(&[0x4000_0000, 0]), "{sent:08X?}");
     let at = |out| steps.iter().filter(|step| step.out == out).map(|step| step.at).next_back().unwrap();
-    assert!(at(0).since(at(0x4000_0000)).as_millis() >= 95);
+    assert!(at(0).duration_since(at(0x4000_0000)).as_millis() >= 95);
     // An encoder that does not accept it stays two steps away: the word is reported.
     let interrupted = carry_out(Script::new().on(0x4000_0000, &[POSITION]), fire()).0.unwrap_err();
     let missing =

@@ -26,7 +26,7 @@ fn reading_the_in_word_writes_nothing() {
         };
         assert_eq!((reading.word, reading.position(), reading.mode), (1024, Some(1024), None));
     }
-    assert_eq!(stand.session.sample().unwrap().word, 1024);
+    assert_eq!(stand.session.take_sample().unwrap().word, 1024);
     assert_eq!(stand.sent(), Vec::<u32>::new());
 }
 
@@ -46,7 +46,7 @@ fn identify_reads_out_and_returns_to_the_position() {
     let expected: Vec<u32> = numbers.into_iter().flat_map(|number| [0x2021_0000 + number, 0]).collect();
     assert_eq!(stand.sent(), expected);
     assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
-    let reading = stand.session.sample().unwrap();
+    let reading = stand.session.take_sample().unwrap();
     assert_eq!((reading.mode, reading.position()), (Some(K3), Some(1024)));
     assert!(reading.place().is_some_and(|place| (place.turns, place.degrees) == (0, 90.0)));
 }
@@ -135,7 +135,7 @@ fn a_selected_mode_is_kept() {
         // Requests in between do not change it.
         stand.run(InterbusJob::Identify).unwrap();
         assert_eq!(stand.left(), (0, mode));
-        let reading = stand.session.sample().unwrap();
+        let reading = stand.session.take_sample().unwrap();
         assert_eq!(reading.mode, Some(mode));
         match mode {
             StartupMode::Velocity => assert_eq!(reading.rpm(), Some(60)),
@@ -296,7 +296,7 @@ fn a_recorded_trace_replays_the_encoders_replies() {
     let path = stand.folder.path().join("words.trace");
     std::fs::write(&path, file).unwrap();
     let url = format!("replay:{}?cycle=1", path.display()).parse().unwrap();
-    let mut session = open(&url, Store::at(stand.folder.path())).unwrap();
+    let mut session = open(&url, Store::at_root(stand.folder.path())).unwrap();
     for _ in 0..2 {
         match session.run_inline(InterbusJob::Identify).unwrap() {
             InterbusOutput::Identity(identity) => assert_eq!(identity.serial_number, "4711"),

@@ -185,7 +185,7 @@ pub(crate) fn carry_out(
                 sent.lock().unwrap().clear()
             }
         };
-        write_plan(&Store::at(folder.path()), true, &commit, &mut write, begins)
+        write_plan(&Store::at_root(folder.path()), true, &commit, &mut write, begins)
     };
     let ended = match ended {
         Ok(done) => Ok(done.written),

@@ -47,12 +47,12 @@ impl Stand {
         let tap = Arc::<Mutex<Tap>>::default();
         let link = TestLink::new(Arc::new(Mutex::new(gateway.connection())), clock.clone(), tap.clone());
         let folder = folder();
-        let store = Store::at(folder.path());
+        let store = Store::at_root(folder.path());
         let motor = Some(gateway.shaft());
         let mut session = Session::for_gateway(Box::new(link), clock.clone(), station, store, motor);
         let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let watched = trace.clone();
-        session.watch(move |entry| watched.lock().unwrap().push(entry.clone()));
+        session.add_watcher(move |entry| watched.lock().unwrap().push(entry.clone()));
         Stand { gateway, clock, tap, trace, folder, session }
     }
 
@@ -60,13 +60,13 @@ impl Stand {
     pub(crate) fn run_again(&mut self) {
         self.tap = Arc::default();
         let link = TestLink::new(Arc::new(Mutex::new(self.gateway.connection())), self.clock.clone(), self.tap.clone());
-        let (store, motor) = (Store::at(self.folder.path()), Some(self.gateway.shaft()));
+        let (store, motor) = (Store::at_root(self.folder.path()), Some(self.gateway.shaft()));
         self.session = Session::for_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
     }
 
     /// Stores that the logbook has counted of encoder 77.
     pub(crate) fn counted(&self) -> u64 {
-        let logbook = Logbook::open(&Store::at(self.folder.path()).logbook_path()).unwrap();
+        let logbook = Logbook::open(&Store::at_root(self.folder.path()).logbook_path()).unwrap();
         let device = DeviceKey {
             kind: "interbus".to_owned(),
             device_type: "K3".to_owned(),

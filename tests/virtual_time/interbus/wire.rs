@@ -56,7 +56,7 @@ impl<F: FnMut(usize, &[u8]) -> Answer + Send> ByteLink for Gateway<F> {
         Ok(())
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }

@@ -67,7 +67,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
         assert_eq!((kept.gear().steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
         // The session knows the gear from then on.
-        assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
+        assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
         let backup = done.backup.unwrap();
         let document =
             ProfileDocument::parse(&read_text(&backup).unwrap(), encoder_studio::kinds::program().studio.formats)
@@ -138,7 +138,7 @@ fn a_preset_is_stored_and_fired_once_at_standstill() {
         assert_eq!(stand.sent().iter().filter(|word| **word == 0x4000_0000).count(), 1);
         assert_eq!(stand.left(), before);
         stand.run(InterbusJob::Select(StartupMode::K3)).unwrap();
-        assert_eq!(stand.session.sample().unwrap().position(), Some(1800));
+        assert_eq!(stand.session.take_sample().unwrap().position(), Some(1800));
     }
 }
 
@@ -162,7 +162,7 @@ fn the_default_is_set_and_then_read_back() {
     assert_eq!((done.written.ops, done.written.write_cycles, stand.stores()), (1, 1, before + 1));
     assert!(setting(&stand).contains(&0x0E00_0000));
     let delivered = stand.gateway.with_encoder(|encoder| encoder.memory().gear().steps());
-    assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(delivered));
+    assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.steps()), Some(delivered));
 }
 
 #[test]
@@ -260,7 +260,7 @@ fn the_logbook_counts_stores_by_serial_number() {
         assert_eq!(prepared.cycles_seen, Some(u64::from(value - 1)));
         stand.commit(prepared).unwrap();
     }
-    let logbook = Logbook::open(&Store::at(stand.folder.path()).logbook_path()).unwrap();
+    let logbook = Logbook::open(&Store::at_root(stand.folder.path()).logbook_path()).unwrap();
     let own = |serial_number: &str| DeviceKey {
         kind: "interbus".to_owned(),
         device_type: "K3".to_owned(),
@@ -321,7 +321,7 @@ fn steps_less_one_are_read_and_written_unchanged() {
     let prepared = stand.prepare(change);
     stand.commit(prepared).unwrap();
     assert_eq!(stand.gateway.with_encoder(|encoder| encoder.stored().gear().steps()), 720);
-    assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(720));
+    assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.steps()), Some(720));
 }
 
 /// A cancellation takes effect between two words; then the encoder runs again, in its original mode.
@@ -340,7 +340,7 @@ fn cancelling_leaves_a_running_encoder() {
         let prepared = stand.prepare(change);
         let consent = Consent::to(prepared.plan.id());
         let stores = stand.stores();
-        stand.session.set_cancel(CancelToken::after(after));
+        stand.session.set_cancel(CancelToken::after_transactions(after));
         let ended = stand.run(InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })));
         let spent = stand.stores() - stores;
         assert_eq!(stand.left(), (0, StartupMode::Cams(program(4))), "after {after}");
@@ -359,7 +359,7 @@ fn cancelling_leaves_a_running_encoder() {
             }
         }
         stand.session.set_cancel(CancelToken::default());
-        let reading = stand.session.sample().unwrap();
+        let reading = stand.session.take_sample().unwrap();
         assert!(reading.is_valid() && reading.cams().is_some(), "after {after}");
     }
     assert!(interrupted_ones > 10);
@@ -387,10 +387,10 @@ fn an_operation_reports_its_changes() {
 fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
         let mut stand = Stand::new(&format!("steps=8192&revolutions=1&serial=77&position=100&{faults}"));
-        assert_eq!(stand.session.sample().unwrap().position(), Some(100));
+        assert_eq!(stand.session.take_sample().unwrap().position(), Some(100));
         let prepared = stand.prepare(Change::Preset { value: preset });
         stand.commit(prepared).unwrap();
-        assert_eq!(stand.session.sample().unwrap().position(), Some(preset), "{faults}");
+        assert_eq!(stand.session.take_sample().unwrap().position(), Some(preset), "{faults}");
         assert_eq!(stand.left(), (0, StartupMode::K3));
     }
 }
@@ -412,14 +412,14 @@ fn an_encoder_with_lost_parameters_can_be_led_back_and_restored() {
         InterbusOutput::LedBack(mode) => assert_eq!(mode, StartupMode::K3),
         other => panic!("{other:?}"),
     }
-    assert_eq!((stand.session.sample().unwrap().word, stand.left()), (0x8600_0000, (0, StartupMode::K3)));
+    assert_eq!((stand.session.take_sample().unwrap().word, stand.left()), (0x8600_0000, (0, StartupMode::K3)));
     let begun = stand.elapsed();
     let prepared = stand.prepare(Change::Restore { profile, options: RestoreOptions::default() });
     let done = stand.commit(prepared).unwrap();
     assert_eq!(done.written.verified, done.written.written);
     let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
     assert_eq!((kept.gear().steps(), kept.gear().turns()), (360, 1));
-    assert!(stand.session.sample().unwrap().is_valid());
+    assert!(stand.session.take_sample().unwrap().is_valid());
     assert_eq!(stand.left(), (0, StartupMode::K3));
     assert!(stand.elapsed() - begun < Duration::from_secs(120), "{:?}", stand.elapsed() - begun);
 }

@@ -35,7 +35,7 @@ type Lines = Arc<Mutex<Vec<String>>>;
 fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     let lines = Lines::default();
     let kept = lines.clone();
-    session.watch(move |entry| {
+    session.add_watcher(move |entry| {
         let sign = if entry.direction == Direction::Sent { '>' } else { '<' };
         kept.lock().unwrap().push(format!("{sign} {}", entry.bytes));
     });

@@ -40,7 +40,7 @@ fn hello_reports_the_adapter_and_the_word_settings() {
     let counts = [Operation::Hello, Operation::Supply, Operation::SsiConfig].map(|own| stand.count(own));
     assert_eq!(counts, [1, 1, 1]);
     // Issue 22.16: a supply that was switched on is switched off at the end.
-    stand.session.leave();
+    stand.session.restore_state();
     assert_eq!(stand.count(Operation::Supply), 2);
 }
 

@@ -25,7 +25,7 @@ fn check(runs: &[Words]) {
         next = run.first + run.words.len() as u64;
         for (moment, word) in run.iter_with_times() {
             if let Some((earlier, from)) = before {
-                assert_eq!(moment.since(earlier), FAST);
+                assert_eq!(moment.duration_since(earlier), FAST);
                 assert!((20..=21).contains(&(word - from)), "{from} to {word}");
             }
             before = Some((moment, word));
@@ -59,7 +59,7 @@ fn short_polling_intervals_are_streamed() {
     assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start() && run.is_streamed()));
     // The last words may still be in transit.
     let words: usize = runs.iter().map(|run| run.words.len()).sum();
-    let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
+    let streamed = stand.clock.now().duration_since(runs[0].at).as_micros() as usize / 50;
     assert!(words > 50_000 && (streamed - 200..=streamed + 1).contains(&words), "{words} of {streamed}");
     assert_eq!((stand.count(Operation::SsiStream), stand.count(Operation::SsiRead)), (1, 0));
     stand.session.set_sample_interval(None);
@@ -124,14 +124,14 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     stand.session.set_sample_interval(Some(FAST));
     stand.sample();
     stand.tap.lock().unwrap().mute_from = Some(0);
-    let error = stand.session.sample().unwrap_err();
+    let error = stand.session.take_sample().unwrap_err();
     assert_eq!(error, Error::Adapter(AdapterError::Mute));
     stand.tap.lock().unwrap().mute_from = None;
     // HELLO ends the stream.
     assert!(stand.sample().is_stream_start());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
-    assert!(matches!(stand.session.sample(), Err(Error::Link(error)) if error.is_lost()));
+    assert!(matches!(stand.session.take_sample(), Err(Error::Link(error)) if error.is_lost()));
 }
 
 /// A reset ends the stream and clears supply and clock: the next job, or the next sample, detects it and continues.
@@ -147,7 +147,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
             stand.read();
         } else {
             // Data sent before still arrive.
-            let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
+            let error = (0..100).find_map(|_| stand.session.take_sample().err()).unwrap();
             assert_eq!(error, Error::Adapter(AdapterError::Mute));
         }
         assert!(stand.sample().is_stream_start());

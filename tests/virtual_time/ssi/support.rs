@@ -45,7 +45,7 @@ impl Stand {
         let tap = Arc::<Mutex<Tap>>::default();
         let wire = Box::new(TestLink::new(adapter.clone(), clock.clone(), tap.clone()));
         let station = Station::from_query(&link.parse().unwrap(), MARGIN).unwrap();
-        let session = Session::for_adapter(wire, clock.clone(), station, Store::at(folder.path()), None);
+        let session = Session::for_adapter(wire, clock.clone(), station, Store::at_root(folder.path()), None);
         Stand { clock, adapter, tap, session, _folder: folder }
     }
 
@@ -58,7 +58,7 @@ impl Stand {
     }
 
     pub(crate) fn sample(&mut self) -> Words {
-        self.session.sample().unwrap()
+        self.session.take_sample().unwrap()
     }
 
     /// Returns all samples within this time.

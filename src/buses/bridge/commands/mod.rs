@@ -1,6 +1,6 @@
 //! The virtual adapter of the command `simulate`.
 
 use crate::buses::bridge::sim::Adapter;
-use crate::cli::simulate::Simulated;
+use crate::cli::simulate::ServableDevice;
 
-impl Simulated for Adapter {}
+impl ServableDevice for Adapter {}

@@ -89,7 +89,7 @@ impl<S: Stretch> Producer for Bridge<S> {
     type Samples = S::Samples;
     type Error = BridgeError;
 
-    fn change(&mut self, wish: Infallible) {
+    fn apply_change(&mut self, wish: Infallible) {
         match wish {}
     }
 

@@ -7,11 +7,11 @@ use super::Open;
 use crate::buses::bridge::sim::{Adapter, AttachableKind};
 use crate::link::line::MARGIN;
 use crate::link::{Clock, LinkScheme, LinkUrl, UrlError};
-use crate::parameter::{OptionalValue, Parameters, Words};
+use crate::parameter::{Keywords, OptionalValue, ParameterGroup};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
-use crate::worker::open::{inside, open_byte_stream, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{connect_simulated, open_byte_stream, reply_margin, simulator_settings, wrong_target_error};
 
 /// Link parameter that selects the virtual adapter. Streams accept it, since sessions require it.
 const BRIDGE: &str = "bridge";
@@ -41,13 +41,13 @@ pub fn open_adapter(
     }
     let mut line = LinkParameters::KEYS.to_vec();
     if url.scheme == LinkScheme::Sim {
-        url.query.read(BRIDGE, &Words(&[("on", ())]))?;
+        url.query.read(BRIDGE, &Keywords(&[("on", ())]))?;
         line.push(BRIDGE);
     }
-    let adapter = Adapter::from_pairs(&simulated(url, &line, &[])?, devices)?;
+    let adapter = Adapter::from_pairs(&simulator_settings(url, &line, &[])?, devices)?;
     let late = LinkParameters::read(url.query.pairs())?.margin.unwrap_or(reply_margin(url.scheme));
     let url = url.clone();
-    let open = move || open_byte_stream(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
+    let open = move || open_byte_stream(&url, FORMAT, &clock, || Ok(connect_simulated(adapter, &clock)));
     Ok((late, Box::new(open)))
 }
 

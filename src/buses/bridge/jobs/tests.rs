@@ -13,7 +13,7 @@ use crate::kinds::attachable_kinds;
 use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
 use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
-use crate::worker::stream::{PATIENCE, Stream};
+use crate::worker::stream::{MAX_WAIT, Stream};
 
 const MARGIN: Duration = Duration::from_millis(20);
 
@@ -57,7 +57,7 @@ impl Stretch for RawFrames {
 
 impl<S: Stretch> Bench<S> {
     fn next(&mut self) -> Result<Option<Batch<S::Samples>>, BridgeError> {
-        self.bridge.next(&*self.clock, PATIENCE)
+        self.bridge.next(&*self.clock, MAX_WAIT)
     }
 
     /// Returns the batches received within this time.
@@ -133,15 +133,18 @@ fn samples_lost_by_a_stalled_consumer_are_counted() {
     let stream = Stream::spawn(bridge, 4_000, clock, Arc::new(|| ())).unwrap();
     // Virtual time runs as fast as the thread.
     let begun = std::time::Instant::now();
-    while stream.lost() < 100_000 {
+    while stream.lost_samples() < 100_000 {
         assert!(begun.elapsed() < Duration::from_secs(20));
         std::thread::sleep(Duration::from_millis(1));
     }
     stream.stop();
-    assert!(stream.end().wait(Duration::from_secs(20)));
-    let batches = stream.take();
+    assert!(stream.end_signal().wait_for_end(Duration::from_secs(20)));
+    let batches = stream.take_batches();
     let (there, lost) = count(&batches);
-    assert!(there <= 4_000 && there > 3_800 && lost == stream.lost() && batches[0].lost == lost, "{there}, {lost}");
+    assert!(
+        there <= 4_000 && there > 3_800 && lost == stream.lost_samples() && batches[0].lost == lost,
+        "{there}, {lost}"
+    );
     assert!(stream.take_error().is_none());
 }
 
@@ -290,7 +293,7 @@ fn a_requested_supply_is_switched_on_within_its_limit() {
             Ok(supplied) => {
                 let begun = bench.clock.now();
                 assert_eq!(bench.take(Duration::from_millis(1_100)).len(), 1);
-                assert!(bench.clock.now().since(begun) >= Duration::from_secs(1), "it has to start");
+                assert!(bench.clock.now().duration_since(begun) >= Duration::from_secs(1), "it has to start");
                 assert_eq!(bench.bridge.streaming().get().unwrap().supplied, Some(supplied));
                 requested.extend([Request::AnalogConfig { sample_hz: 50_000 }, Request::AnalogStream { on: true }]);
             }
@@ -380,7 +383,7 @@ impl ByteLink for UnpluggingLink {
         self.0.set_format(format)
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
+    fn check_connection(&mut self) -> Result<(), LinkError> {
         Ok(())
     }
 }
@@ -393,7 +396,7 @@ fn a_lost_or_missing_wire_is_reported() {
         let open: Open = Box::new(move || Ok(Box::new(UnpluggingLink(link, portions))));
         let stream =
             Stream::spawn(Bridge::new(SINE_COSINE, None, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
-        assert!(stream.end().wait(Duration::from_secs(20)));
+        assert!(stream.end_signal().wait_for_end(Duration::from_secs(20)));
         let error = stream.take_error();
         assert!(
             matches!(error, Some(BridgeError::Tap(AdapterStreamError::Link(error))) if error.is_lost()),
@@ -409,6 +412,6 @@ fn a_lost_or_missing_wire_is_reported() {
         Arc::new(|| ()),
     );
     let stream = stream.unwrap();
-    assert!(stream.end().wait(Duration::from_secs(20)));
+    assert!(stream.end_signal().wait_for_end(Duration::from_secs(20)));
     assert_eq!(stream.take_error().unwrap().to_string(), "/dev/nowhere: does not exist");
 }

@@ -156,7 +156,7 @@ impl SampleStream {
             adapter.line.receive(until.max(now), &mut bytes).map_err(LineError::Link)?;
             if !bytes.is_empty() {
                 adapter.adapter.receiver.push(&bytes);
-            } else if adapter.line.now().since(self.heard_at) > self.max_wait() {
+            } else if adapter.line.now().duration_since(self.heard_at) > self.max_wait() {
                 return Err(AdapterError::Mute.into());
             } else if adapter.line.now() >= until {
                 return Ok(None);

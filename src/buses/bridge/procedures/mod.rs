@@ -17,7 +17,7 @@ use crate::buses::bridge::protocol::{
 };
 use crate::expected::Quantity;
 use crate::link::line::{LineError, LineState, SerialLine};
-use crate::parameter::Whole;
+use crate::parameter::WholeNumbers;
 use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Chunk;
@@ -29,7 +29,7 @@ pub use tap::{AdapterStreamError, StreamRequest, Streaming, Tap};
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 
 /// Clock frequencies that may be requested. An adapter uses the nearest one that it supports.
-pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
+pub(crate) const CLOCK: WholeNumbers<u32> = WholeNumbers(Quantity::Hertz, 80_000..=10_000_000);
 
 /// Time after the deadline of a reply for which an adapter may still send other data before the reply counts as
 /// missing.
@@ -259,7 +259,7 @@ impl Adapter<'_, '_> {
         self.adapter.next_seq = seq.wrapping_add(1);
         let bytes = [before, &request.emit(seq).emit()].concat();
         let sent_at = self.line.now();
-        self.state.sent(sent_at);
+        self.state.mark_sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at).map_err(LineError::Link)?;
         let deadline = sent_at + REPEAT_AFTER + self.state.margin;
         let mut portion = Vec::new();
@@ -267,7 +267,7 @@ impl Adapter<'_, '_> {
             let broken = self.adapter.receiver.dropped_count();
             while let Some(packet) = self.adapter.receiver.next_packet() {
                 if let Some(reply) = self.judge(request, seq, &packet)? {
-                    self.state.answered();
+                    self.state.mark_replied();
                     self.state.record_answer_start(self.line.now());
                     return Ok(Some(TimedReply { reply, sent_at, received_at: self.line.now() }));
                 }

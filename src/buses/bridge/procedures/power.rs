@@ -1,6 +1,6 @@
 //! Encoder supply of an adapter that can switch it, at the start and at the end of a session.
 
-use crate::parameter::Words;
+use crate::parameter::Keywords;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfterSession {
@@ -15,7 +15,7 @@ pub enum SupplyAfterSession {
 impl SupplyAfterSession {
     /// Link parameter and value that leave the supply on after the session.
     pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
-    pub const WORDS: Words<SupplyAfterSession> = Words(&[
+    pub const WORDS: Keywords<SupplyAfterSession> = Keywords(&[
         ("as-found", SupplyAfterSession::AsFound),
         ("on", SupplyAfterSession::On),
         ("off", SupplyAfterSession::Off),
@@ -52,7 +52,7 @@ pub(crate) fn log_supply_failure(left: Result<(), impl std::fmt::Display>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameter::Values;
+    use crate::parameter::ParameterValues;
 
     /// The supply is switched off unless it was on before or another choice was made (issue 22.16).
     #[test]

@@ -18,7 +18,7 @@ use crate::buses::bridge::protocol::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
 };
 use crate::sim::line::TransitQueue;
-use crate::sim::sine_cosine::{Checked, Quantity, Settings};
+use crate::sim::sine_cosine::{CheckedSettings, Quantity, Settings};
 use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::{CharacterFormat, Moment};
 
@@ -97,7 +97,7 @@ impl Adapter {
         }
         adapter.switch_off();
         let rpm = adapter.motor().rpm();
-        adapter.analog = adapter.analog.with(Quantity::Speed, rpm);
+        adapter.analog = adapter.analog.with_value(Quantity::Speed, rpm);
         if let Some(uart) = &mut adapter.uart {
             uart.set_rpm(Moment::START, rpm);
         }
@@ -137,7 +137,7 @@ impl Adapter {
         if let Some(uart) = &mut self.uart {
             uart.set_rpm(self.now, rpm);
         }
-        if let (Some(stream), Ok(settings)) = (&mut self.sampled, self.analog.clone().checked()) {
+        if let (Some(stream), Ok(settings)) = (&mut self.sampled, self.analog.clone().validate()) {
             stream.change(self.now, settings);
         }
     }
@@ -274,7 +274,7 @@ impl Adapter {
                 Ok(Reply::BissStream { period_us })
             }
             Request::AnalogConfig { sample_hz } => {
-                let checked = self.analog.clone().with(Quantity::Rate, f64::from(sample_hz)).checked();
+                let checked = self.analog.clone().with_value(Quantity::Rate, f64::from(sample_hz)).validate();
                 self.analog = checked.map_err(|_| OUT_OF_RANGE)?.settings().clone();
                 let period_ns = self.analog.period_ns().unsigned_abs().max(1);
                 // The rate is at most a million.
@@ -283,7 +283,7 @@ impl Adapter {
                 Ok(Reply::AnalogConfig { sample_hz, full_scale_microvolt, bits: 16 })
             }
             Request::AnalogStream { on } => {
-                let settings: Checked = self.analog.clone().checked().map_err(|_| OUT_OF_RANGE)?;
+                let settings: CheckedSettings = self.analog.clone().validate().map_err(|_| OUT_OF_RANGE)?;
                 match (on, &self.sampled) {
                     (true, Some(_)) => return Err(STREAMING),
                     (true, None) => self.sampled = Some(SampledStream::new(self.now, settings)),
@@ -421,7 +421,7 @@ impl ByteDevice for Adapter {
         }
         let clocked = self.clocked.as_ref().map(ClockedStream::due);
         let sampled = self.sampled.as_ref().map(SampledStream::due);
-        [self.to_host.due(), clocked, sampled].into_iter().flatten().min()
+        [self.to_host.next_due(), clocked, sampled].into_iter().flatten().min()
     }
 
     /// Ignores the format, since a serial port over USB has no baud rate.

@@ -2,7 +2,7 @@
 
 use crate::buses::bridge::protocol::VERSION;
 use crate::expected::Quantity;
-use crate::parameter::{Decimal, Whole, Words};
+use crate::parameter::{DecimalNumbers, Keywords, WholeNumbers};
 use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults};
 
@@ -10,12 +10,12 @@ parameters! {
     /// Settings of a virtual adapter. By default, there are no faults, and the encoder has an external supply.
     pub(super) struct Config: ConfigError {
         pub(super) line: EncoderWiring = EncoderWiring::Good,
-            "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
+            "line" => Keywords(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
         /// Share of frames with an inverted bit.
-        pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
-        pub(super) switched_supply: bool = false, "supply" => Words(&[("external", false), ("switched", true)]);
+        pub(super) noise: f64 = 0.0, "noise" => DecimalNumbers(Quantity::DamagedFrames, 0.0..=1.0);
+        pub(super) switched_supply: bool = false, "supply" => Keywords(&[("external", false), ("switched", true)]);
         /// Version of the bridge protocol that the adapter reports.
-        pub(super) version: u8 = VERSION, "version" => Whole(Quantity::Version, 0..=255);
+        pub(super) version: u8 = VERSION, "version" => WholeNumbers(Quantity::Version, 0..=255);
     }
 }
 
@@ -48,12 +48,12 @@ pub(super) enum EncoderWiring {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameter::Parameters;
-    use crate::sim::setting::pairs;
+    use crate::parameter::ParameterGroup;
+    use crate::sim::setting::query_pairs;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        assert!(pairs(query).iter().all(|(key, _)| Config::KEYS.contains(&key.as_str())), "{query}");
-        Config::read(&pairs(query))
+        assert!(query_pairs(query).iter().all(|(key, _)| Config::KEYS.contains(&key.as_str())), "{query}");
+        Config::read(&query_pairs(query))
     }
 
     #[test]
@@ -61,8 +61,8 @@ mod tests {
         let config = read("line=low&noise=0.5&supply=switched&version=2").unwrap();
         assert_eq!(config, Config { line: EncoderWiring::Low, noise: 0.5, switched_supply: true, version: 2 });
         let faults = "drop:0.5".parse().unwrap();
-        assert_eq!(Shared::read(&pairs("seed=3&fault=drop:0.5")), Ok(Shared { seed: 3, faults }));
-        assert_eq!(Shaft::read(&pairs("rpm=-6")), Ok(Shaft { rpm: -6.0 }));
+        assert_eq!(Shared::read(&query_pairs("seed=3&fault=drop:0.5")), Ok(Shared { seed: 3, faults }));
+        assert_eq!(Shaft::read(&query_pairs("rpm=-6")), Ok(Shaft { rpm: -6.0 }));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::adapter::Adapter;
 use super::attached::{AttachableKind, AttachedDevice};
 use super::config::{Config, Shaft, Shared};
-use crate::parameter::{Entry, Parameters};
+use crate::parameter::{Entry, ParameterGroup};
 use crate::sim::{ConfigError, VirtualDevice};
 
 /// Returns the names of all settings. The settings of the adapter and of devices with few settings come first in
@@ -40,7 +40,7 @@ impl Adapter {
     pub fn from_pairs(pairs: &[(String, String)], devices: &[&dyn AttachableKind]) -> Result<Self, ConfigError> {
         let known = keys(devices);
         if let Some((key, _)) = pairs.iter().find(|(key, _)| !known.contains(&key.as_str())) {
-            return Err(ConfigError::unknown(VirtualDevice::Adapter, key, &known));
+            return Err(ConfigError::unknown_setting(VirtualDevice::Adapter, key, &known));
         }
         let (config, shared) = (Config::read(pairs)?, Shared::read(pairs)?);
         let shaft = if owns_shaft(devices) { Shaft::read(pairs)? } else { Shaft::default() };

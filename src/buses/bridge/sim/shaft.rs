@@ -16,7 +16,7 @@ pub(super) struct Shaft {
 
 impl Clone for Shaft {
     fn clone(&self) -> Self {
-        Shaft { motor: Motor::at(self.motor.rpm()), ..*self }
+        Shaft { motor: Motor::with_speed(self.motor.rpm()), ..*self }
     }
 }
 
@@ -27,7 +27,7 @@ impl Shaft {
 
     /// Creates a shaft that starts at zero and turns at the given speed.
     pub(super) fn turning(rpm: f64) -> Self {
-        Shaft { motor: Motor::at(rpm), rpm, since: Moment::START, revolutions: 0.0 }
+        Shaft { motor: Motor::with_speed(rpm), rpm, since: Moment::START, revolutions: 0.0 }
     }
 
     pub(super) const fn motor(&self) -> &Motor {
@@ -50,7 +50,7 @@ impl Shaft {
     }
 
     fn revolutions(&self, at: Moment) -> f64 {
-        let revolutions = self.revolutions + at.since(self.since).as_secs_f64() * self.rpm / 60.0;
+        let revolutions = self.revolutions + at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0;
         let revolutions = revolutions.rem_euclid(Self::TURNS);
         // `rem_euclid` may round up to the divisor.
         if revolutions < Self::TURNS { revolutions } else { 0.0 }

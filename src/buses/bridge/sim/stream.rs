@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::analysis::SampleTime;
 use crate::buses::bridge::protocol::{AnalogData, BissData, BissStatus, MAX_BODY, SsiData, StreamData};
-use crate::sim::sine_cosine::{Checked, Source};
+use crate::sim::sine_cosine::{CheckedSettings, Source};
 use crate::units::Moment;
 
 /// Maximum time to wait for a packet to fill.
@@ -50,7 +50,7 @@ impl Pace {
 
     /// Drops samples that are too old to be kept.
     fn skip(&mut self, to: Moment) {
-        let behind = to.since(self.due());
+        let behind = to.duration_since(self.due());
         if behind > BACKLOG {
             let packet = self.period.as_nanos().max(1) * u128::from(self.capacity);
             let packets = u64::try_from((behind - BACKLOG).as_nanos() / packet).unwrap_or(u64::MAX);
@@ -144,7 +144,7 @@ impl SampledStream {
     pub(super) const FULL_SCALE_MICROVOLT: u32 = 1_250_000;
     const HEAD: usize = 15;
 
-    pub(super) fn new(start: Moment, settings: Checked) -> Self {
+    pub(super) fn new(start: Moment, settings: CheckedSettings) -> Self {
         let period = Duration::from_nanos(settings.settings().period_ns().unsigned_abs());
         SampledStream {
             pace: Pace::new(start, period, Self::HEAD, 4),
@@ -156,10 +156,10 @@ impl SampledStream {
         self.pace.due()
     }
 
-    pub(super) fn change(&mut self, now: Moment, settings: Checked) {
-        let elapsed = now.since(self.pace.start).as_nanos();
+    pub(super) fn change(&mut self, now: Moment, settings: CheckedSettings) {
+        let elapsed = now.duration_since(self.pace.start).as_nanos();
         let index = elapsed.div_ceil(self.pace.period.as_nanos().max(1));
-        self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
+        self.source.change_settings(u64::try_from(index).unwrap_or(u64::MAX), settings);
     }
 
     /// Returns the packets that are complete at `to`, each with its time. An encoder without power sends no signals.
@@ -170,7 +170,7 @@ impl SampledStream {
             let at = self.pace.due();
             let count = usize::try_from(self.pace.capacity).unwrap_or(0);
             // A change in the past may have been forgotten. The packet is then empty, so the gap is visible.
-            let samples = self.source.samples(self.pace.first, count).map_or(Vec::new(), |wires| {
+            let samples = self.source.samples_from(self.pace.first, count).map_or(Vec::new(), |wires| {
                 wires
                     .sine_v()
                     .into_iter()

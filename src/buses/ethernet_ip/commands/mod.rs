@@ -11,7 +11,7 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::cli::Result;
 use crate::cli::args::DecodeArgs;
 use crate::cli::commands::ProtocolDecoder;
-use crate::cli::decode::{FrameExplanation, frames, show};
+use crate::cli::decode::{FrameExplanation, parse_frames, show};
 use crate::cli::output::{Output, count};
 
 pub(crate) struct DecodedBytes {
@@ -41,11 +41,11 @@ impl ProtocolDecoder for EthernetIpDecoder {
         "ethernet-ip"
     }
 
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "EtherNet/IP of any device"
     }
 
-    fn help(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "consecutive frames of a TCP stream, cyclic packets (UDP) or single CIP messages"
     }
 
@@ -63,7 +63,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
         };
         FrameExplanation { shown: hex(bytes), compact: hex_compact(bytes), meaning, more }
     };
-    let explained: Vec<FrameExplanation> = frames(words)?.iter().map(explain).collect();
+    let explained: Vec<FrameExplanation> = parse_frames(words)?.iter().map(explain).collect();
     show(output, &explained)
 }
 

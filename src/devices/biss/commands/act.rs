@@ -13,12 +13,12 @@ use super::plan::{CALIBRATION, change_lines, commit, operations, prepare, result
 use super::run::{Runner, registers};
 use crate::app::{KindRegistry, explain};
 use crate::cli::args::{ActionArgs, CommonArgs};
-use crate::cli::consent::{answer, ask, can_prompt, require_consent};
+use crate::cli::consent::{ask_yes_no, can_prompt, read_answer, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::profiles::{load_profile_to_write, print_write_result};
-use crate::cli::runner::{failed, unexpected_output};
-use crate::cli::{Done, Failure, Result, check};
+use crate::cli::runner::{to_failure, unexpected_output};
+use crate::cli::{Failure, Result, Success, check};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::procedures::procedure::Outcome;
 use crate::devices::biss::profile::{BissProfile, MotorSource, MountingSteps, PresetParts, RegisterRange};
@@ -72,7 +72,7 @@ fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     // have entered values that will be discarded.
     if !act.consent.yes
         && can_prompt()
-        && !ask("Values that were entered but not saved will be lost. Return the encoder to operation? [y/N] ")
+        && !ask_yes_no("Values that were entered but not saved will be lost. Return the encoder to operation? [y/N] ")
     {
         return Err(Failure::Failed(vec!["Not confirmed; the encoder was not changed.".to_owned()]));
     }
@@ -80,7 +80,7 @@ fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
         BissOutput::LedBack(mode) => {
             let text = format!("in operation, password cleared; it was in mode {mode}\n");
             output.show(&json!({"done": "lead-back", "mode": mode.byte()}), &text)?;
-            Ok(Done::Well)
+            Ok(Success::Well)
         }
         other => Err(unexpected_output(&other)),
     }
@@ -90,14 +90,14 @@ fn run_guided(common: &CommonArgs, output: &Output, act: &ActionArgs, run: Mount
     require_consent(&act.consent)?;
     let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };
     if act.consent.yes && run.calibrate {
-        output.remark(&format!("Calibration: {CALIBRATION}."));
+        output.print_message(&format!("Calibration: {CALIBRATION}."));
     }
     change(common, output, act, |_| Ok(Change::Guided { run, motor }))
 }
 
 fn motor(output: &Output, act: &ActionArgs) -> Result<MotorSource> {
     if act.consent.yes || !can_prompt() {
-        output.remark(
+        output.print_message(
             "With --yes, the motor is assumed to turn without this encoder. A run starts when direction and speed \
              are correct.",
         );
@@ -105,7 +105,7 @@ fn motor(output: &Output, act: &ActionArgs) -> Result<MotorSource> {
     }
     let question = "How is the motor driven?\n  1  without this encoder: by another motor, or in open loop\n  2  by \
                     a drive that uses this encoder as feedback\n1 or 2: ";
-    match answer(question).as_str() {
+    match read_answer(question).as_str() {
         "1" => Ok(MotorSource::Other),
         "2" => Ok(MotorSource::ThisEncoder),
         _ => Err(Failure::Failed(vec!["Not answered; nothing was done.".to_owned()])),
@@ -133,7 +133,7 @@ fn change(
     if outcomes.iter().all(passes) {
         Ok(done)
     } else {
-        Err(failed(&TEXTS.text("biss_cli.not_passed").with("what", name)))
+        Err(to_failure(&TEXTS.text("biss_cli.not_passed").with("what", name)))
     }
 }
 
@@ -178,7 +178,7 @@ fn mounting(output: &Output, words: &[&str]) -> Result<MountingSteps> {
 fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
     load_profile_to_write(output, file)?
         .into_profile()
-        .map_err(|error| failed(&explain::profile(file, &error, KindRegistry::NONE)))
+        .map_err(|error| to_failure(&explain::profile(file, &error, KindRegistry::NONE)))
 }
 
 fn place(text: &str) -> Result<PresetValue> {

@@ -49,7 +49,7 @@ fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
     };
     if !words.iter().any(|word| is_bits(word) || is_word(word)) {
         words.iter().try_for_each(|word| require_even_digit_count(word))?;
-        return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
+        return Ok(decode::parse_frames(words)?.into_iter().map(Captured::Bytes).collect());
     }
     let one = |word: &String| match digits(word) {
         _ if is_word(word) => position_word(word).map(|raw| Captured::Word(word.clone(), raw)),

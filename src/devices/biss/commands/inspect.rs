@@ -8,10 +8,10 @@ use super::run::{Runner, crc_errors, identity, read_registers, registers};
 use super::words;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{CommonArgs, Position};
-use crate::cli::output::{Lines, Output, say};
+use crate::cli::output::{Lines, Output, write_stderr};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected_output};
-use crate::cli::{Done, Result};
+use crate::cli::{Result, Success};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, RegisterValues};
 use crate::devices::biss::procedures::{
     Damage, Error, FlagRegister, FrameSource, Identity, PositionReading, Status, Transport,
@@ -42,7 +42,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "adapter": identity.adapter.as_ref().map(|hello| &hello.name),
     });
     output.show(&json, &identity_text(&identity, celsius))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 /// Returns the manufacturer as text. If the text is not printable, returns it as hexadecimal bytes.
@@ -72,19 +72,22 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     let (multiturn, singleturn) = (identity.layout.multiturn_bits(), identity.layout.singleturn_bits());
     let mut lines = Lines::default();
     lines
-        .add("encoder", identity.description.name())
-        .add("profile", format!("0x{:04X}", kind.profile.word()))
-        .add("manufacturer", manufacturer_text(identity))
-        .add("device ID", hex(&kind.device_id))
-        .add("serial number", if identity.serial_bytes.is_empty() { unknown() } else { serial(identity) })
-        .add("firmware", identity.firmware.map_or_else(unknown, |firmware| firmware.to_string()))
-        .add("position", format!("{multiturn} bits of turns, {singleturn} of steps, {frame}"))
-        .add("temperature", celsius.map_or_else(unknown, |celsius| format!("{celsius} °C")));
+        .add_line("encoder", identity.description.name())
+        .add_line("profile", format!("0x{:04X}", kind.profile.word()))
+        .add_line("manufacturer", manufacturer_text(identity))
+        .add_line("device ID", hex(&kind.device_id))
+        .add_line("serial number", if identity.serial_bytes.is_empty() { unknown() } else { serial(identity) })
+        .add_line("firmware", identity.firmware.map_or_else(unknown, |firmware| firmware.to_string()))
+        .add_line("position", format!("{multiturn} bits of turns, {singleturn} of steps, {frame}"))
+        .add_line("temperature", celsius.map_or_else(unknown, |celsius| format!("{celsius} °C")));
     if let Some(mismatch) = &identity.mismatch {
-        lines.add("note", mismatch);
+        lines.add_line("note", mismatch);
     }
     if let Some(hello) = &identity.adapter {
-        lines.add("adapter", format!("{}, serial number {}, firmware {}", hello.name, hello.serial, hello.firmware));
+        lines.add_line(
+            "adapter",
+            format!("{}, serial number {}, firmware {}", hello.name, hello.serial, hello.firmware),
+        );
     }
     lines.text()
 }
@@ -110,7 +113,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "filter": status.filter.map(words::filter),
     });
     output.show(&json, &status_text(&status))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn list(bits: &FlagRegister) -> Vec<Json> {
@@ -128,26 +131,26 @@ fn status_text(status: &Status) -> String {
     let mut lines = Lines::default();
     for (label, bits) in [("errors", &status.errors), ("warnings", &status.warnings)] {
         match bits {
-            None => lines.add(label, "not provided by this encoder"),
-            Some(bits) if bits.set.is_empty() => lines.add(label, "none"),
+            None => lines.add_line(label, "not provided by this encoder"),
+            Some(bits) if bits.set.is_empty() => lines.add_line(label, "none"),
             Some(bits) => {
                 let named = bits.set.iter().map(|(bit, name)| bit_text(*bit, name.as_ref().map(Name::english)));
-                lines.add(label, named.collect::<Vec<_>>().join(", "))
+                lines.add_line(label, named.collect::<Vec<_>>().join(", "))
             }
         };
     }
     if let Some(mode) = status.mode {
-        lines.add("mode", mode);
+        lines.add_line("mode", mode);
     }
     if let Some(celsius) = status.celsius {
-        lines.add("temperature", format!("{celsius} °C"));
+        lines.add_line("temperature", format!("{celsius} °C"));
     }
     if let Some(filter) = status.filter {
-        lines.add("filter", words::filter(filter));
+        lines.add_line("filter", words::filter(filter));
     }
     match &status.position {
-        None => lines.add("position", "none can be read"),
-        Some(reading) => lines.add("position", format!("{}{}", place(reading), flags(reading))),
+        None => lines.add_line("position", "none can be read"),
+        Some(reading) => lines.add_line("position", format!("{}{}", place(reading), flags(reading))),
     };
     lines.text()
 }
@@ -156,7 +159,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let mut runner = Runner::open(common)?;
     let over_biss = runner.kept == Transport::Adapter;
     if position.csv {
-        output.print("t_s,raw,turns,steps,degrees,valid,warning\n")?;
+        output.write_stdout("t_s,raw,turns,steps,degrees,valid,warning\n")?;
     }
     let (mut wrong, mut good_at) = (0, Instant::now());
     let ended = try_readings(
@@ -179,7 +182,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
             };
             (wrong, good_at) = (wrong + u64::from(reading.crc_errors), Instant::now());
             if position.csv {
-                output.print(&row(&reading))?
+                output.write_stdout(&row(&reading))?
             } else {
                 show(output, &reading)?
             }
@@ -187,7 +190,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
         },
     );
     if over_biss && (ended.is_ok() || wrong > 0) {
-        say(&format!("crc errors: {wrong}\n"));
+        write_stderr(&format!("crc errors: {wrong}\n"));
     }
     ended
 }
@@ -249,7 +252,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let identity = identity(&mut runner)?;
     let RegisterValues { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
     if let Some(mode) = unsaved {
-        output.remark(&explained::unsaved(mode).terminal_text());
+        output.print_message(&explained::unsaved(mode).terminal_text());
     }
     let meaning =
         identity.description.at(range.start()).and_then(|register| words::describe_register(register, range, &bytes));
@@ -263,5 +266,5 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     }
     let text = meaning.map_or_else(|| format!("{shown}\n"), |meaning| format!("{shown}  {meaning}\n"));
     output.show(&json, &text)?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }

@@ -19,9 +19,9 @@ use self::args::{BissAction, DoOptions};
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
 use crate::cli::args::{Command, CommonArgs, SimulateArgs};
-use crate::cli::commands::{CommandId, DeviceCommands, enum_values, options_of};
+use crate::cli::commands::{CommandId, DeviceCommands, arg_list, enum_values};
 use crate::cli::output::Output;
-use crate::cli::simulate::{Simulated, settings};
+use crate::cli::simulate::{ServableDevice, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::biss::profile::{ItemError, RegisterRange};
 use crate::devices::biss::protocol::KIND;
@@ -39,11 +39,11 @@ impl DeviceCommands for BissCommands {
         KIND
     }
 
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "POSITAL kit encoder or other BiSS C encoder, over UBICOM (serial:, tcp:) or an adapter (bridge:)"
     }
 
-    fn help(&self, command: CommandId) -> Option<String> {
+    fn command_help(&self, command: CommandId) -> Option<String> {
         let help = match command {
             CommandId::Read => {
                 "items: 0x66 (direct register, 0x40 to 0x7F), 0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (four consecutive \
@@ -69,12 +69,12 @@ impl DeviceCommands for BissCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Do => options_of::<DoOptions>(),
+            CommandId::Do => arg_list::<DoOptions>(),
             _ => Vec::new(),
         }
     }
 
-    fn actions(&self) -> Vec<PossibleValue> {
+    fn action_values(&self) -> Vec<PossibleValue> {
         enum_values::<BissAction>().into_iter().filter(|action| !is_combined(action)).collect()
     }
 
@@ -96,7 +96,7 @@ impl DeviceCommands for BissCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+    fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
         simulated(output, arguments)
     }
 }
@@ -105,7 +105,7 @@ fn is_combined(action: &PossibleValue) -> bool {
     BissAction::Mounting.to_possible_value().as_ref() == Some(action)
 }
 
-fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     let settings = settings(output, arguments)?;
     let known = bridge::keys(attachable_kinds());
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
@@ -119,8 +119,8 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simula
     })
 }
 
-impl Simulated for sim::UbicomPort {
-    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+impl ServableDevice for sim::UbicomPort {
+    fn line_format(&self, _now: Moment) -> Option<CharacterFormat> {
         Some(ubicom::FORMAT)
     }
 }

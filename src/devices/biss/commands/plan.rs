@@ -11,7 +11,7 @@ use crate::cli::Result;
 use crate::cli::args::ConsentArgs;
 use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
-use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary, warn};
+use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary, warn_not_logged};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Motion, Outcome, UnattendedOperator};
 use crate::devices::biss::procedures::write::Written;
@@ -43,14 +43,14 @@ pub(super) fn commit(
     }
     check_wear::<Biss>(consent, &prepared)?;
     if let Some(wear) = explained::wear(&prepared) {
-        output.remark(&wear.terminal_text());
+        output.print_message(&wear.terminal_text());
     }
     let text = shown(&prepared).text;
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let commit = Commit { agreed, attendance: OperatorPresence::Unattended(UnattendedOperator { patience }) };
     let committed =
         result_of!(runner.run(BissJob::Commit(Box::new(commit)))?, BissOutput::Committed(committed) => *committed);
-    warn(output, committed.logbook_warning.as_ref());
+    warn_not_logged(output, committed.logbook_warning.as_ref());
     let Written { written, verified, write_cycles, outcomes, .. } = committed.written;
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
@@ -58,7 +58,7 @@ pub(super) fn commit(
 /// Describes the plan as text and JSON, with the old and new value of each operation, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
-    PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
+    PlanReport::from_plan(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
 /// Returns the operations as JSON. Registers that are saved together have no separate cost.
@@ -68,7 +68,7 @@ pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
 
 /// Returns the operations with old and new values, one per line.
 pub(super) fn change_lines(plan: &BissPlan) -> String {
-    plan::lines(plan.ops.iter().flat_map(steps)).text()
+    plan::step_lines(plan.ops.iter().flat_map(steps)).text()
 }
 
 fn steps(op: &Op) -> Vec<PlanStep> {

@@ -13,7 +13,7 @@ use crate::cli::profiles::{
     UnrestoredItems, print_missing, print_skipped_mounting, profile_to_restore, restore_options, save_profile,
     write_restore,
 };
-use crate::cli::{Done, Result};
+use crate::cli::{Result, Success};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::DeviceMode;
@@ -27,11 +27,11 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     let (mode, unsaved) = (profile.recorded.device_mode, words::unsaved_profile_warning(&profile));
     save_profile(&save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
-        output.remark(&words.terminal_text());
+        output.print_message(&words.terminal_text());
     }
     let json = json!({"file": save.file, "banks": banks, "unsaved_in_mode": mode.map(DeviceMode::byte)});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(banks, "bank")))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 impl ProfileCommands for BissCommands {
@@ -41,7 +41,7 @@ impl ProfileCommands for BissCommands {
         let mut runner = Runner::open(common)?;
         let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = &prepared.other_type {
-            output.remark(&words::other_type(types).terminal_text());
+            output.print_message(&words::other_type(types).terminal_text());
         }
         print_missing(output, &prepared.missing);
         print_skipped_mounting(output, &prepared.mounting_left);
@@ -54,12 +54,12 @@ impl ProfileCommands for BissCommands {
     }
 
     /// Reads the encoder for a comparison. This is refused if its registers may show values that were never saved.
-    fn present(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
     }
 
     /// Returns the message that a profile was read in a device mode.
-    fn remark(&self, profile: &Body) -> Option<Text> {
+    fn profile_note(&self, profile: &Body) -> Option<Text> {
         words::profile_unsaved(profile.get()?)
     }
 

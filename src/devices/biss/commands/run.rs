@@ -3,8 +3,8 @@
 use super::BissCommands;
 use crate::app::TypeMap;
 use crate::cli::commands::DeviceCommands;
-use crate::cli::output::say;
-use crate::cli::runner::{self, Runs, unexpected_output};
+use crate::cli::output::write_stderr;
+use crate::cli::runner::{self, CliDevice, unexpected_output};
 use crate::cli::{Failure, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, RegisterValues};
 use crate::devices::biss::procedures::procedure::{ProcedureProgress, StepDetail};
@@ -16,11 +16,11 @@ use crate::worker::Session;
 
 pub(super) type Runner = runner::Runner<Biss>;
 
-impl Runs for Biss {
+impl CliDevice for Biss {
     type Context = Transport;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &TypeMap) -> Transport {
+    fn prepare_context(session: &mut Session<Self>, _given: &TypeMap) -> Transport {
         session.station().transport
     }
 
@@ -28,18 +28,20 @@ impl Runs for Biss {
         match remark {
             // These messages are counted and reported at the end.
             DeviceMessage::CrcErrors(_) => {}
-            remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal_text()))),
+            remark => {
+                words::remark(remark).iter().for_each(|text| write_stderr(&format!("{}\n", text.terminal_text())))
+            }
         }
     }
 
-    fn step(doing: &JobStep) -> String {
+    fn describe_step(doing: &JobStep) -> String {
         match doing {
             JobStep::Operation { progress: news, .. } => detail(news),
             other => other.to_string(),
         }
     }
 
-    fn announce(doing: &JobStep) -> Option<String> {
+    fn step_message(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, progress: news } => {
                 Some(format!("{item}: {}", words::step(news.step).terminal_text()))

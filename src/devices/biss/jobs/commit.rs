@@ -4,7 +4,7 @@ use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WE
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWriter;
 use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, Recorded};
-use crate::profile::{Body, ChangedItem, Unknown};
+use crate::profile::{Body, ChangedItem, UnknownValues};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
@@ -69,7 +69,7 @@ impl PlannedWrite for Prepared {
         let mut profile = BissProfile {
             identity: self.identity.profile(),
             filter: base.filter,
-            preset: base.preset.map(|value| PresetSetting { value, unknown: Unknown::new() }),
+            preset: base.preset.map(|value| PresetSetting { value, unknown: UnknownValues::new() }),
             recorded: Recorded::default(),
             mounting: Vec::new(),
             data: touched.filter(|image| image.all().next().is_some()).collect(),

@@ -22,7 +22,7 @@ mod tests {
     #[test]
     fn broken_descriptions_are_reported_with_file_and_line() {
         let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
+        let store = Store::at_root(root.path());
         assert_eq!(load_descriptions(&store), (Descriptions::built_in(), Vec::new()));
         let folder = store.device_folder(KIND);
         fs::create_dir_all(folder.join("folder.ron")).unwrap();

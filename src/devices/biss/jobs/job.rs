@@ -240,5 +240,5 @@ impl From<PlanError> for JobError {
 /// numbers are only unique within these.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     let (manufacturer, device) = (hex_compact(&identity.kind.manufacturer), hex_compact(&identity.kind.device_id));
-    DeviceKey::of(KIND, &format!("{manufacturer}-{device}"), &identity.serial_number, is_virtual)
+    DeviceKey::new(KIND, &format!("{manufacturer}-{device}"), &identity.serial_number, is_virtual)
 }

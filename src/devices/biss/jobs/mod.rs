@@ -31,7 +31,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, WatchReply};
 
 pub struct Biss {
     wire: Box<dyn ByteLink>,
@@ -55,7 +55,7 @@ impl fmt::Debug for Biss {
 
 impl Biss {
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
-        Master::new(context.ctx(&mut *self.wire), &mut self.station)
+        Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
     /// Identifies the encoder unless this session has already done so, since frame and registers depend on its
@@ -81,7 +81,7 @@ impl Session<Biss> {
     ) -> Self {
         let (types, broken) = load_descriptions(&store);
         let is_virtual = motor.is_some();
-        Session::with(
+        Session::from_device(
             Biss { wire, station, types: Arc::new(types), broken, motor, streamed_us: None },
             clock,
             store,
@@ -185,7 +185,7 @@ impl Device for Biss {
         }
     }
 
-    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         self.ensure_identified(context)?;
         if let Some(period_us) = self.streamed_us
             && let Some(run) = self.master(context).frames(period_us)?
@@ -195,13 +195,17 @@ impl Device for Biss {
         Ok(read_sample(&mut self.master(context))?)
     }
 
-    fn watch(&mut self, context: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
+    fn read_watched(
+        &mut self,
+        context: &mut SessionContext,
+        what: &RegisterRange,
+    ) -> Result<WatchReply<Sample>, JobError> {
         // Determines the data areas, which must not be read while the shaft turns.
         self.ensure_identified(context)?;
         let reading = read_watched_value(&mut self.master(context), *what)?;
         let refused = reading.value.is_err();
         let sample = Sample::Watched(reading);
-        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
+        Ok(if refused { WatchReply::Refused(sample) } else { WatchReply::Sample(sample) })
     }
 
     fn take_device_message(&mut self) -> Option<DeviceMessage> {
@@ -211,11 +215,11 @@ impl Device for Biss {
         Some(self.station.take_crc_errors()).filter(|count| *count > 0).map(DeviceMessage::CrcErrors)
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.wire.check_connection()
     }
 
-    fn leave(&mut self, context: &mut SessionContext) {
+    fn restore_state(&mut self, context: &mut SessionContext) {
         log_supply_failure(self.master(context).leave_supply());
     }
 }

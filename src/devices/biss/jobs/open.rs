@@ -8,10 +8,10 @@ use crate::devices::biss::procedures::{Echo, Station, Transport};
 use crate::devices::biss::sim::{Config, UbicomPort};
 use crate::kinds::attachable_kinds;
 use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock, UrlError, UrlQuery};
-use crate::parameter::Words;
+use crate::parameter::Keywords;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, open_byte_stream, reply_margin, wrong_target_error};
+use crate::worker::open::{check_parameters, connect_simulated, open_byte_stream, reply_margin, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Link parameter that selects an adapter for schemes that do not imply one.
@@ -67,7 +67,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
 }
 
 fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
-    const WAYS: Words<Transport> = Words(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
+    const WAYS: Keywords<Transport> = Keywords(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
         LinkScheme::Bridge => Ok(Transport::Adapter),
         LinkScheme::Serial | LinkScheme::Tcp => Ok(Transport::ConfigPin),
@@ -92,7 +92,7 @@ fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlE
     let elsewhere = own(other).into_iter().filter(|name| !known.contains(name));
     let elsewhere = elsewhere.map(|name| format!("{name} ({BRIDGE}={switch})"));
     let known: Vec<String> = known.iter().map(ToString::to_string).chain(elsewhere).collect();
-    Err(UrlError::Unknown { name, scheme: LinkScheme::Sim.word(), known: known.join(", ") })
+    Err(UrlError::Unknown { name, scheme: LinkScheme::Sim.keyword(), known: known.join(", ") })
 }
 
 /// A virtual encoder created from its parameters, connected to the configuration pin or an adapter.
@@ -114,11 +114,11 @@ impl Simulated {
             Simulated::Pin(config) => {
                 let port = UbicomPort::new(&config);
                 let motor = port.encoder().motor();
-                (inside(port, clock), Some(motor))
+                (connect_simulated(port, clock), Some(motor))
             }
             Simulated::Bus(adapter) => {
                 let motor = adapter.motor();
-                (inside(*adapter, clock), Some(motor))
+                (connect_simulated(*adapter, clock), Some(motor))
             }
         }
     }

@@ -44,7 +44,7 @@ pub(super) fn add_error_flags(master: &mut Master<'_>, reading: PositionReading)
             looked_at: now,
             errors_last: false,
         },
-        Some(flags) if now.since(flags.looked_at) < EVERY => flags,
+        Some(flags) if now.duration_since(flags.looked_at) < EVERY => flags,
         Some(flags) if flags.errors_last => {
             Flags { warning: is_set(master, Role::Warnings)?, looked_at: now, errors_last: false, ..flags }
         }

@@ -14,7 +14,7 @@ use crate::devices::biss::protocol::{
     Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
     RegisterAddress, Role, eds_layout,
 };
-use crate::profile::Unknown;
+use crate::profile::UnknownValues;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
@@ -88,7 +88,7 @@ impl Identity {
             description: self.description.name().to_owned(),
             multiturn_bits: self.multiturn_bits(),
             singleturn_bits: self.singleturn_bits(),
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         }
     }
 

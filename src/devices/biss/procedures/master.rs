@@ -20,7 +20,7 @@ use super::{Error, Station, Transport};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, byte_order_from_reply};
 use crate::devices::biss::protocol::{Description, RegisterAddress};
 use crate::link::Ctx;
-use crate::link::line::{SerialLine, TRIES};
+use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
 /// Number of missing replies after which a register is considered missing, if another register replies. A single reply
@@ -275,7 +275,7 @@ impl<'a> Master<'a> {
         mut once: impl FnMut(&mut Self) -> Attempt<u8>,
     ) -> Result<u8, Error> {
         let mut value = self.ask(requested, &mut once)?;
-        for _ in 0..TRIES {
+        for _ in 0..MAX_ATTEMPTS {
             if !self.station.needs_double_read() {
                 return Ok(value);
             }
@@ -285,7 +285,7 @@ impl<'a> Master<'a> {
             }
             value = again;
         }
-        Err(Error::Damaged { requested, tries: TRIES, cause: Damage::Inconsistent })
+        Err(Error::Damaged { requested, tries: MAX_ATTEMPTS, cause: Damage::Inconsistent })
     }
 
     fn failed(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {

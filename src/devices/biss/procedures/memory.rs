@@ -11,7 +11,7 @@ use super::write::non_operational_mode;
 use super::{Error, Master, PositionReading, Survey};
 use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
 use crate::devices::biss::protocol::{Area, Descriptions, DeviceMode, RegisterAddress};
-use crate::profile::Unknown;
+use crate::profile::UnknownValues;
 
 /// Number of position readings for detecting standstill.
 const READINGS: usize = 3;
@@ -71,7 +71,7 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     // The shorter way is used.
     let steps = (steps + range / 2).rem_euclid(range) - range / 2;
     let turns = steps as f64 / f64::powi(2.0, first.singleturn_bits.into());
-    let minutes = last.at.since(first.at).as_secs_f64() / 60.0;
+    let minutes = last.at.duration_since(first.at).as_secs_f64() / 60.0;
     (minutes > 0.0).then(|| turns / minutes)
 }
 
@@ -184,7 +184,7 @@ pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceM
     let mut profile = BissProfile {
         identity: identity.profile(),
         filter: survey.status.filter,
-        preset: survey.preset.map(|value| PresetSetting { value, unknown: Unknown::new() }),
+        preset: survey.preset.map(|value| PresetSetting { value, unknown: UnknownValues::new() }),
         recorded: Recorded {
             eds: sheets.map(|sheet| ListedBank::from(Bank { number: sheet.bank, bytes: sheet.bytes })).collect(),
             wiegand_last: survey.wiegand_last,
@@ -192,7 +192,7 @@ pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceM
             wiegand_saved: survey.wiegand_saved,
             calibration_status: survey.calibration.map(|status| status.byte()),
             device_mode: unsaved,
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         },
         mounting: Vec::new(),
         data,

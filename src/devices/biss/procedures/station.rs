@@ -15,24 +15,26 @@ use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout,
 use crate::expected::{AllowedValues, Quantity};
 use crate::link::line::{Echo, LineState, MARGIN};
 use crate::link::{UrlError, UrlQuery};
-use crate::parameter::{Checked, Milliseconds, Millivolts, OptionalValue, Parameters, Refused, Whole, Words};
+use crate::parameter::{
+    CustomNotation, Keywords, Milliseconds, Millivolts, OptionalValue, ParameterGroup, RejectedParameter, WholeNumbers,
+};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
 /// Words for the byte order of register numbers. `None` means that the order is detected.
-pub const ORDERS: Words<Option<ByteOrder>> =
-    Words(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
+pub const ORDERS: Keywords<Option<ByteOrder>> =
+    Keywords(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
 parameters! {
     /// Link parameters of the configuration pin.
     pub struct PinParameters: UrlError {
         /// Baud rate of the serial port. The port may support fewer rates.
-        pub baud: Baud = FORMAT.baud, "baud" => Checked(AllowedValues::BitRate { low: 300, high: 4_000_000 }, read_baud),
+        pub baud: Baud = FORMAT.baud, "baud" => CustomNotation(AllowedValues::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
-        pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
+        pub parity: Parity = FORMAT.parity, "parity" => Parity::KEYWORDS;
         /// Byte order of register numbers, or `None` to detect it.
         pub order: Option<ByteOrder> = None, "order" => ORDERS;
-        pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
+        pub echo: Echo = Echo::Unknown, "echo" => Echo::KEYWORDS;
         /// Time limit for a reply, not counting transmission time and the margin.
         pub timeout: Duration = REPLY_TIME_OUT, "timeout" => Milliseconds(1..=10_000);
     }
@@ -60,11 +62,11 @@ parameters! {
 parameters! {
     /// Link parameters for the frame of an encoder that does not report its layout.
     pub struct FrameParameters: UrlError {
-        pub multiturn: Option<u8> = None, "mt" => OptionalValue(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
-        pub singleturn: Option<u8> = None, "st" => OptionalValue(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
+        pub multiturn: Option<u8> = None, "mt" => OptionalValue(WholeNumbers(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
+        pub singleturn: Option<u8> = None, "st" => OptionalValue(WholeNumbers(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
         /// Checksum of the frames, if given. `Some(None)` means that frames have no checksum.
         pub crc: Option<Option<Crc>> = None,
-            "crc" => OptionalValue(Checked(AllowedValues::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
+            "crc" => OptionalValue(CustomNotation(AllowedValues::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
     }
 }
 
@@ -278,8 +280,8 @@ impl fmt::Display for Station {
 
 impl FrameParameters {
     /// Returns the frame layout given in the link. The usual checksum is used unless another is given.
-    fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, Refused> {
-        let alone = |name: &str, allowed| Refused::new(name, query.get(name).unwrap_or_default(), allowed);
+    fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, RejectedParameter> {
+        let alone = |name: &str, allowed| RejectedParameter::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
             let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
             return other.map_or(Ok(None), |name| Err(alone(name, AllowedValues::OnlyWith("st"))));

@@ -3,7 +3,7 @@
 use super::{Bank, BissProfile, RegisterRange};
 use crate::bits::hex_compact;
 use crate::devices::biss::protocol::RegisterAddress;
-use crate::profile::difference::runs;
+use crate::profile::difference::differing_ranges;
 use crate::profile::{Comparison, Difference};
 
 /// Compares the filter, the preset value and the data areas. Recorded values are not compared.
@@ -35,7 +35,7 @@ fn compare_bytes(item: &str, left: Option<Vec<u8>>, right: Option<Vec<u8>>, comp
     };
     comparison.compared += left.len() as u64;
     let Ok(all) = item.parse::<RegisterRange>() else { return };
-    for run in runs(&left, &right) {
+    for run in differing_ranges(&left, &right) {
         let part = |side: &[u8]| hex_compact(side.get(run.clone()).unwrap_or_default());
         let addresses = all.addresses().skip(run.start).take(run.len());
         let item = RegisterRange::runs(addresses).first().map(ToString::to_string).unwrap_or_default();
@@ -72,7 +72,7 @@ mod tests {
         assert_eq!(listed(&comparison), expected);
         // One filter, six registers of the preset value, 64 banks.
         assert_eq!(comparison.compared, 1 + 6 + 64 * 64);
-        assert_eq!(comparison.missing(), Vec::<String>::new());
+        assert_eq!(comparison.one_sided_items(), Vec::<String>::new());
         assert_eq!(compare(&right, &right).differences, []);
     }
 

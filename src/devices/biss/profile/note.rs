@@ -13,12 +13,14 @@ impl Op {
         vec![match self {
             Op::StoreData { area, registers } => {
                 let ranges = RegisterRange::runs(registers.iter().map(|change| change.address)).into_iter();
-                return ranges.map(|range| range_item(range, registers).named(area.name.english())).collect();
+                return ranges
+                    .map(|range| range_item(range, registers).with_manual_name(area.name.english()))
+                    .collect();
             }
             Op::StorePreset { from, to } => {
-                ChangedItem::new(self.item(), Some(place(*from)), Some(place(*to))).named("preset value")
+                ChangedItem::new(self.item(), Some(place(*from)), Some(place(*to))).with_manual_name("preset value")
             }
-            Op::FirePreset { parts, value } => ChangedItem::set(
+            Op::FirePreset { parts, value } => ChangedItem::new_value(
                 "position",
                 match parts {
                     PresetParts::Both => place(*value),
@@ -28,14 +30,14 @@ impl Op {
             ),
             Op::SelectFilter { from, to } => {
                 let [old, new] = [from, to].map(|own| Some(filter(*own).to_owned()));
-                ChangedItem::new(self.item(), old, new).named("filter")
+                ChangedItem::new(self.item(), old, new).with_manual_name("filter")
             }
             Op::Calibrate | Op::WiegandTest { save: false } => ChangedItem::new(self.item(), None, None),
-            Op::WiegandTest { save: true } => ChangedItem::set(self.item(), "result saved"),
+            Op::WiegandTest { save: true } => ChangedItem::new_value(self.item(), "result saved"),
             Op::WriteRegister { address, old, new, .. } => {
                 let item = ChangedItem::new(address, old.map(byte), Some(byte(*new)));
                 match description.at(*address) {
-                    Some(register) => item.named(&register.name),
+                    Some(register) => item.with_manual_name(&register.name),
                     None => item,
                 }
             }

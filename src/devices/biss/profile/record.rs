@@ -7,7 +7,7 @@ use super::RegisterRange;
 use crate::devices::biss::protocol::{
     Area, DeviceMode, Firmware, Identity, PositionFilter, PresetValue, ProfileId, RegisterAddress, WiegandResult,
 };
-use crate::profile::ron_text::Unknown;
+use crate::profile::ron_text::UnknownValues;
 
 /// The profile of a BiSS encoder.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,7 @@ pub struct ProfileIdentity {
     /// Singleturn width in bits, if known.
     pub singleturn_bits: Option<u8>,
     /// Profile entries unknown to this program.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// The preset value stored in an encoder.
@@ -55,7 +55,7 @@ pub struct PresetSetting {
     /// Stored preset value.
     pub value: PresetValue,
     /// Profile entries unknown to this program.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// The values in a profile that the encoder changes by itself, or that cannot be written.
@@ -75,7 +75,7 @@ pub struct Recorded {
     /// contain values that were never saved in the encoder.
     pub device_mode: Option<DeviceMode>,
     /// Profile entries unknown to this program.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// A mark on an item that is only valid for one encoder on one motor.
@@ -119,7 +119,7 @@ pub struct ListedBank {
     /// Number and contents of the bank.
     pub bank: Bank,
     /// Profile entries unknown to this program.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// The contents of a data area. Banks with the same byte in every register need not be listed.
@@ -136,7 +136,7 @@ pub struct DataImage {
     /// Listed banks in ascending order.
     pub listed: Vec<ListedBank>,
     /// Profile entries unknown to this program.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 impl BissProfile {
@@ -153,7 +153,7 @@ impl BissProfile {
         let known = [(preset, "preset value"), (calibration, "singleturn calibration: it stays in the encoder")];
         for (item, meaning) in known {
             let Some(item) = item.filter(|item| self.mounting.iter().all(|mark| mark.item != *item)) else { continue };
-            self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: Unknown::new() });
+            self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: UnknownValues::new() });
         }
     }
 
@@ -225,7 +225,7 @@ impl Bank {
 
 impl From<Bank> for ListedBank {
     fn from(bank: Bank) -> Self {
-        ListedBank { bank, unknown: Unknown::new() }
+        ListedBank { bank, unknown: UnknownValues::new() }
     }
 }
 
@@ -245,7 +245,7 @@ impl DataImage {
             last: area.last,
             empty,
             listed: banks.into_iter().filter(holds).map(ListedBank::from).collect(),
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         }
     }
 

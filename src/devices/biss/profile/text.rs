@@ -9,28 +9,28 @@ use crate::devices::biss::protocol::{
     self, DeviceMode, Firmware, PositionFilter, PresetValue, ProfileId, WiegandResult,
 };
 use crate::expected::AllowedValues;
-use crate::profile::mounting::NEVER_BY_ITSELF;
-use crate::profile::ron_text::{Entries, Writer, quoted};
+use crate::profile::mounting::MOUNTING_COMMENT;
+use crate::profile::ron_text::{Entries, Writer, quote};
 use crate::profile::{Comparison, Profile, ProfileError};
 
 /// Range of each part of a preset value. A part occupies three registers.
-const PRESET_NUMBER: AllowedValues = AllowedValues::between(0, 16_777_215);
+const PRESET_NUMBER: AllowedValues = AllowedValues::whole_range(0, 16_777_215);
 
 impl Profile for BissProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let identity = read_identity(entries.structure("identity")?)?;
+        let identity = read_identity(entries.take_structure("identity")?)?;
         let filter = entries.take_optional("filter", AllowedValues::Byte)?.map(PositionFilter::from_byte);
         let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("0x24:0x10+3"), parse_mounting_item)?;
         let mut data: Vec<DataImage> = Vec::new();
         for entries in entries.required_structures("data")? {
-            let path = entries.path_of("banks");
+            let path = entries.entry_path("banks");
             let image = read_image(entries)?;
             if let Some(other) = data.iter().find(|other| other.first <= image.last && image.first <= other.last) {
-                return Err(ProfileError::refused(path, EntryError::Twice(image.first.max(other.first))));
+                return Err(ProfileError::invalid_entry(path, EntryError::Twice(image.first.max(other.first))));
             }
             data.push(image);
         }
@@ -49,7 +49,7 @@ impl Profile for BissProfile {
             writer.entry("filter", &format!("0x{:02X}", filter.byte()), name);
         }
         if let Some(preset) = &self.preset {
-            writer.comment("stored, never carried out by a restore");
+            writer.write_comment("stored, never carried out by a restore");
             writer.open("preset", '(');
             let degrees = self.identity.singleturn_bits.map(|bits| {
                 let revolution = f64::powi(2.0, bits.into());
@@ -57,11 +57,11 @@ impl Profile for BissProfile {
             });
             writer.entry("singleturn", &preset.value.singleturn().to_string(), &degrees.unwrap_or_default());
             writer.entry("multiturn", &preset.value.multiturn().to_string(), "");
-            writer.unknown(&preset.unknown);
+            writer.write_unknown(&preset.unknown);
             writer.close(')');
         }
         self.recorded.write(writer);
-        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
+        MountingMark::write_all(&self.mounting, MOUNTING_COMMENT, writer);
         writer.open("data", '[');
         for image in &self.data {
             image.write(writer);
@@ -80,8 +80,8 @@ impl BissProfile {
         writer.open("identity", '(');
         writer.text("serial_number", &identity.serial_number);
         writer.entry("profile_id", &format!("0x{:04X}", identity.profile_id.word()), "");
-        writer.entry("device_id", &quoted(&hex(&identity.device_id)), "");
-        writer.entry("manufacturer", &quoted(&hex(&identity.manufacturer)), &printable(&identity.manufacturer));
+        writer.entry("device_id", &quote(&hex(&identity.device_id)), "");
+        writer.entry("manufacturer", &quote(&hex(&identity.manufacturer)), &printable(&identity.manufacturer));
         if let Some(firmware) = identity.firmware {
             writer.text("firmware", &firmware.to_string());
         }
@@ -92,19 +92,19 @@ impl BissProfile {
                 writer.entry(name, &bits.to_string(), "");
             }
         }
-        writer.unknown(&identity.unknown);
+        writer.write_unknown(&identity.unknown);
         writer.close(')');
     }
 }
 
 impl Recorded {
     fn write(&self, writer: &mut Writer) {
-        writer.comment("recorded, neither compared nor restored");
+        writer.write_comment("recorded, neither compared nor restored");
         writer.open("recorded", '(');
         let results =
             [("last", self.wiegand_last), ("production", self.wiegand_production), ("saved", self.wiegand_saved)];
         if results.iter().any(|(_, result)| result.is_some()) {
-            writer.comment("tenths of a volt: average, average - 4σ clockwise; the same counterclockwise");
+            writer.write_comment("tenths of a volt: average, average - 4σ clockwise; the same counterclockwise");
             for (name, result) in results {
                 let Some(result) = result else { continue };
                 let numbers = result.emit().map(|tenths| tenths.to_string()).join(", ");
@@ -122,7 +122,7 @@ impl Recorded {
             self.eds.iter().for_each(|listed| write_bank(writer, listed));
             writer.close(']');
         }
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
@@ -138,7 +138,7 @@ impl DataImage {
         writer.open("listed", '[');
         self.listed.iter().for_each(|listed| write_bank(writer, listed));
         writer.close(']');
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
@@ -147,7 +147,7 @@ fn write_bank(writer: &mut Writer, listed: &ListedBank) {
     writer.open("", '(');
     writer.entry("bank", &format!("0x{:02X}", listed.bank.number), "");
     writer.bytes("bytes", &listed.bank.bytes);
-    writer.unknown(&listed.unknown);
+    writer.write_unknown(&listed.unknown);
     writer.close(')');
 }
 
@@ -156,13 +156,13 @@ fn printable(bytes: &[u8]) -> String {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let firmware = match entries.take_optional::<String>("firmware", AllowedValues::TextSuchAs("1.6.0"))? {
-        None => None,
-        Some(text) => Some(
-            read_firmware(&text)
-                .ok_or_else(|| ProfileError::refused(entries.path_of("firmware"), EntryError::Release(text)))?,
-        ),
-    };
+    let firmware =
+        match entries.take_optional::<String>("firmware", AllowedValues::TextSuchAs("1.6.0"))? {
+            None => None,
+            Some(text) => Some(read_firmware(&text).ok_or_else(|| {
+                ProfileError::invalid_entry(entries.entry_path("firmware"), EntryError::Release(text))
+            })?),
+        };
     let device_id = read_array(&mut entries, "device_id")?;
     let manufacturer = read_array(&mut entries, "manufacturer")?;
     Ok(ProfileIdentity {
@@ -174,7 +174,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
         description: entries.take_optional("description", AllowedValues::Text)?.unwrap_or_default(),
         multiturn_bits: entries.take_optional("multiturn_bits", AllowedValues::Byte)?,
         singleturn_bits: entries.take_optional("singleturn_bits", AllowedValues::Byte)?,
-        unknown: entries.rest()?,
+        unknown: entries.into_unknown()?,
     })
 }
 
@@ -187,22 +187,22 @@ fn read_firmware(text: &str) -> Option<Firmware> {
 }
 
 fn read_array<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
-    let path = entries.path_of(name);
+    let path = entries.entry_path(name);
     let bytes = entries.bytes(name)?.ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
     let length = EntryError::Length { got: bytes.len(), expected: N };
-    bytes.try_into().map_err(|_| ProfileError::refused(path, length))
+    bytes.try_into().map_err(|_| ProfileError::invalid_entry(path, length))
 }
 
 fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
     let mut number = |name| {
         let number: u32 = entries.take_required(name, PRESET_NUMBER)?;
         let fits = PresetValue::new(number, 0).is_some();
-        let path = entries.path_of(name);
+        let path = entries.entry_path(name);
         if fits { Ok(number) } else { Err(ProfileError::Shape { path, expected: PRESET_NUMBER }) }
     };
     let (singleturn, multiturn) = (number("singleturn")?, number("multiturn")?);
     let value = PresetValue::new(singleturn, multiturn).unwrap_or_default();
-    Ok(PresetSetting { value, unknown: entries.rest()? })
+    Ok(PresetSetting { value, unknown: entries.into_unknown()? })
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
@@ -216,8 +216,8 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
         wiegand_saved: result("wiegand_saved")?,
         calibration_status: entries.take_optional("calibration_status", AllowedValues::Byte)?,
         device_mode: entries.take_optional("device_mode", AllowedValues::Byte)?.map(DeviceMode::new),
-        eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
-        unknown: entries.rest()?,
+        eds: entries.take_structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
+        unknown: entries.into_unknown()?,
     })
 }
 
@@ -232,31 +232,31 @@ fn parse_mounting_item(text: &str) -> Result<MountingItem, EntryError> {
 fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
     let (first, last): (u8, u8) = entries.take_required("banks", AllowedValues::Banks)?;
     if first > last {
-        return Err(ProfileError::refused(entries.path_of("banks"), EntryError::Order { first, last }));
+        return Err(ProfileError::invalid_entry(entries.entry_path("banks"), EntryError::Order { first, last }));
     }
     let mut listed: Vec<ListedBank> = Vec::new();
-    for entries in entries.structures("listed")? {
-        let path = entries.path_of("bank");
+    for entries in entries.take_structures("listed")? {
+        let path = entries.entry_path("bank");
         let own = read_bank(entries)?;
         let number = own.bank.number;
         if !(first..=last).contains(&number) {
-            return Err(ProfileError::refused(path, EntryError::Outside { bank: number, first, last }));
+            return Err(ProfileError::invalid_entry(path, EntryError::Outside { bank: number, first, last }));
         }
         if listed.iter().any(|other| other.bank.number == number) {
-            return Err(ProfileError::refused(path, EntryError::Twice(number)));
+            return Err(ProfileError::invalid_entry(path, EntryError::Twice(number)));
         }
         listed.push(own);
     }
     listed.sort_by_key(|listed| listed.bank.number);
     let name = entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default();
     let empty = entries.take_optional("empty", AllowedValues::Byte)?;
-    Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest()? })
+    Ok(DataImage { name, first, last, empty, listed, unknown: entries.into_unknown()? })
 }
 
 fn read_bank(mut entries: Entries) -> Result<ListedBank, ProfileError> {
     let number = entries.take_required("bank", AllowedValues::Byte)?;
     let bytes = read_array(&mut entries, "bytes")?;
-    Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest()? })
+    Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.into_unknown()? })
 }
 
 #[cfg(test)]

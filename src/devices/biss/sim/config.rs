@@ -8,7 +8,7 @@ use super::wiegand::WiegandPulses;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Firmware, PositionFilter};
 use crate::expected::{AllowedValues, Limit, Quantity};
-use crate::parameter::{Checked, SWITCH, Whole, Words, number};
+use crate::parameter::{CustomNotation, Keywords, SWITCH, WholeNumbers, parse_whole};
 use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
@@ -18,26 +18,26 @@ parameters! {
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
-        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => Checked(AllowedValues::Release, firmware);
-        pub(super) serial_number: u32 = 0x0012_D687, "serial" => Checked(AllowedValues::Number32, number::<u32>);
+        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => CustomNotation(AllowedValues::Release, firmware);
+        pub(super) serial_number: u32 = 0x0012_D687, "serial" => CustomNotation(AllowedValues::Number32, parse_whole::<u32>);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        pub(super) reverses: bool = false, "motor" => Words(&[("steady", false), ("reverse", true)]);
-        pub(super) waver: f64 = 0.5, "waver" => Checked(AllowedValues::RevolutionsAMinute { most: 1000 }, |text| within(text, 0.0..=1000.0));
-        pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => Whole(Quantity::Position, 0..=(1 << 33) - 1);
-        pub(super) temperature: i16 = 30, "temperature" => Whole(Quantity::WholeCelsius, -50..=205);
-        pub(super) errors: u8 = 0, "errors" => Checked(AllowedValues::ErrorRegister, number::<u8>);
+        pub(super) reverses: bool = false, "motor" => Keywords(&[("steady", false), ("reverse", true)]);
+        pub(super) waver: f64 = 0.5, "waver" => CustomNotation(AllowedValues::RevolutionsAMinute { most: 1000 }, |text| within(text, 0.0..=1000.0));
+        pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => WholeNumbers(Quantity::Position, 0..=(1 << 33) - 1);
+        pub(super) temperature: i16 = 30, "temperature" => WholeNumbers(Quantity::WholeCelsius, -50..=205);
+        pub(super) errors: u8 = 0, "errors" => CustomNotation(AllowedValues::ErrorRegister, parse_whole::<u8>);
         pub(super) filter: PositionFilter = PositionFilter::Balanced,
-            "filter" => Words(&[("balanced", PositionFilter::Balanced), ("dynamic", PositionFilter::Dynamic)]);
-        pub(super) cycles: u32 = 3, "cycles" => Checked(AllowedValues::WriteCycles, number::<u32>);
+            "filter" => Keywords(&[("balanced", PositionFilter::Balanced), ("dynamic", PositionFilter::Dynamic)]);
+        pub(super) cycles: u32 = 3, "cycles" => CustomNotation(AllowedValues::WriteCycles, parse_whole::<u32>);
         pub(super) pulses: WiegandPulses = WiegandPulses { average: 63, lowest: 58 },
-            "pulses" => Checked(AllowedValues::Pulses, pulses);
+            "pulses" => CustomNotation(AllowedValues::Pulses, pulses);
         pub(super) calibration_time: Duration = Duration::from_secs(5),
-            "calibration" => Checked(AllowedValues::Seconds { low: Limit::from_thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
+            "calibration" => CustomNotation(AllowedValues::Seconds { low: Limit::from_thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
         pub(super) silent_calibration: bool = true, "calibration-silent" => SWITCH;
-        pub(super) keeps_status: bool = false, "calibration-status" => Words(&[("fresh", false), ("kept", true)]);
+        pub(super) keeps_status: bool = false, "calibration-status" => Keywords(&[("fresh", false), ("kept", true)]);
         pub(super) echo: bool = false, "echo" => SWITCH;
         pub(super) order: ByteOrder = ByteOrder::LowFirst,
-            "order" => Words(&[("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)]);
+            "order" => Keywords(&[("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)]);
     }
 }
 
@@ -90,11 +90,11 @@ fn pulses(text: &str) -> Option<WiegandPulses> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::setting::pairs;
+    use crate::sim::setting::query_pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        Config::from_pairs(&pairs(query))
+        Config::from_pairs(&query_pairs(query))
     }
 
     #[test]

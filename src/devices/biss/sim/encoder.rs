@@ -84,7 +84,7 @@ impl Encoder {
             waver: config.waver,
             pulses: config.pulses,
             silent_calibration: config.silent_calibration,
-            die_in_store: config.faults.die_in_store(),
+            die_in_store: config.faults.failing_store(),
             eds: [EdsBank::Common, EdsBank::Encoder].map(Eds::factory_default),
             drive: Drive::new(config.rpm, config.reverses),
             shaft: Shaft::new(Layout::default(), config.position, config.rpm),
@@ -136,7 +136,7 @@ impl Encoder {
 
     /// Sets other faults for the flash. The count of stores is kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.die_in_store = faults.die_in_store();
+        self.die_in_store = faults.failing_store();
     }
 
     /// Sets the errors reported by the encoder's self-monitoring.

@@ -20,7 +20,7 @@ impl Drive {
     /// Creates the motor. If `reverses` is set, the motor changes its direction when a procedure waits for the opposite
     /// direction.
     pub(super) fn new(rpm: f64, reverses: bool) -> Self {
-        Drive { motor: Motor::at(rpm), reverses }
+        Drive { motor: Motor::with_speed(rpm), reverses }
     }
 
     pub(super) const fn motor(&self) -> &Motor {

@@ -80,7 +80,7 @@ impl Shaft {
     }
 
     fn place(&self, at: Moment) -> f64 {
-        let moved = at.since(self.since).as_secs_f64() * self.rpm / 60.0 * self.steps() as f64;
+        let moved = at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * self.steps() as f64;
         let range = self.range() as f64;
         // rem_euclid may round up to the range itself.
         let place = (self.place + moved).rem_euclid(range);

@@ -13,7 +13,7 @@ use crate::buses::ubicom::protocol::{
 };
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::sim::SimulatedFaults;
-use crate::sim::line::{TransitQueue, VirtualLine, Wires};
+use crate::sim::line::{LineConditions, TransitQueue, VirtualLine};
 use crate::units::Moment;
 
 /// A line with a virtual encoder, as seen by the host. It is created from a [`Config`].
@@ -23,7 +23,7 @@ pub struct UbicomPort {
     receiver: Receiver,
     order: ByteOrder,
     echo: bool,
-    wires: Wires,
+    wires: LineConditions,
     /// Bytes on their way to the encoder, with their arrival times.
     to_encoder: TransitQueue<u8>,
     to_host: TransitQueue<u8>,
@@ -59,7 +59,7 @@ impl UbicomPort {
             receiver: Receiver::new(NODE),
             order: config.order,
             echo: config.echo,
-            wires: Wires::new(&config.faults, config.seed, FORMAT),
+            wires: LineConditions::new(&config.faults, config.seed, FORMAT),
             to_encoder: TransitQueue::default(),
             to_host: TransitQueue::default(),
             heard: None,
@@ -156,19 +156,19 @@ impl UbicomPort {
 impl VirtualLine for UbicomPort {
     type Event = Event;
 
-    fn wires(&self) -> &Wires {
+    fn line_conditions(&self) -> &LineConditions {
         &self.wires
     }
 
-    fn wires_mut(&mut self) -> &mut Wires {
+    fn wires_mut(&mut self) -> &mut LineConditions {
         &mut self.wires
     }
 
     fn next_event(&self) -> Option<(Moment, Event)> {
         let answering = self.work.map(|work| (work.ends, Event::EncoderAnswers));
-        let hearing = self.to_encoder.due().map(|at| (at, Event::EncoderHears));
+        let hearing = self.to_encoder.next_due().map(|at| (at, Event::EncoderHears));
         let ending = self.heard.map(|at| (at + BYTE_TIME_OUT, Event::FrameEnds));
-        let receiving = self.to_host.due().map(|at| (at, Event::HostReceives));
+        let receiving = self.to_host.next_due().map(|at| (at, Event::HostReceives));
         [answering, hearing, ending, receiving].into_iter().flatten().min()
     }
 

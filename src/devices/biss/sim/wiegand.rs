@@ -75,7 +75,7 @@ impl WiegandState {
         if !self.is_running() {
             return;
         }
-        self.collected += now.since(self.since).as_secs_f64() * rpm.abs() / 60.0;
+        self.collected += now.duration_since(self.since).as_secs_f64() * rpm.abs() / 60.0;
         self.since = now;
         let clockwise = rpm > 0.0;
         let second = self.status == WiegandStatus::Counterclockwise;

@@ -17,7 +17,7 @@ use crate::devices::biss::procedures::{
 use crate::devices::biss::sim;
 use crate::kinds::attachable_kinds;
 use crate::link::{LinkScheme, LinkUrl, PORT_EXAMPLE};
-use crate::parameter::{Entry, Parameters as _, Values, chosen};
+use crate::parameter::{Entry, ParameterGroup as _, ParameterValues, select_entries};
 use crate::units::Parity;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl FormModel for BissForm {
 
     // The first choice in the window is a virtual encoder behind an adapter, so that every feature is visible.
     fn default_link() -> LinkUrl {
-        let mut url = LinkUrl::sim();
+        let mut url = LinkUrl::simulated();
         url.query.set(BRIDGE.0, BRIDGE.1);
         url
     }
@@ -146,13 +146,13 @@ impl BissForm {
 
     fn set_choice(&mut self, name: &str, value: &str) -> bool {
         let mut pin = PinParameters { parity: self.parity, order: self.order, echo: self.echo, ..Default::default() };
-        let is_taken = pin.set(name, value).unwrap_or(false);
+        let is_taken = pin.set_value(name, value).unwrap_or(false);
         (self.parity, self.order, self.echo) = (pin.parity, pin.order, pin.echo);
         is_taken
     }
 
     pub fn virtual_device_entries() -> Vec<Entry> {
-        chosen(&sim::Config::entries(), &["rpm", "fault"])
+        select_entries(&sim::Config::entries(), &["rpm", "fault"])
     }
 
     pub fn bus_entries() -> Vec<Entry> {
@@ -213,13 +213,13 @@ impl BissForm {
         } else {
             parameters.add_entered(&PinParameters::entries(), &self.typed);
             if self.parity != FORMAT.parity {
-                parameters.set("parity", self.parity.word());
+                parameters.set("parity", self.parity.keyword());
             }
             if self.order.is_some() {
-                parameters.set("order", &ORDERS.print(&self.order));
+                parameters.set("order", &ORDERS.format_example(&self.order));
             }
             if self.echo != Echo::Unknown {
-                parameters.set("echo", &Echo::WORDS.print(&self.echo));
+                parameters.set("echo", &Echo::KEYWORDS.format_example(&self.echo));
             }
         }
         let (frame, line) = Self::common_entries();

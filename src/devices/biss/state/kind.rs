@@ -13,7 +13,7 @@ use crate::devices::biss::protocol::Descriptions;
 use crate::devices::biss::sim::Config;
 use crate::devices::biss::state::explain;
 use crate::link::LinkUrl;
-use crate::parameter::Parameters as _;
+use crate::parameter::ParameterGroup as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;

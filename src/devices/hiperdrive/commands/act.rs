@@ -9,7 +9,7 @@ use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::profiles::print_write_result;
-use crate::cli::runner::failed;
+use crate::cli::runner::to_failure;
 use crate::cli::{Failure, Result, check};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::DriveIdentity;
@@ -63,9 +63,9 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };
     match action {
-        HiperdriveAction::Factory if !all => output.remark(&TEXTS.text("hd_cli.not_saved").terminal_text()),
+        HiperdriveAction::Factory if !all => output.print_message(&TEXTS.text("hd_cli.not_saved").terminal_text()),
         HiperdriveAction::Acknowledge if operations.is_empty() => {
-            output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive(&of).get()).terminal_text());
+            output.print_message(&TEXTS.text("hd_cli.no_fault").with("drive", drive(&of).get()).terminal_text());
         }
         _ => {}
     }
@@ -88,7 +88,7 @@ pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: Dr
     if again.plan.is_empty() {
         Ok(())
     } else {
-        Err(failed(&TEXTS.text("hd_cli.still_faulty").with("drive", drive.get())))
+        Err(to_failure(&TEXTS.text("hd_cli.still_faulty").with("drive", drive.get())))
     }
 }
 
@@ -99,10 +99,10 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
 /// Checks that the presence test has found at least one drive and every previously known drive.
 fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
-        return Err(failed(&TEXTS.text("hd_cli.no_drives")));
+        return Err(to_failure(&TEXTS.text("hd_cli.no_drives")));
     }
     match before.iter().find(|number| found.iter().all(|own| own.number != **number)) {
-        Some(gone) => Err(failed(&TEXTS.text("hd_cli.drive_gone").with("drive", gone.get()))),
+        Some(gone) => Err(to_failure(&TEXTS.text("hd_cli.drive_gone").with("drive", gone.get()))),
         None => Ok(()),
     }
 }
@@ -111,7 +111,7 @@ fn set_position(of: &DriveOption, text: &str) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let position = i32::try_from(number).map_err(|_| {
         let text_of_range = TEXTS.text("hd_cli.position_range").with("value", text);
-        failed(&text_of_range.with("low", i32::MIN).with("high", i32::MAX))
+        to_failure(&text_of_range.with("low", i32::MIN).with("high", i32::MAX))
     })?;
     Ok(Change::SetPosition { drive: drive(of), position, save: true })
 }

@@ -9,7 +9,7 @@ use super::meaning::{self, DecodeContext, WordMeaning, parameter_words};
 use crate::bits::{hex, hex_compact};
 use crate::buses::ethernet_ip::commands::{self as ethernet_ip, DecodedBytes, Device};
 use crate::cli::args::DecodeArgs;
-use crate::cli::decode::{FrameExplanation, frames, show};
+use crate::cli::decode::{FrameExplanation, parse_frames, show};
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::protocol::{KIND, Layout};
@@ -38,7 +38,7 @@ fn parse_captured(arguments: &[String]) -> Result<Vec<Captured>> {
     };
     let words: Vec<Option<Captured>> = arguments.iter().map(word).collect();
     match words.iter().filter(|word| word.is_some()).count() {
-        0 => Ok(frames(arguments)?.into_iter().map(Captured::Bytes).collect()),
+        0 => Ok(parse_frames(arguments)?.into_iter().map(Captured::Bytes).collect()),
         all if all == arguments.len() => Ok(words.into_iter().flatten().collect()),
         _ => Err(Failure::Usage(
             "words (4 hexadecimal digits, such as 0439) and bytes cannot be mixed: decode them separately".to_owned(),

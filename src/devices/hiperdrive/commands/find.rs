@@ -10,8 +10,8 @@ use crate::app::explain;
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
 use crate::cli::args::CommonArgs;
 use crate::cli::output::Output;
-use crate::cli::runner::failed;
-use crate::cli::{Done, Failure, Result};
+use crate::cli::runner::to_failure;
+use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperdrive::procedures::{DiscoveredDevice, discover};
 use crate::devices::hiperdrive::state::explain as words;
 use crate::link::{CancelToken, Clock, LinkScheme, LinkUrl, RealClock, UdpBroadcast, Wire};
@@ -20,18 +20,18 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let shout = match &common.link {
         None => UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone()),
-        Some(url) => UdpBroadcast::to(addresses(url)?, clock.clone()),
+        Some(url) => UdpBroadcast::new(addresses(url)?, clock.clone()),
     };
-    let mut shout = shout.map_err(|error| failed(&explain::link_error_text(&error)))?;
+    let mut shout = shout.map_err(|error| to_failure(&explain::link_error_text(&error)))?;
     let found =
-        discover(&mut shout, &*clock, &CancelToken::default()).map_err(|error| failed(&words::device(&error)))?;
+        discover(&mut shout, &*clock, &CancelToken::default()).map_err(|error| to_failure(&words::device(&error)))?;
     let (drives, others): (Vec<DiscoveredDevice>, Vec<DiscoveredDevice>) =
         found.into_iter().partition(DiscoveredDevice::is_hiperdrive);
     let list: Vec<Json> = drives.iter().map(discovered_device_json).collect();
     let text: String = drives.iter().map(discovered_device_text).collect();
     output.show(&json!({"devices": list, "others": others.len()}), &text)?;
     if !drives.is_empty() {
-        return Ok(Done::Well);
+        return Ok(Success::Well);
     }
     let summary = match others.len() {
         0 => "Nobody answered.".to_owned(),

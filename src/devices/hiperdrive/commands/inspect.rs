@@ -7,8 +7,8 @@ use super::item;
 use super::run::{Runner, value};
 use crate::cli::args::{CommonArgs, Read, Status as StatusArguments};
 use crate::cli::output::{Lines, Output};
-use crate::cli::runner::failed;
-use crate::cli::{Done, Result};
+use crate::cli::runner::to_failure;
+use crate::cli::{Result, Success};
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::{DriveIdentity, DriveStatus, Identity, Status};
 use crate::devices::hiperdrive::profile::Item;
@@ -38,7 +38,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "drives": identity.drives.iter().map(drive_json).collect::<Vec<Json>>(),
     });
     output.show(&json, &identity_text(&identity))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn drive_json(drive: &DriveIdentity) -> Json {
@@ -56,21 +56,21 @@ fn drive_json(drive: &DriveIdentity) -> Json {
 fn identity_text(identity: &Identity) -> String {
     let mut lines = Lines::default();
     lines
-        .add("device", format!("{} ({})", identity.name, identity.category))
-        .add("article number", &identity.article_number)
-        .add("serial number", &identity.serial_number)
-        .add("production date", &identity.production_date)
-        .add("version", &identity.version);
+        .add_line("device", format!("{} ({})", identity.name, identity.category))
+        .add_line("article number", &identity.article_number)
+        .add_line("serial number", &identity.serial_number)
+        .add_line("production date", &identity.production_date)
+        .add_line("version", &identity.version);
     for drive in &identity.drives {
         let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
         let DriveIdentity { name, serial_number, version, .. } = drive;
-        lines.add(
+        lines.add_line(
             format!("drive {}", drive.number.get()),
             format!("{name}, serial number {serial_number}, version {version}{requested}"),
         );
     }
     if identity.drives.is_empty() {
-        lines.add("drives", "none");
+        lines.add_line("drives", "none");
     }
     lines.text()
 }
@@ -82,7 +82,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
     if let Some(drive) = only {
         status.drives.retain(|own| own.number == drive);
         if status.drives.is_empty() {
-            return Err(failed(&TEXTS.text("hd_said.no_drive").with("drive", drive.get())));
+            return Err(to_failure(&TEXTS.text("hd_said.no_drive").with("drive", drive.get())));
         }
     }
     let facts: Vec<DriveFact> = status.drives.iter().flat_map(drive_fact_list).collect();
@@ -116,7 +116,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
         "temperature_c": status.temperature,
     });
     output.show(&json, &status_text(&status, &facts))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -199,21 +199,26 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     let words = |own: &DriveFact| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
     for (label, weight) in [("error", FactSeverity::Error), ("warning", FactSeverity::Warning)] {
         for own in of(weight) {
-            lines.add(label, words(own));
+            lines.add_line(label, words(own));
         }
         if of(weight).next().is_none() {
-            lines.add(format!("{label}s"), "none");
+            lines.add_line(format!("{label}s"), "none");
         }
     }
     for own in of(FactSeverity::Earlier) {
-        lines.add("note", format!("{} (earlier entry in the error buffer, not present now)", words(own)));
+        lines.add_line("note", format!("{} (earlier entry in the error buffer, not present now)", words(own)));
     }
-    lines.add("supply", format!("{:.1} V", volts(status))).add("temperature", format!("{} °C", status.temperature));
+    lines
+        .add_line("supply", format!("{:.1} V", volts(status)))
+        .add_line("temperature", format!("{} °C", status.temperature));
     for drive in &status.drives {
         let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
         let (word, celsius) = (drive.status.to_u16(), drive.temperature);
         let state = words::state(drive.status.state()).terminal_text();
-        lines.add(format!("drive {}", drive.number.get()), format!("{state} (0x{word:04X}), {celsius} °C{requested}"));
+        lines.add_line(
+            format!("drive {}", drive.number.get()),
+            format!("{state} (0x{word:04X}), {celsius} °C{requested}"),
+        );
     }
     lines.text()
 }
@@ -283,5 +288,5 @@ pub(super) fn read(common: &CommonArgs, output: &Output, read: &Read) -> Result 
         keys.insert("unit".to_owned(), json!(unit));
     }
     output.show(&json, &format!("{text}\n"))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }

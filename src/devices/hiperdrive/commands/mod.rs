@@ -20,9 +20,9 @@ use clap::{Arg, ArgMatches, Args};
 
 use self::args::{DoOptions, DriveOption, HiperdriveAction, HubOption, MoveArgs, WordOptions};
 use crate::cli::args::{Command, CommonArgs, SimulateArgs};
-use crate::cli::commands::{CliCommand, CommandId, DeviceCommands, enum_values, options_of, parse};
+use crate::cli::commands::{CliCommand, CommandId, DeviceCommands, arg_list, enum_values, parse};
 use crate::cli::output::Output;
-use crate::cli::simulate::Simulated;
+use crate::cli::simulate::ServableDevice;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::profile::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
@@ -35,11 +35,11 @@ impl DeviceCommands for HiperdriveCommands {
         KIND
     }
 
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "HIPERDRIVE with EtherNet/IP (enip:): one drive behind an adapter, or up to eight behind a hub"
     }
 
-    fn help(&self, command: CommandId) -> Option<String> {
+    fn command_help(&self, command: CommandId) -> Option<String> {
         let help = match command {
             CommandId::Find => "searches the network for adapters and hubs",
             CommandId::Read => {
@@ -67,19 +67,19 @@ impl DeviceCommands for HiperdriveCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Status | CommandId::Position | CommandId::Read | CommandId::Write => options_of::<DriveOption>(),
-            CommandId::Do => options_of::<DoOptions>(),
-            CommandId::Decode => options_of::<WordOptions>(),
+            CommandId::Status | CommandId::Position | CommandId::Read | CommandId::Write => arg_list::<DriveOption>(),
+            CommandId::Do => arg_list::<DoOptions>(),
+            CommandId::Decode => arg_list::<WordOptions>(),
             _ => Vec::new(),
         }
     }
 
-    fn actions(&self) -> Vec<PossibleValue> {
+    fn action_values(&self) -> Vec<PossibleValue> {
         enum_values::<HiperdriveAction>()
     }
 
     fn setting_options(&self) -> Vec<Arg> {
-        options_of::<HubOption>()
+        arg_list::<HubOption>()
     }
 
     fn extra_commands(&self) -> &'static [&'static dyn CliCommand] {
@@ -105,7 +105,7 @@ impl DeviceCommands for HiperdriveCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+    fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
         simulate::simulated(output, arguments)
     }
 }

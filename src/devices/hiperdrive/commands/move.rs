@@ -18,8 +18,8 @@ use crate::app::Text;
 use crate::cli::args::CommonArgs;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::runner::failed;
-use crate::cli::{Done, Failure, Result};
+use crate::cli::runner::to_failure;
+use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperdrive::jobs::{DriveSnapshot, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::dead_man::{
     ActionEnd, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
@@ -59,7 +59,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     let target = within(&permit, target)?;
     permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
     if let Some((low, high)) = permit.limits {
-        output.remark(&range(drive, target, (low, high), scale));
+        output.print_message(&range(drive, target, (low, high), scale));
     }
     result_of!(runner.run(HiperdriveJob::Take)?, HiperdriveOutput::Taken => {});
     let came =
@@ -74,7 +74,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
         given?;
         let text = position.map_or_else(String::new, |position| format!("drive {} is at {position}\n", drive.get()));
         output.show(&json, &text)?;
-        return Ok(Done::Well);
+        return Ok(Success::Well);
     }
     let error = match came {
         MotionOutcome::Ended(ActionEnd::Fault) => newest_error(&mut runner, drive),
@@ -107,7 +107,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
 
 /// Returns a drive's motion permit according to its present parameters, along with its scale.
 fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
-    let variant = identity.named(drive).map_err(|error| failed(&words::device(&error)))?.variant;
+    let variant = identity.named(drive).map_err(|error| to_failure(&words::device(&error)))?.variant;
     let mut values = Vec::new();
     for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT] {
         let Some(number) = ParameterNumber::for_drive(base, drive) else { continue };
@@ -129,7 +129,7 @@ fn within(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {
         let text = TEXTS.text("hd_refused.outside").with_text("target", place(target));
-        failed(&text.with_text("low", place(low)).with_text("high", place(high)))
+        to_failure(&text.with_text("low", place(low)).with_text("high", place(high)))
     })
 }
 
@@ -139,7 +139,7 @@ fn place(steps: impl Into<i64>) -> Text {
 }
 
 fn refused(refusal: MotionRefusal) -> Failure {
-    failed(&words::refusal(refusal, place))
+    to_failure(&words::refusal(refusal, place))
 }
 
 /// Refreshes the motion request until the motion ends, is interrupted, or times out.

@@ -26,13 +26,13 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     if let (Some(asked), Some(Op::Write { new, .. })) = (asked, prepared.plan.ops.first())
         && asked != *new
     {
-        output.remark(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal_text());
+        output.print_message(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal_text());
     }
     for warning in warnings(&prepared.plan) {
-        output.remark(&words::warning(&warning).terminal_text());
+        output.print_message(&words::warning(&warning).terminal_text());
     }
     if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
-        output.remark(&TEXTS.text("hd_cli.address_lost").terminal_text());
+        output.print_message(&TEXTS.text("hd_cli.address_lost").terminal_text());
     }
     Ok(prepared)
 }
@@ -49,7 +49,7 @@ pub(super) fn commit(
     }
     check_wear::<Hiperdrive>(consent, &prepared)?;
     if let Some(saves) = prepared.wear() {
-        output.remark(&format!(
+        output.print_message(&format!(
             "This is save {saves} counted on this computer. The manual gives no limit; from {WEAR_WARNING} on, an \
              EEPROM may wear out."
         ));
@@ -57,7 +57,7 @@ pub(super) fn commit(
     let text = shown(&prepared).text;
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperdriveJob::Commit(Box::new(agreed)))?, HiperdriveOutput::Committed(committed) => *committed);
-    Ok(WriteSummary::of(output, committed))
+    Ok(WriteSummary::from_commit(output, committed))
 }
 
 /// Returns the report of a plan as text and JSON: the old and new value of each parameter, and the cost.
@@ -67,7 +67,7 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     for op in &plan.ops {
         let words = words::op(op);
         for change in &words.changes {
-            lines.add(
+            lines.add_line(
                 words.item.terminal_text(),
                 format!("{}  →  {}", change.old.terminal_text(), change.new.terminal_text()),
             );

@@ -7,7 +7,7 @@ use super::run::{Runner, drive, value};
 use crate::cli::Result;
 use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::Output;
-use crate::cli::positions::readings;
+use crate::cli::positions::print_readings;
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::DriveReading;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, NUMERATOR};
@@ -22,13 +22,13 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let (numerator, denominator) = (part(&mut runner, NUMERATOR, drive)?, part(&mut runner, DENOMINATOR, drive)?);
     let scale = numerator.zip(denominator).and_then(|(one, other)| PositionScale::new(one, other).ok());
     if position.csv {
-        output.print("t_s,raw,turns,steps,degrees,valid\n")?;
+        output.write_stdout("t_s,raw,turns,steps,degrees,valid\n")?;
     }
     let job = || HiperdriveJob::Position(drive);
-    readings(&mut runner, position, job, |came| {
+    print_readings(&mut runner, position, job, |came| {
         let reading = result_of!(came, HiperdriveOutput::Position(reading) => reading);
         let place = scale.map(|scale| TurnPosition::of(reading.actual.position, scale));
-        if position.csv { output.print(&row(&reading, place)) } else { show(output, &reading, place) }
+        if position.csv { output.write_stdout(&row(&reading, place)) } else { show(output, &reading, place) }
     })
 }
 

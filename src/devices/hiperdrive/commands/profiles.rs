@@ -9,7 +9,7 @@ use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{UnrestoredItems, profile_to_restore, restore_options, save_profile, write_restore};
-use crate::cli::{Done, Result};
+use crate::cli::{Result, Success};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -24,7 +24,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
     let counted = format!("{} of the device and {}", count(parameters, "parameter"), count(drives, "drive"));
     output.show(&json, &format!("{}: {counted}\n", save.file.display()))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 impl ProfileCommands for HiperdriveCommands {
@@ -34,17 +34,17 @@ impl ProfileCommands for HiperdriveCommands {
         let mut runner = Runner::open(common)?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         for types in &prepared.other_types {
-            output.remark(&words::other_type(types).terminal_text());
+            output.print_message(&words::other_type(types).terminal_text());
         }
         for words in missing_items(&prepared) {
-            output.remark(&words);
+            output.print_message(&words);
         }
         for item in &prepared.mounting_left {
             let how = match item.0.base() {
                 REFERENCE => "a reference is never restored; set it with \"do hiperdrive set-position\"",
                 _ => "use --with-mounting to restore it",
             };
-            output.remark(&format!("{item} belongs to the mounting and is not restored: {how}"));
+            output.print_message(&format!("{item} belongs to the mounting and is not restored: {how}"));
         }
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
@@ -53,7 +53,7 @@ impl ProfileCommands for HiperdriveCommands {
     }
 
     /// Reads the complete device for a comparison.
-    fn present(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common)?))
     }
 

@@ -8,9 +8,9 @@ use super::args::DriveOption;
 use crate::app::TypeMap;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
-use crate::cli::output::say;
-use crate::cli::runner::{self, Runs};
-use crate::cli::slow_reply_notice::Pace;
+use crate::cli::output::write_stderr;
+use crate::cli::runner::{self, CliDevice};
+use crate::cli::slow_reply_notice::ReplyTiming;
 use crate::devices::hiperdrive::jobs::{DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobStep, Motion};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
@@ -28,37 +28,43 @@ const LOOKS: Duration = Duration::from_millis(1);
 
 pub(super) type Runner = runner::Runner<Hiperdrive>;
 
-impl Runs for Hiperdrive {
+impl CliDevice for Hiperdrive {
     type Context = Motion;
     const COMMANDS: &'static dyn DeviceCommands = &HiperdriveCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &TypeMap) -> Motion {
+    fn prepare_context(session: &mut Session<Self>, _given: &TypeMap) -> Motion {
         session.motion()
     }
 
     fn print_message(remark: &DeviceMessage) {
         match remark {
-            DeviceMessage::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal_text())),
+            DeviceMessage::ControlLost => {
+                write_stderr(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal_text()))
+            }
             DeviceMessage::RulesUnread(error) => {
                 let why = words::device(error).terminal_text();
-                say(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal_text()));
+                write_stderr(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal_text()));
             }
             DeviceMessage::RulesRead => {}
         }
     }
 
-    fn step(doing: &JobStep) -> String {
+    fn describe_step(doing: &JobStep) -> String {
         doing.to_string()
     }
 
-    fn reply_times(session: &Session<Self>) -> Option<Pace> {
+    fn reply_times(session: &Session<Self>) -> Option<ReplyTiming> {
         let station = session.station();
-        Some(Pace { replies: station.replies(), timeout: station.link.timeout, longest: Station::LONGEST_TIMEOUT })
+        Some(ReplyTiming {
+            replies: station.replies(),
+            timeout: station.link.timeout,
+            longest: Station::LONGEST_TIMEOUT,
+        })
     }
 
     /// Stops the motion and waits for standstill. If the program is about to end, also waits until the drives are
     /// switched off and released.
-    fn interrupt(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
+    fn interrupt_handler(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
         let motion = motion.clone();
         Box::new(move |again| {
             motion.stop();

@@ -4,12 +4,12 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 
 use crate::cli::args::SimulateArgs;
 use crate::cli::output::Output;
-use crate::cli::simulate::{Simulated, settings};
+use crate::cli::simulate::{ServableDevice, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::sim::DatagramDevice;
 
-pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     if arguments.pty.is_some() {
         let what = "HIPERDRIVE is reached over EtherNet/IP: use --listen HOST:PORT instead of --pty";
         return Err(Failure::Usage(what.to_owned()));
@@ -22,13 +22,13 @@ pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box
     Ok(Box::new(Target::new(&config)))
 }
 
-impl Simulated for Target {
+impl ServableDevice for Target {
     /// Accepts another connection, since a target can serve several originators at once.
-    fn duplicate(&self, peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+    fn clone_for_peer(&self, peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         Some(Box::new(self.connection(peer)))
     }
 
-    fn datagrams(&self) -> Option<Box<dyn DatagramDevice>> {
+    fn datagram_device(&self) -> Option<Box<dyn DatagramDevice>> {
         Some(Box::new(self.clone()))
     }
 

@@ -9,7 +9,7 @@ use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::profiles::print_write_result;
-use crate::cli::runner::failed;
+use crate::cli::runner::to_failure;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
@@ -24,7 +24,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     require_consent(&write.consent)?;
     // The number alone does not tell the user what the write does.
     if let Change::Do(_) = change {
-        output.remark(&words::change(&change).terminal_text());
+        output.print_message(&words::change(&change).terminal_text());
     }
     let mut runner = Runner::open(common)?;
     let drive = match change {
@@ -35,7 +35,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
     if let Some(drive) = drive.filter(|_| operations.is_empty()) {
-        output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal_text());
+        output.print_message(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal_text());
     }
     let done = print_write_result(output, &item.to_string(), &operations, &spent, &[], &changes)?;
     if let Some(drive) = drive.filter(|_| !operations.is_empty()) {
@@ -47,17 +47,17 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
 /// Parses a new parameter value. Values that no device accepts are refused before a connection is opened.
 fn change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
-    let refused = |error: PlanError| failed(&words::plan(&error));
+    let refused = |error: PlanError| to_failure(&words::plan(&error));
     let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
     match (row.number, row.access) {
         (CONTROL..=TARGET, ..) => return Err(refused(PlanError::Moves { item })),
-        (RESET, ..) => return Err(failed(&TEXTS.text("hd_cli.resets").with("number", number))),
+        (RESET, ..) => return Err(to_failure(&TEXTS.text("hd_cli.resets").with("number", number))),
         (_, Access::Read) => return Err(refused(PlanError::ReadOnly { item })),
         _ => {}
     }
     let value = parse_number(text).ok_or_else(|| Failure::Usage(format!("{item}: {text:?} is not a number")))?;
     if (row.number, value) == (SERVICE, 0) {
-        return Err(failed(&TEXTS.text("hd_cli.no_service")));
+        return Err(to_failure(&TEXTS.text("hd_cli.no_service")));
     }
     // The plan checks the travel, because it knows the scale and can name both limits.
     if row.reach.is_none() || row.number == REFERENCE {

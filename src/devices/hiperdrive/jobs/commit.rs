@@ -17,7 +17,7 @@ pub(super) fn commit(
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let mut write = DeviceWriter { master: device.master(context), identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        tell(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
+        tell(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item()))));
     })
 }
 

@@ -185,7 +185,7 @@ impl Hiperdrive {
     /// Closes a lost cyclic connection at the target as well, and reports the loss once. A loss of explicit messaging
     /// counts too, because motion is not allowed without access to the parameters.
     pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
-        if self.control.open.is_some() && self.wire.check().is_err() {
+        if self.control.open.is_some() && self.wire.check_connection().is_err() {
             self.control.stop_after_session_loss();
         }
         if self.should_release_control() {

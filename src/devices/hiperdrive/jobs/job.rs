@@ -189,5 +189,5 @@ impl From<PlanError> for JobError {
 /// Returns the key of a device for backups and the logbook. Saves are counted per adapter or hub, whichever drives are
 /// connected.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    DeviceKey::of(KIND, &identity.category, &identity.serial_number, is_virtual)
+    DeviceKey::new(KIND, &identity.category, &identity.serial_number, is_virtual)
 }

@@ -34,7 +34,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
 use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
 use crate::store::Store;
-use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, Watched};
+use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, WatchReply};
 
 pub struct Hiperdrive {
     wire: Box<dyn ByteLink>,
@@ -58,7 +58,7 @@ type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
-        Master::new(context.ctx(&mut *self.wire), &mut self.station)
+        Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 }
 
@@ -80,7 +80,7 @@ impl Session<Hiperdrive> {
         let control = CyclicControl::new(port, clock.clone());
         let wire = Box::new(MonitoredLink::new(wire, clock.clone(), control.motion()));
         let device = Hiperdrive { wire, station, control, watched: DriveNumber::FIRST, target, remark: None };
-        Session::with(device, clock, store, is_virtual)
+        Session::from_device(device, clock, store, is_virtual)
     }
 
     /// Returns the handle that moves the drives. The handle stays the same for the whole session and has no effect
@@ -154,7 +154,7 @@ impl Device for Hiperdrive {
         })
     }
 
-    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         self.release_lost_control(context);
         let drive = self.watched;
         if let Some(actual) = self.control.actual_values(drive) {
@@ -163,36 +163,36 @@ impl Device for Hiperdrive {
         Ok(Sample::Position(position(&mut self.master(context), drive)?))
     }
 
-    fn watch(&mut self, desk: &mut SessionContext, what: &Temperature) -> Result<Watched<Sample>, JobError> {
+    fn read_watched(&mut self, desk: &mut SessionContext, what: &Temperature) -> Result<WatchReply<Sample>, JobError> {
         self.release_lost_control(desk);
         let reading = match self.control.temperature(*what)? {
             Some(reading) => reading,
             None => temperature(&mut self.master(desk), *what)?,
         };
         let sample = Sample::Temperature(reading);
-        Ok(if reading.celsius.is_some() { Watched::Sample(sample) } else { Watched::Refused(sample) })
+        Ok(if reading.celsius.is_some() { WatchReply::Sample(sample) } else { WatchReply::Refused(sample) })
     }
 
     fn take_device_message(&mut self) -> Option<DeviceMessage> {
         self.remark.take()
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check().inspect_err(|_| self.control.stop_after_session_loss())
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.wire.check_connection().inspect_err(|_| self.control.stop_after_session_loss())
     }
 
     fn idle_interval(&self) -> Duration {
         if self.control.controlled_device().is_some() { IDLE_IN_CONTROL } else { IDLE }
     }
 
-    fn idle(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {
+    fn maintain(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {
         self.release_lost_control(context);
         self.refresh_rules(context);
         self.remark.take()
     }
 
     /// Stops the drives that are under control and releases them.
-    fn leave(&mut self, context: &mut SessionContext) {
+    fn restore_state(&mut self, context: &mut SessionContext) {
         self.end_session(context);
     }
 

@@ -195,13 +195,13 @@ impl Motion {
         let mut cell = self.lock();
         cell.watched.insert(number, now);
         let readings = cell.view.parameters.as_ref().filter(|_| cell.view.open)?;
-        readings.get(&number).filter(|reading| now.since(reading.at) < WATCH_DURATION).copied()
+        readings.get(&number).filter(|reading| now.duration_since(reading.at) < WATCH_DURATION).copied()
     }
 
     pub(super) fn watched_parameters(&self) -> Vec<ParameterNumber> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
-        cell.watched.retain(|_, requested| now.since(*requested) < WATCH_DURATION);
+        cell.watched.retain(|_, requested| now.duration_since(*requested) < WATCH_DURATION);
         cell.watched.keys().copied().collect()
     }
 

@@ -11,7 +11,7 @@ use crate::link::{
     Clock, Direction, LinkScheme, LinkUrl, RealClock, ReplayLink, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
 };
 use crate::store::Store;
-use crate::worker::open::{inside, read_recording, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{connect_simulated, read_recording, reply_margin, simulator_settings, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an adapter or a hub without opening it.
@@ -50,7 +50,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
 fn open_virtual(config: &Config, station: Station, clock: Arc<dyn Clock>) -> DeviceConnection {
     let target = Target::new(config);
     let connection = target.connection(Ipv4Addr::UNSPECIFIED);
-    let wire = inside(connection, &clock);
+    let wire = connect_simulated(connection, &clock);
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock));
     DeviceConnection { wire, port: Some(port), station, target: Some(target) }
 }
@@ -60,7 +60,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Enip | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, enip:, replay:"));
     }
-    let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
+    let config = Config::from_pairs(&simulator_settings(url, LinkParameters::KEYS, Config::KEYS)?)?;
     let tcp = match url.wire() {
         Wire::Host(host) => host.rsplit_once(':').and_then(|(_, port)| port.parse().ok()),
         _ => None,
@@ -74,7 +74,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     const NUMBERS: [usize; 12] = [4, 5, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19];
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
-    TraceEntry { bytes: MaskedBytes::masked(&bytes, &NUMBERS), ..entry }
+    TraceEntry { bytes: MaskedBytes::with_masked(&bytes, &NUMBERS), ..entry }
 }
 
 #[cfg(test)]

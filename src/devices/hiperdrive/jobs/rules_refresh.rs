@@ -98,7 +98,7 @@ impl Hiperdrive {
         tracing::warn!("{error}");
         // All limits are read before anything moves again.
         self.control.motion().invalidate_limits(drive);
-        if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
+        if matches!(error, Error::Link(_)) || self.wire.check_connection().is_err() {
             // The device can no longer be queried, which counts as a loss.
             return self.control.stop_after_session_loss();
         }
@@ -160,7 +160,7 @@ mod tests {
             let (mut now, mut asked) = (first, 0);
             while now < first + 10_000 {
                 now += step;
-                let age = at(now).since(read.into_iter().min().unwrap());
+                let age = at(now).duration_since(read.into_iter().min().unwrap());
                 assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
                 let groups = due_groups(read, at(now), TURN);
                 assert!(groups.len() as u64 <= step.div_ceil(250).min(4), "{step}: {groups:?} at once");

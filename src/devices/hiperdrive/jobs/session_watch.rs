@@ -52,7 +52,7 @@ impl ReplyMonitor {
         self.broken = false;
         // A reply that takes seconds is an exception and does not raise the time allowed for other replies.
         if let Some(took) =
-            self.requested.take().map(|asked| now.since(asked)).filter(|took| *took <= MAX_REPLY_TIMEOUT)
+            self.requested.take().map(|asked| now.duration_since(asked)).filter(|took| *took <= MAX_REPLY_TIMEOUT)
         {
             self.slowest = took.max(self.slowest * 7 / 8);
         }
@@ -70,7 +70,9 @@ impl ReplyMonitor {
     /// Returns whether the device has been silent for too long to allow motion, or has sent bytes that are not a frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(REPLY_TIMEOUT, MAX_REPLY_TIMEOUT);
-        let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNCHECKED_TIMEOUT;
+        let is_late = |asked| {
+            self.looked.duration_since(asked) > patience || now.duration_since(asked) > patience + UNCHECKED_TIMEOUT
+        };
         self.broken || self.requested.is_some_and(is_late)
     }
 }
@@ -132,8 +134,8 @@ impl ByteLink for MonitoredLink {
         self.wire.can_set_format()
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.wire.check_connection()
     }
 }
 
@@ -185,7 +187,7 @@ mod tests {
             Ok(())
         }
 
-        fn check(&mut self) -> Result<(), LinkError> {
+        fn check_connection(&mut self) -> Result<(), LinkError> {
             Ok(())
         }
     }

@@ -213,7 +213,7 @@ fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     for _ in 0..LOOKS {
         let begun = master.now();
         master.read_number(own(9)?)?;
-        slowest = slowest.max(master.now().since(begun));
+        slowest = slowest.max(master.now().duration_since(begun));
     }
     let late = master.station().late_reply_count();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };

@@ -246,7 +246,7 @@ impl DeadMan {
     fn accept_intent(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.discard_void_request(now, intent);
         // A step counts from the present position.
-        let has_arrived = self.first.is_some_and(|first| now.since(first) >= ARRIVAL_TIME);
+        let has_arrived = self.first.is_some_and(|first| now.duration_since(first) >= ARRIVAL_TIME);
         let has_place = has_arrived || !matches!(intent.request, MotionRequest::Step { .. });
         let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
         if intent.drive != self.drive || intent.number <= self.spent || waits {

@@ -132,7 +132,7 @@ impl DriveLimits {
     }
 
     fn is_fresh(&self, now: Moment) -> bool {
-        self.read.is_some_and(|times| times.into_iter().all(|at| now.since(at) <= VALIDITY))
+        self.read.is_some_and(|times| times.into_iter().all(|at| now.duration_since(at) <= VALIDITY))
     }
 
     /// Returns whether scale and limits have factory values, so that an endless run is possible.

@@ -23,7 +23,7 @@ use crate::devices::hiperdrive::protocol::{
     Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError,
 };
 use crate::link::Ctx;
-use crate::link::line::{SerialLine, TRIES};
+use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
 /// Pause after bytes that are not a frame; the next bytes start a new frame.
@@ -104,7 +104,7 @@ impl<'a> Master<'a> {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::Refused`]
+    /// Returns [`Error::UnknownValues`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::Refused`]
     /// if the parameter cannot be read. Returns [`Error::Length`] for a number of the wrong length, or an error if the
     /// exchange fails.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
@@ -170,7 +170,7 @@ impl<'a> Master<'a> {
                     if triggers_action(row) || self.run_uncancellable(|master| master.read_number(number))? == wanted {
                         return if triggers_action(row) { Err(error) } else { Ok(()) };
                     }
-                    if tries >= TRIES {
+                    if tries >= MAX_ATTEMPTS {
                         return Err(error);
                     }
                 }
@@ -284,7 +284,7 @@ impl<'a> Master<'a> {
             tries += 1;
             let trouble = match once(self)? {
                 Ok(answer) => {
-                    self.station.line.answered();
+                    self.station.line.mark_replied();
                     self.station.line.clear_error();
                     return Ok(answer);
                 }
@@ -331,7 +331,7 @@ impl<'a> Master<'a> {
         let takes_long = matches!(repeats, RetryPolicy::Never { takes: Some(_) });
         frame.context = self.station.begin(sent_at, takes_long).to_le_bytes();
         let bytes = frame.emit();
-        self.station.line.sent(sent_at);
+        self.station.line.mark_sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
         let deadline = sent_at + repeats.within(self.station.link.timeout) + self.station.line.margin;
         let mut heard = Vec::new();

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::profile::{
 };
 use crate::devices::hiperdrive::protocol::drive_parameter::POSITION;
 use crate::devices::hiperdrive::protocol::{PARAMETERS, ParameterNumber};
-use crate::profile::Unknown;
+use crate::profile::UnknownValues;
 
 impl Identity {
     pub fn profile(&self) -> ProfileIdentity {
@@ -26,7 +26,7 @@ impl Identity {
             serial_number: self.serial_number.clone(),
             version: self.version.clone(),
             drives: self.drives.iter().map(drive).collect(),
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         }
     }
 

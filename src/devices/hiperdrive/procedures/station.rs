@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
 use crate::expected::Quantity;
 use crate::link::line::LineState;
 use crate::link::{ReplyTimes, UrlError, UrlQuery};
-use crate::parameter::{Milliseconds, OptionalValue, Parameters, Values, Whole};
+use crate::parameter::{Milliseconds, OptionalValue, ParameterGroup, ParameterValues, WholeNumbers};
 use crate::parameters;
 use crate::units::Moment;
 
@@ -22,7 +22,7 @@ parameters! {
         /// Byte order of process data.
         pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// UDP port of cyclic data, unless the device reports another.
-        pub udp: Option<u16> = None, "udp" => OptionalValue(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
+        pub udp: Option<u16> = None, "udp" => OptionalValue(WholeNumbers(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
         /// Time limit of a reply, excluding the line margin.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=LONGEST_TIMEOUT), "connect.reply_time";
     }
@@ -125,14 +125,14 @@ impl Station {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)
         {
-            self.replies.note(at.since(sent));
+            self.replies.record(at.duration_since(sent));
         }
     }
 }
 
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (interval, order) = (self.link.interval.as_millis(), ByteOrder::WORDS.print(&self.link.order));
+        let (interval, order) = (self.link.interval.as_millis(), ByteOrder::WORDS.format_example(&self.link.order));
         write!(f, "every {interval} ms, {order} endian, UDP port {}", self.udp)
     }
 }

@@ -187,7 +187,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
         master.wait(BEGINS)?;
     }
     loop {
-        let waited = master.now().since(begun);
+        let waited = master.now().duration_since(begun);
         // During a reset the device may refuse reads.
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),

@@ -151,20 +151,20 @@ impl Op {
         let text = |value: &i64| value.to_string();
         let name = |number: ParameterNumber| number.row().map(|row| row.name).unwrap_or_default();
         let service = |code: i16, words: &str| {
-            ChangedItem::set(ParameterNumber::SAVE, format!("{code} ({words})")).named(name(ParameterNumber::SAVE))
+            ChangedItem::new_value(ParameterNumber::SAVE, format!("{code} ({words})"))
+                .with_manual_name(name(ParameterNumber::SAVE))
         };
         vec![match self {
             Op::Write { number, old, new } => {
-                ChangedItem::new(Item(*number), old.as_ref().map(text), Some(text(new))).named(name(*number))
+                ChangedItem::new(Item(*number), old.as_ref().map(text), Some(text(new))).with_manual_name(name(*number))
             }
             Op::Service(Service::Save) => service(1, "saved"),
             Op::Service(Service::Recall) => service(-2, "own parameters of the device as saved last"),
             Op::Service(Service::Factory) => service(-1, "own parameters of the device from the factory, not saved"),
             Op::Service(Service::FactoryAll) => service(-3, "from the factory with the address by DHCP, saved"),
             Op::Service(Service::Reset) => service(-4, "presence test and reset of the drives"),
-            Op::Service(Service::Acknowledge(drive)) => {
-                ChangedItem::new(self.item(), None, None).named(format!("fault of drive {} acknowledged", drive.get()))
-            }
+            Op::Service(Service::Acknowledge(drive)) => ChangedItem::new(self.item(), None, None)
+                .with_manual_name(format!("fault of drive {} acknowledged", drive.get())),
             Op::Network { from, to } => {
                 ChangedItem::new("network", Some(network_change_note(from)), Some(network_change_note(to)))
             }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Image, Item};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, Topology, Variant};
-use crate::profile::ron_text::Unknown;
+use crate::profile::ron_text::UnknownValues;
 
 /// Profile of an adapter or a hub.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub struct ProfileIdentity {
     /// Drives by port.
     pub drives: Vec<ProfileDrive>,
     /// Unknown entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// Identity of a drive.
@@ -55,7 +55,7 @@ pub struct ProfileDrive {
     /// Version, parameter 125.
     pub version: String,
     /// Unknown entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// Mark of a value that is valid for one drive on one machine only.
@@ -80,7 +80,7 @@ impl HiperdriveProfile {
         for item in references.collect::<Vec<_>>() {
             if !self.is_marked(item) {
                 let meaning = "the position that was set".to_owned();
-                self.mounting.push(MountingMark { item, meaning, unknown: Unknown::new() });
+                self.mounting.push(MountingMark { item, meaning, unknown: UnknownValues::new() });
             }
         }
     }
@@ -128,7 +128,7 @@ impl ProfileDrive {
             article_number: String::new(),
             serial_number: String::new(),
             version: String::new(),
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         }
     }
 }

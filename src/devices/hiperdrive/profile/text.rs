@@ -10,8 +10,8 @@ use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, Writer, value_text};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const PLACE: AllowedValues = AllowedValues::between(1, 8);
-const VARIANT: AllowedValues = AllowedValues::between(0, 65_535);
+const PLACE: AllowedValues = AllowedValues::whole_range(1, 8);
+const VARIANT: AllowedValues = AllowedValues::whole_range(0, 65_535);
 const CATEGORY: AllowedValues =
     AllowedValues::words(&["\"HIPERDRIVE SINGLE\"", "\"HIPERDRIVE HUB-4\"", "\"HIPERDRIVE HUB-8\""]);
 
@@ -26,13 +26,13 @@ impl Profile for HiperdriveProfile {
         let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("198 drive 2"), parse_mounting_item)?;
         let (mut image, mut unknown) = (Image::default(), UnknownEntries::default());
         read_parameters(entries, None, &mut image, &mut unknown)?;
-        for mut entries in entries.structures("drives")? {
-            let path = entries.path_of("number");
+        for mut entries in entries.take_structures("drives")? {
+            let path = entries.entry_path("number");
             let place: u8 = entries.take_required("number", PLACE)?;
             let number =
                 DriveNumber::new(place).ok_or_else(|| ProfileError::Shape { path: path.clone(), expected: PLACE })?;
             if identity.drives.iter().any(|drive| drive.number == number) {
-                return Err(ProfileError::refused(path, EntryError::DriveTwice(number)));
+                return Err(ProfileError::invalid_entry(path, EntryError::DriveTwice(number)));
             }
             read_parameters(&mut entries, Some(number), &mut image, &mut unknown)?;
             identity.drives.push(read_drive(entries, number)?);
@@ -75,7 +75,7 @@ impl Profile for HiperdriveProfile {
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for number in self.image.with(&other.image).values.into_keys() {
-            comparison.add(Item(number).to_string(), self.image.get(number), other.image.get(number));
+            comparison.compare_item(Item(number).to_string(), self.image.get(number), other.image.get(number));
         }
         comparison
     }
@@ -130,7 +130,7 @@ impl ProfileIdentity {
         ] {
             text(writer, name, own);
         }
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
@@ -148,7 +148,7 @@ impl ProfileDrive {
         ] {
             text(writer, name, own);
         }
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
     }
 }
 
@@ -159,7 +159,7 @@ fn text(writer: &mut Writer, name: &str, own: &str) {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let path = entries.path_of("category");
+    let path = entries.entry_path("category");
     let category = entries.take_optional::<String>("category", CATEGORY)?;
     let topology = category
         .map(|category| Topology::from_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
@@ -168,7 +168,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
         |name: &str| entries.take_optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
-    let unknown = entries.rest()?;
+    let unknown = entries.into_unknown()?;
     Ok(ProfileIdentity { topology, name, article_number, serial_number, version, drives: Vec::new(), unknown })
 }
 
@@ -178,7 +178,7 @@ fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive,
         |name: &str| entries.take_optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
-    Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest()? })
+    Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.into_unknown()? })
 }
 
 fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
@@ -197,7 +197,7 @@ fn read_parameters(
     image: &mut Image,
     unknown: &mut UnknownEntries,
 ) -> Result<(), ProfileError> {
-    for (name, value) in entries.map("parameters")? {
+    for (name, value) in entries.take_map("parameters")? {
         let own = name.clone().into_rust::<u16>().ok();
         let number = own.and_then(|own| match drive {
             None => ParameterNumber::new(own),
@@ -205,15 +205,15 @@ fn read_parameters(
         });
         let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
             if let ron::Value::Number(own) = &name {
-                let path = format!("{}.{}", entries.path_of("parameters"), value_text(&name));
-                return Err(ProfileError::refused(path, invalid_parameter_error(own, drive)));
+                let path = format!("{}.{}", entries.entry_path("parameters"), value_text(&name));
+                return Err(ProfileError::invalid_entry(path, invalid_parameter_error(own, drive)));
             }
-            entries.is_beyond(format!("{}.{}", entries.path_of("parameters"), value_text(&name)));
+            entries.is_beyond(format!("{}.{}", entries.entry_path("parameters"), value_text(&name)));
             unknown.0.entry(drive).or_default().push((name, value));
             continue;
         };
-        let path = format!("{}.{}", entries.path_of("parameters"), row.number);
-        let wrong = |error: EntryError| ProfileError::refused(path.clone(), error);
+        let path = format!("{}.{}", entries.entry_path("parameters"), row.number);
+        let wrong = |error: EntryError| ProfileError::invalid_entry(path.clone(), error);
         if !Image::holds(row) {
             return Err(wrong(EntryError::NotKept(Item(number))));
         }

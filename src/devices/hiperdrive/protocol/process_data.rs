@@ -3,7 +3,7 @@
 use super::control_word::{ControlWord, ReservedBitsError};
 use super::pkw::Pkw;
 use super::status_word::StatusWord;
-use crate::parameter::Words;
+use crate::parameter::Keywords;
 
 /// Byte order of numbers in the process data. The manual does not define it (reference 8.11). It is little-endian
 /// unless a device is observed to differ.
@@ -18,7 +18,7 @@ pub enum ByteOrder {
 
 impl ByteOrder {
     /// Spelling of the byte orders in link URLs.
-    pub const WORDS: Words<ByteOrder> = Words(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
+    pub const WORDS: Keywords<ByteOrder> = Keywords(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
 /// Type of the device at an IP address, which determines the number of drive ports.

@@ -8,7 +8,10 @@ use super::station::RESETS;
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEEDS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
 use crate::expected::{AllowedValues, Quantity};
-use crate::parameter::{ANY, Checked, Decimal, Milliseconds, OptionalValue, Refused, SWITCH, Whole, Words, number};
+use crate::parameter::{
+    ANY, CustomNotation, DecimalNumbers, Keywords, Milliseconds, OptionalValue, RejectedParameter, SWITCH,
+    WholeNumbers, parse_whole,
+};
 use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, SEED, SimulatedFaults, VirtualDevice, setting};
 
@@ -17,43 +20,43 @@ parameters! {
     /// with factory settings and without faults. Drive settings apply to all drives.
     pub struct Config: ConfigError {
         /// Topology, by default an adapter with one drive.
-        pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(AllowedValues::Hub, |text| HUBS.read(text));
+        pub(super) topology: Topology = Topology::Adapter, "hub" => CustomNotation(AllowedValues::Hub, |text| HUBS.read(text));
         /// Ports that have a drive, by default all. Ports after the end of the list are empty.
         drives: Option<String> = None, "drives" => OptionalValue(ANY), "connect.plugged" like "1,0,1";
         /// Whether each port has a drive; `None` means a drive in every port.
         plugged: Option<Vec<bool>> = None;
         /// Variant of the drives, given as the value of parameter 120 or by name.
-        pub(super) variant: Variant = Variant::new(7), "variant" => Checked(AllowedValues::Variant, variant);
+        pub(super) variant: Variant = Variant::new(7), "variant" => CustomNotation(AllowedValues::Variant, variant);
         /// Value of parameter 152, by default the factory setting.
-        pub(super) requested: Option<bool> = None, "requested" => OptionalValue(Words(&[("0", false), ("1", true)]));
+        pub(super) requested: Option<bool> = None, "requested" => OptionalValue(Keywords(&[("0", false), ("1", true)]));
         /// Position of the drives, in steps of 65536 per turn.
-        pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
+        pub(super) position: i32 = 0, "position" => WholeNumbers(Quantity::Steps, i32::MIN..=i32::MAX);
         /// Maximum speed (parameter 166), in tenths of rpm.
-        pub(super) speed: Option<u16> = None, "speed" => OptionalValue(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
+        pub(super) speed: Option<u16> = None, "speed" => OptionalValue(WholeNumbers(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// Spindle load in percent; no drive can move a load above 100.
-        load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
+        load: u8 = SpindleLoad::default().percent, "load" => WholeNumbers(Quantity::Torque, 0..=200);
         blocked: bool = false, "blocked" => SWITCH;
         /// Defect of the drives. They do not stop at a target or limit, turn in the wrong direction, or always set
         /// status bit 15.
-        defect: Option<DriveDefect> = None, "defect" => OptionalValue(Words(&[
+        defect: Option<DriveDefect> = None, "defect" => OptionalValue(Keywords(&[
             ("runs-on", DriveDefect::RunsOn), ("reversed", DriveDefect::Reversed), ("says-outside", DriveDefect::SaysOutside),
         ]));
         /// Ambient temperature of the drives in degrees Celsius. Drives fail from 80 degrees.
-        temperature: f64 = SpindleLoad::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
+        temperature: f64 = SpindleLoad::default().ambient, "temperature" => DecimalNumbers(Quantity::Celsius, -40.0..=120.0);
         /// Position of switch S3. Nothing can be moved over the bus unless it is 0.
-        pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
-        pub(super) switch: u8 = 0, "switch" => Checked(AllowedValues::SwitchDigits, switch);
-        pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
+        pub(super) s3: u8 = 0, "s3" => WholeNumbers(Quantity::SwitchPosition, 0..=9);
+        pub(super) switch: u8 = 0, "switch" => CustomNotation(AllowedValues::SwitchDigits, switch);
+        pub(super) volts: f64 = 24.0, "supply" => DecimalNumbers(Quantity::Volts, 0.0..=100.0);
         /// Duration of a reset of all drives (47 = −4). The reply is sent afterwards.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
         /// Serial number, parameter 17.
-        pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
+        pub(super) serial_number: u16 = 4711, "serial" => WholeNumbers(Quantity::Number, 0..=u16::MAX);
         /// Product name, parameter 15.
-        pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(AllowedValues::Ascii { most: 32 }, name);
+        pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => CustomNotation(AllowedValues::Ascii { most: 32 }, name);
         /// Byte order of numbers in process data (`U`).
         pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// Whether parameter strings are preceded by their length (`U`).
-        pub(super) counted_texts: bool = false, "text" => Words(&[("plain", false), ("counted", true)]);
+        pub(super) counted_texts: bool = false, "text" => Keywords(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
         /// Injected faults. `drop` is the fraction of replies, and of packets in both directions, that are lost. `flip`
         /// and `garbage` are the fractions of replies and returned packets with an inverted bit or replaced by random
@@ -104,7 +107,7 @@ impl Config {
 }
 
 /// Allowed words for the topology of a hub.
-const HUBS: Words<Topology> = Words(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
+const HUBS: Keywords<Topology> = Keywords(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
 
 fn variant(text: &str) -> Option<Variant> {
     let row = VARIANTS.iter().find(|row| row.name == text || row.variant.number().to_string() == text);
@@ -112,7 +115,7 @@ fn variant(text: &str) -> Option<Variant> {
 }
 
 fn switch(text: &str) -> Option<u8> {
-    number(text).and_then(AddressSwitch::parse).map(AddressSwitch::number)
+    parse_whole(text).and_then(AddressSwitch::parse).map(AddressSwitch::number)
 }
 
 fn name(text: &str) -> Option<String> {
@@ -120,7 +123,7 @@ fn name(text: &str) -> Option<String> {
     fits.then(|| text.to_owned())
 }
 
-fn places(text: &str, topology: Topology) -> Result<Vec<bool>, Refused> {
+fn places(text: &str, topology: Topology) -> Result<Vec<bool>, RejectedParameter> {
     let count = topology.drives();
     let place = |own: &str| match own.trim() {
         "1" => Some(true),
@@ -129,7 +132,7 @@ fn places(text: &str, topology: Topology) -> Result<Vec<bool>, Refused> {
     };
     let places: Option<Vec<bool>> = text.split(',').map(place).collect();
     let places = places.filter(|places| places.len() <= usize::from(count));
-    places.ok_or_else(|| Refused::new("drives", text, AllowedValues::Places { count }))
+    places.ok_or_else(|| RejectedParameter::new("drives", text, AllowedValues::Places { count }))
 }
 
 #[cfg(test)]
@@ -137,12 +140,12 @@ mod tests {
     use super::*;
     use crate::devices::hiperdrive::protocol::{ErrorCode, OutputData, OutputImage, ParameterNumber, StatusBit, Value};
     use crate::devices::hiperdrive::sim::{Station, Target};
-    use crate::sim::setting::pairs;
+    use crate::sim::setting::query_pairs;
     use crate::units::Moment;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        Config::from_pairs(&pairs(query))
+        Config::from_pairs(&query_pairs(query))
     }
 
     #[test]

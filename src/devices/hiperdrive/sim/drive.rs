@@ -251,7 +251,7 @@ impl Drive {
     /// Advances the simulation to a moment in steps of one millisecond. An earlier moment has no effect.
     pub(super) fn advance(&mut self, now: Moment) {
         while self.at + TICK <= now {
-            let ticks = if self.is_settled() { now.since(self.at).as_millis().max(1) } else { 1 };
+            let ticks = if self.is_settled() { now.duration_since(self.at).as_millis().max(1) } else { 1 };
             let ticks = u32::try_from(ticks).unwrap_or(u32::MAX);
             self.tick(ticks);
             self.at = self.at + TICK * ticks;

@@ -125,7 +125,7 @@ impl Station {
             switch: config.switch,
             supply_tenths: config.supply_in_tenths_of_volt(),
         };
-        station.store.dies_in = config.faults.die_in_store();
+        station.store.dies_in = config.faults.failing_store();
         station.resets = config.resets;
         for drive in station.present() {
             drive.axis = Axis::at(config.position.into());
@@ -380,7 +380,7 @@ impl Station {
             self.present().for_each(|drive| drive.reset(at));
         }
         let Some(Master { timeout, heard }) = self.master else { return };
-        if now.since(heard) >= timeout {
+        if now.duration_since(heard) >= timeout {
             self.master = None;
             self.present().for_each(|drive| drive.abandon(heard + timeout));
         }

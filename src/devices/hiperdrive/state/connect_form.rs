@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::jobs::check;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkScheme, LinkUrl};
-use crate::parameter::{Entry, Parameters as _};
+use crate::parameter::{Entry, ParameterGroup as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HiperdriveLinkKind {
@@ -67,7 +67,7 @@ impl FormModel for HiperdriveForm {
 
     // The window initially offers a virtual adapter.
     fn default_link() -> LinkUrl {
-        LinkUrl::sim()
+        LinkUrl::simulated()
     }
 
     fn from_url(url: &LinkUrl) -> Self {

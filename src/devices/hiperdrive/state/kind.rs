@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Config;
 use crate::devices::hiperdrive::state::explain;
 use crate::link::LinkUrl;
-use crate::parameter::Parameters as _;
+use crate::parameter::ParameterGroup as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;

@@ -10,7 +10,7 @@ use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::runner::unexpected_output;
-use crate::cli::{Done, Failure, Result, check};
+use crate::cli::{Failure, Result, Success, check};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult, Verdict};
@@ -139,7 +139,7 @@ fn reset(common: &CommonArgs, output: &Output) -> Result {
         HiperfaceOutput::Reset(codes) => {
             let list: Vec<u8> = codes.iter().map(|code| code.byte()).collect();
             output.show(&json!({"done": "reset", "codes": list}), &format!("restarted: {}", codes_text(&codes)))?;
-            Ok(Done::Well)
+            Ok(Success::Well)
         }
         other => Err(unexpected_output(&other)),
     }
@@ -151,7 +151,7 @@ fn set_temporary_settings(common: &CommonArgs, output: &Output, value: &str) -> 
         HiperfaceOutput::Configured => {
             let text = format!("until the next restart: {settings}\n");
             output.show(&json!({"done": "configure-for-now", "settings": settings.byte()}), &text)?;
-            Ok(Done::Well)
+            Ok(Success::Well)
         }
         other => Err(unexpected_output(&other)),
     }

@@ -4,7 +4,7 @@ use serde_json::Map;
 
 use crate::bits::{hex, hex_compact};
 use crate::cli::Result;
-use crate::cli::decode::{FrameExplanation, frames, show};
+use crate::cli::decode::{FrameExplanation, parse_frames, show};
 use crate::cli::output::Output;
 use crate::devices::hiperface::protocol::{Frame, Request, describe};
 use crate::devices::hiperface::state::explain as words;
@@ -12,7 +12,7 @@ use crate::devices::hiperface::state::explain as words;
 pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     let mut explained = Vec::new();
     let mut request: Option<Request> = None;
-    for bytes in &frames(words)? {
+    for bytes in &parse_frames(words)? {
         let words = describe(bytes, request.as_ref());
         let meaning = words.map(|facts| facts.iter().map(|facts| words::frame(facts).terminal_text()).collect());
         explained.push(FrameExplanation {

@@ -11,7 +11,7 @@ use crate::cli::consent::can_prompt;
 use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected_output};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperface::commands::run::{Runner, reported_codes};
 use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
@@ -39,7 +39,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
     let find = find.own.read::<args::FindOptions>()?;
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
-    output.remark(
+    output.print_message(
         "Listening for one second, then trying every address with all settings. This takes one to two minutes.",
     );
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
@@ -58,7 +58,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
                         .to_owned(),
                 ]));
             }
-            Ok(Done::Well)
+            Ok(Success::Well)
         }
         HiperfaceOutput::Found(EncoderSearchResult::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
             "Another device sends on this line ({bytes} bytes in one second), so nothing was sent. Disconnect the \
@@ -79,7 +79,7 @@ fn show_found(output: &Output, found: &[FoundEncoder]) -> Result<()> {
             json!({
                 "address": found.address,
                 "baud": found.format.baud.bits_per_second(),
-                "parity": found.format.parity.word(),
+                "parity": found.format.parity.keyword(),
                 "encoder_type": found.label.encoder_type,
                 "encoder_name": name(found),
                 "stored_settings": found.label.settings.byte(),
@@ -124,41 +124,41 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "free_bytes": free,
         "data_fields": fields,
         "baud": runner.kept.baud.bits_per_second(),
-        "parity": runner.kept.parity.word(),
+        "parity": runner.kept.parity.keyword(),
         "stored_settings": identity.label.settings.byte(),
         "options": identity.label.options,
     });
     output.show(&json, &identity_text(&identity, &runner))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn identity_text(identity: &Identity, runner: &Runner) -> String {
     let unknown = || "not provided by this encoder".to_owned();
     let mut lines = Lines::default();
     lines
-        .add("encoder", format!("{} (type {:02X}h)", identity.name, identity.label.encoder_type))
-        .add(
+        .add_line("encoder", format!("{} (type {:02X}h)", identity.name, identity.label.encoder_type))
+        .add_line(
             "resolution",
             identity
                 .geometry
                 .map_or_else(|| "not known: add periods= and turns= to the link".to_owned(), |g| g.to_string()),
         )
-        .add("serial number", &identity.serial.serial_number)
-        .add("firmware", format!("{} of {}", identity.serial.firmware_version, identity.serial.firmware_date))
-        .add("address", format!("{:02X}h", identity.address))
-        .add("talking at", runner.kept)
-        .add("stored settings", identity.label.settings)
-        .add("EEPROM", format!("{} bytes", identity.label.eeprom_bytes()))
-        .add("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
-        .add("data fields", identity.memory.map_or_else(unknown, |memory| memory.fields.to_string()))
-        .add("options", format!("{:02X}h", identity.label.options));
+        .add_line("serial number", &identity.serial.serial_number)
+        .add_line("firmware", format!("{} of {}", identity.serial.firmware_version, identity.serial.firmware_date))
+        .add_line("address", format!("{:02X}h", identity.address))
+        .add_line("talking at", runner.kept)
+        .add_line("stored settings", identity.label.settings)
+        .add_line("EEPROM", format!("{} bytes", identity.label.eeprom_bytes()))
+        .add_line("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
+        .add_line("data fields", identity.memory.map_or_else(unknown, |memory| memory.fields.to_string()))
+        .add_line("options", format!("{:02X}h", identity.label.options));
     if let Some(label) = identity.extended() {
         for parameter in &label.parameters {
             let value = parameter.value;
-            lines.add(format!("label parameter {}", parameter.number), format!("{value} ({value:04X}h)"));
+            lines.add_line(format!("label parameter {}", parameter.number), format!("{value} ({value:04X}h)"));
         }
         if !label.checksum_fits {
-            lines.add("extended label", "checksum error");
+            lines.add_line("extended label", "checksum error");
         }
     }
     lines.text()
@@ -176,7 +176,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         &json!({"ok": errors.is_empty(), "errors": code_list(&errors), "warnings": code_list(&warnings)}),
         &codes_text(&codes),
     )?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn code_list(codes: &[StatusCode]) -> Vec<Json> {
@@ -196,14 +196,14 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     if identity.geometry.is_none() {
-        output.remark(&format!(
+        output.print_message(&format!(
             "The resolution of encoder type {:02X}h is not known: add periods= and turns= to the link.",
             identity.label.encoder_type
         ));
     }
     let table = position.csv.then(|| Table::of(identity.geometry));
     if let Some(table) = &table {
-        output.print(table.header())?;
+        output.write_stdout(table.header())?;
     }
     // A status code announced during identification also applies to this position.
     let mut codes_before = reported_codes(&runner);
@@ -225,15 +225,15 @@ fn show(
             reading.valid &= !codes_before.iter().any(|code| code.invalidates_position());
             reading.codes = codes_before.drain(..).chain(reading.codes).collect();
             match table {
-                Some(table) => output.print(&table.row(&reading)),
+                Some(table) => output.write_stdout(&table.row(&reading)),
                 None => show_position(output, &reading),
             }
         }
         Ok(other) => Err(unexpected_output(&other)),
         Err(error) if error.is_without_position() => match table {
             Some(table) => {
-                output.remark(&position_error_text(&error));
-                output.print(&table.row_without_position(&reported_codes(runner)))
+                output.print_message(&position_error_text(&error));
+                output.write_stdout(&table.row_without_position(&reported_codes(runner)))
             }
             None => show_no_position(output, &error),
         },
@@ -265,7 +265,7 @@ fn position_error_text(error: &JobError) -> String {
 }
 
 fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
-    output.remark(&position_error_text(error));
+    output.print_message(&position_error_text(error));
     let json = json!({"t_s": null, "raw": null, "turns": null, "steps": null, "degrees": null, "valid": false});
     output.show(&json, "no position\n")
 }
@@ -280,7 +280,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
         }
         Value::Analogue { value, limit } => {
             if limit.is_some_and(|limit| *value > limit) {
-                output.remark("The value exceeds the limit in the extended label of the encoder.");
+                output.print_message("The value exceeds the limit in the extended label of the encoder.");
             }
             let words = limit.map(|limit| format!("  (limit {limit})")).unwrap_or_default();
             (json!({"item": item.to_string(), "value": value, "limit": limit}), format!("{value}{words}\n"))
@@ -288,7 +288,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
         Value::Number(number) => (json!({"item": item.to_string(), "value": number}), number_text(item, *number)),
     };
     output.show(&json, &text)?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn number_text(item: &Item, number: i64) -> String {

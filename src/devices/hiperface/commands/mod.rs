@@ -17,9 +17,9 @@ use self::args::{DoOptions, FindOptions, HiperfaceAction};
 use self::codes::AccessCodeArgs;
 use crate::app::TypeMap;
 use crate::cli::args::{Command, CommonArgs, SimulateArgs};
-use crate::cli::commands::{CommandId, DeviceCommands, KindOptions, enum_values, options_of};
+use crate::cli::commands::{CommandId, DeviceCommands, KindOptions, arg_list, enum_values};
 use crate::cli::output::Output;
-use crate::cli::simulate::{Simulated, settings};
+use crate::cli::simulate::{ServableDevice, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{KIND, LineSettings};
@@ -33,11 +33,11 @@ impl DeviceCommands for HiperfaceCommands {
         KIND
     }
 
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "HIPERFACE motor-feedback encoder"
     }
 
-    fn help(&self, command: CommandId) -> Option<String> {
+    fn command_help(&self, command: CommandId) -> Option<String> {
         let help = match command {
             CommandId::Find => "tries every address, baud rate and parity",
             CommandId::Status => "reads the whole error queue",
@@ -57,17 +57,17 @@ impl DeviceCommands for HiperfaceCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Find => options_of::<FindOptions>(),
-            CommandId::Do => options_of::<DoOptions>(),
+            CommandId::Find => arg_list::<FindOptions>(),
+            CommandId::Do => arg_list::<DoOptions>(),
             _ => Vec::new(),
         }
     }
 
     fn common_options(&self) -> Vec<Arg> {
-        options_of::<AccessCodeArgs>()
+        arg_list::<AccessCodeArgs>()
     }
 
-    fn given(&self, options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
+    fn add_given(&self, options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
         Ok(given.with_value(codes::given(&options.read()?)?))
     }
 
@@ -80,7 +80,7 @@ impl DeviceCommands for HiperfaceCommands {
         Some(format!("{option} {why}"))
     }
 
-    fn actions(&self) -> Vec<PossibleValue> {
+    fn action_values(&self) -> Vec<PossibleValue> {
         enum_values::<HiperfaceAction>()
     }
 
@@ -103,12 +103,12 @@ impl DeviceCommands for HiperfaceCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+    fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
         simulated(output, arguments)
     }
 }
 
-fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     if arguments.bridge {
         return Err(Failure::Usage("--bridge is for biss: hiperface uses a serial port".to_owned()));
     }
@@ -117,8 +117,8 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simula
     Ok(Box::new(Bus::new(&config)))
 }
 
-impl Simulated for Bus {
-    fn format(&self, now: Moment) -> Option<CharacterFormat> {
+impl ServableDevice for Bus {
+    fn line_format(&self, now: Moment) -> Option<CharacterFormat> {
         self.encoder(0).and_then(|encoder| encoder.active_settings_at(now)).and_then(LineSettings::format)
     }
 }

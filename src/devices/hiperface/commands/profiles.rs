@@ -11,7 +11,7 @@ use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
 use crate::cli::profiles::{UnrestoredItems, print_skipped_mounting, profile_to_restore, save_profile, write_restore};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
@@ -29,7 +29,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     save_profile(&save.file, Body::new(saved.profile))?;
     let json = json!({"file": save.file, "fields": fields, "locked": locked});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 impl ProfileCommands for HiperfaceCommands {
@@ -47,14 +47,14 @@ impl ProfileCommands for HiperfaceCommands {
         let prepared =
             result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
         if let Some(types) = prepared.other_type {
-            output.remark(&words::other_type(types).terminal_text());
+            output.print_message(&words::other_type(types).terminal_text());
         }
         check_copy_decisions(output, &prepared, restore.dry_run)?;
         if let Some(text) = words::remaining_created_fields_text(&prepared.created_left) {
-            output.remark(&text.terminal_text());
+            output.print_message(&text.terminal_text());
         }
         for item in &prepared.missing {
-            output.remark(&format!(
+            output.print_message(&format!(
                 "{item} is not restored: it is missing in the profile or the encoder, or cannot be read"
             ));
         }
@@ -66,7 +66,7 @@ impl ProfileCommands for HiperfaceCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    fn present(&self, common: &CommonArgs, output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    fn read_for_comparison(&self, common: &CommonArgs, output: &Output, _profile: Option<&Body>) -> Result<Body> {
         let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
         report_locked_fields(output, &saved, "compared without its bytes");
         Ok(Body::new(saved.profile))
@@ -91,7 +91,7 @@ fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>>
 
 fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
     for (field, code) in &saved.locked {
-        output.remark(&format!(
+        output.print_message(&format!(
             "Data field {field} is {what}: access code {code} is different. Specify it with --code {code}=HEX."
         ));
     }
@@ -133,7 +133,7 @@ fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> 
             Some(false) => "They are not changed.".to_owned(),
             None => format!("They are not changed; a restore needs --copy {item} or --leave {item}."),
         };
-        output.remark(&format!("{} {becomes}", words(own)));
+        output.print_message(&format!("{} {becomes}", words(own)));
     }
     Ok(())
 }

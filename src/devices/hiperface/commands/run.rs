@@ -4,8 +4,8 @@
 use super::HiperfaceCommands;
 use crate::app::TypeMap;
 use crate::cli::commands::DeviceCommands;
-use crate::cli::output::say;
-use crate::cli::runner::{self, Runs};
+use crate::cli::output::write_stderr;
+use crate::cli::runner::{self, CliDevice};
 use crate::devices::hiperface::jobs::{DeviceMessage, Hiperface, JobStep, may_have_other_master};
 use crate::devices::hiperface::procedures::InitialAccessCodes;
 use crate::devices::hiperface::protocol::StatusCode;
@@ -16,7 +16,7 @@ use crate::worker::Session;
 
 pub(super) type Runner = runner::Runner<Hiperface>;
 
-impl Runs for Hiperface {
+impl CliDevice for Hiperface {
     /// Character format of the serial line. `identify` prints it.
     type Context = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
@@ -26,7 +26,7 @@ impl Runs for Hiperface {
         may_have_other_master(url)
     }
 
-    fn begin(session: &mut Session<Self>, given: &TypeMap) -> CharacterFormat {
+    fn prepare_context(session: &mut Session<Self>, given: &TypeMap) -> CharacterFormat {
         if let Some(codes) = given.get::<InitialAccessCodes>() {
             codes.apply_codes(session.access_codes_mut());
         }
@@ -36,15 +36,15 @@ impl Runs for Hiperface {
     /// Prints each announced status code on its own line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
-            say(&format!("{}\n", words::unanswered_codes(*count).terminal_text()));
+            write_stderr(&format!("{}\n", words::unanswered_codes(*count).terminal_text()));
         }
         for code in codes(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };
-            say(&format!("encoder {kind}: {code}\n"));
+            write_stderr(&format!("encoder {kind}: {code}\n"));
         }
     }
 
-    fn step(doing: &JobStep) -> String {
+    fn describe_step(doing: &JobStep) -> String {
         doing.to_string()
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn execute_change(
     let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
     let spent = commit(&mut runner, output, prepared, consent)?;
     if changes_code {
-        output.remark("An access code cannot be read back; the encoder acknowledged it.");
+        output.print_message("An access code cannot be read back; the encoder acknowledged it.");
     }
     show_changes(output, item, &operations, &changes, &spent)
 }
@@ -117,7 +117,7 @@ pub(super) fn commit(
     let text = plan_text(&prepared);
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperfaceJob::Commit(Box::new(agreed)))?, HiperfaceOutput::Committed(committed) => committed);
-    Ok(WriteSummary::of(output, committed))
+    Ok(WriteSummary::from_commit(output, committed))
 }
 
 /// Describes the plan: its cost, and the old and new value of each operation.
@@ -125,7 +125,7 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     let mut lines = change_lines(plan);
     if let Some(wanted) = prepared.wanted_position {
-        lines.add(
+        lines.add_line(
             "wanted",
             format!("{wanted}; the value above is in phase with the sine signal (use --exact for the exact value)"),
         );
@@ -137,7 +137,7 @@ fn change_lines(plan: &HiperfacePlan) -> Lines {
     let mut lines = Lines::default();
     for op in &plan.ops {
         let (old, new) = old_and_new_text(op);
-        lines.add(op.item().to_string(), format!("{old}  →  {new}"));
+        lines.add_line(op.item().to_string(), format!("{old}  →  {new}"));
     }
     lines
 }

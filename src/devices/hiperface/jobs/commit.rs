@@ -18,12 +18,12 @@ pub(super) fn commit(
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let mut write = EncoderWriter::new(encoder.master(context), &commit.prepared.identity);
-    write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| JobStep::Operation(op.clone()))))
+    write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map_step(|op| JobStep::Operation(op.clone()))))
 }
 
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     let device_type = format!("{:02X}h", identity.label.encoder_type);
-    DeviceKey::of(KIND, &device_type, &identity.serial.serial_number, is_virtual)
+    DeviceKey::new(KIND, &device_type, &identity.serial.serial_number, is_virtual)
 }
 
 impl PlannedWrite for Prepared {

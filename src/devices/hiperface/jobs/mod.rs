@@ -29,7 +29,7 @@ use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
 use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::store::{DeviceKey, Store};
-use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, WatchReply};
 
 pub struct Hiperface {
     wire: Box<dyn ByteLink>,
@@ -52,7 +52,7 @@ impl fmt::Debug for Hiperface {
 
 impl Hiperface {
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
-        Master::new(context.ctx(&mut *self.wire), &mut self.station)
+        Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
     fn set_identity(&mut self, context: &SessionContext, identity: &Identity) {
@@ -99,7 +99,7 @@ impl Session<Hiperface> {
         let geometry = station.geometry;
         let (types, status) = (Arc::new(types), RecentStatusCodes::default());
         let device = Hiperface { wire, station, types, geometry, identified: None, status, told_troubles: [0; 4] };
-        Session::with(device, clock, store, is_virtual)
+        Session::from_device(device, clock, store, is_virtual)
     }
 
     pub fn access_codes_mut(&mut self) -> &mut Codes {
@@ -132,7 +132,7 @@ impl Device for Hiperface {
         result
     }
 
-    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         let geometry = self.geometry;
         let met_before = self.station.codes_met.len();
         let sample = read_sample(&mut self.master(context), geometry);
@@ -143,7 +143,7 @@ impl Device for Hiperface {
         Ok(sample)
     }
 
-    fn watch(&mut self, context: &mut SessionContext, what: &Watch) -> Result<Watched<Sample>, JobError> {
+    fn read_watched(&mut self, context: &mut SessionContext, what: &Watch) -> Result<WatchReply<Sample>, JobError> {
         let met_before = self.station.codes_met.len();
         let reading = read_watched_value(&mut self.master(context), *what);
         self.record_sampled_codes(context);
@@ -152,7 +152,7 @@ impl Device for Hiperface {
         self.station.codes_met.truncate(met_before);
         let refused = reading.is_refused();
         let sample = Sample::Watched(reading);
-        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
+        Ok(if refused { WatchReply::Refused(sample) } else { WatchReply::Sample(sample) })
     }
 
     fn take_device_message(&mut self) -> Option<DeviceMessage> {
@@ -161,20 +161,20 @@ impl Device for Hiperface {
         codes.or_else(|| self.lost_codes_message())
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.wire.check_connection()
     }
 
-    fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
+    fn maintain(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
         if let Some(unheard) = self.lost_codes_message() {
             return Some(unheard);
         }
         let line = &self.station.line;
         // Errors on a failing line are reported with the failure.
-        if line.has_errors() || line.quality.troubles() == self.told_troubles {
+        if line.has_errors() || line.quality.counts() == self.told_troubles {
             return None;
         }
-        self.told_troubles = line.quality.troubles();
+        self.told_troubles = line.quality.counts();
         Some(DeviceMessage::Line(line.quality.clone()))
     }
 }

@@ -7,7 +7,9 @@ use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, open_byte_stream, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{
+    check_parameters, connect_simulated, open_byte_stream, reply_margin, simulator_settings, wrong_target_error,
+};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to a HIPERFACE encoder without opening it.
@@ -33,7 +35,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     let types = encoder_types(&store)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let wire = open_byte_stream(url, station.format, &clock, || {
-        let mut link = inside(Bus::new(&config), &clock);
+        let mut link = connect_simulated(Bus::new(&config), &clock);
         link.set_format(station.format)?;
         Ok(link)
     })?;
@@ -47,7 +49,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
         return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, replay:"));
     }
     let mut station = Station::from_query(&url.query, reply_margin(url.scheme))?;
-    let settings = simulated(url, LinkParameters::KEYS, Config::KEYS)?;
+    let settings = simulator_settings(url, LinkParameters::KEYS, Config::KEYS)?;
     if url.scheme == LinkScheme::Sim {
         // The virtual encoder's converter may echo; this is detected as with a real one.
         station.line.echo = Echo::Unknown;

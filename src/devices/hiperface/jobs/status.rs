@@ -19,7 +19,7 @@ pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 impl RecentStatusCodes {
     /// Returns whether any of these codes was not recorded in the last minute. All of them then count as recorded.
     pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
-        self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
+        self.0.retain(|(_, kept)| now.duration_since(*kept) < AGAIN);
         let mut is_new = false;
         for code in codes {
             if !self.0.iter().any(|(own, _)| own == code) {
@@ -44,7 +44,7 @@ pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCod
 
 /// Returns the key of an encoder that was not identified.
 pub(super) fn unknown_device(is_virtual: bool) -> DeviceKey {
-    DeviceKey::of(KIND, "", "", is_virtual)
+    DeviceKey::new(KIND, "", "", is_virtual)
 }
 
 #[cfg(test)]

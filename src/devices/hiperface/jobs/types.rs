@@ -40,7 +40,7 @@ mod tests {
 
     fn store_with_table(own: &[u8]) -> (tempfile::TempDir, Store) {
         let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
+        let store = Store::at_root(root.path());
         fs::create_dir_all(store.device_file(KIND).parent().unwrap()).unwrap();
         fs::write(store.device_file(KIND), own).unwrap();
         (root, store)
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn reading_creates_no_folder() {
         let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
+        let store = Store::at_root(root.path());
         assert_eq!(encoder_types(&store), Ok(EncoderTypes::built_in()));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
     }

@@ -13,7 +13,7 @@ use super::error::Damage;
 use super::{Error, Station};
 use crate::devices::hiperface::protocol::{Answer, Command, Reply, Request};
 use crate::link::Ctx;
-use crate::link::line::{SerialLine, TRIES};
+use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 pub(super) use exchange::{ExchangeFailure, ReceivedAnswer};
 
@@ -65,7 +65,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Errors of the connection, or [`Error::Cancelled`].
     pub fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
-        Ok(self.line.drain(duration)?)
+        Ok(self.line.receive_pending(duration)?)
     }
 
     /// Sets baud rate and parity of the host.
@@ -106,7 +106,7 @@ impl<'a> Master<'a> {
     /// See [`ask`](Self::ask).
     pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
-        for _ in 0..TRIES {
+        for _ in 0..MAX_ATTEMPTS {
             if !self.station.needs_double_read() {
                 return Ok(reply);
             }
@@ -117,7 +117,7 @@ impl<'a> Master<'a> {
             self.station.line.quality.damaged += 1;
             reply = again;
         }
-        Err(Error::Damaged { command: request.command(), tries: TRIES, cause: Damage::Inconsistent })
+        Err(Error::Damaged { command: request.command(), tries: MAX_ATTEMPTS, cause: Damage::Inconsistent })
     }
 
     pub(super) fn request_with_time(&mut self, request: &Request) -> Result<TimedReply, Error> {

@@ -3,7 +3,7 @@
 use super::{Error, Identity, Master, Reading, Sample, Survey, read_survey};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
 use crate::devices::hiperface::protocol::EncoderTypes;
-use crate::profile::Unknown;
+use crate::profile::UnknownValues;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
@@ -55,9 +55,13 @@ pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Record
             eeprom_bytes: u32::try_from(identity.label.eeprom_bytes()).unwrap_or(u32::MAX),
             options: identity.label.options,
             extended_label: identity.extended_label.clone(),
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         },
-        interface: Interface { address: identity.address, settings: identity.label.settings, unknown: Unknown::new() },
+        interface: Interface {
+            address: identity.address,
+            settings: identity.label.settings,
+            unknown: UnknownValues::new(),
+        },
         recorded,
         mounting: Vec::new(),
         fields,

@@ -9,7 +9,9 @@ use crate::devices::hiperface::protocol::{
 use crate::expected::AllowedValues;
 use crate::link::line::{Echo, LineState, MARGIN};
 use crate::link::{UrlError, UrlQuery};
-use crate::parameter::{Checked, OptionalValue, Parameters, Refused, Values, number};
+use crate::parameter::{
+    CustomNotation, OptionalValue, ParameterGroup, ParameterValues, RejectedParameter, parse_whole,
+};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 
@@ -17,17 +19,17 @@ parameters! {
     /// Line and encoder parameters of a link. The defaults are the factory settings.
     pub struct LinkParameters: UrlError {
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => BaudValues;
-        pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
+        pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::KEYWORDS;
         /// Address used in requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
-            "address" => Checked(AllowedValues::AddressOrOnlyOne, read_address);
-        pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
+            "address" => CustomNotation(AllowedValues::AddressOrOnlyOne, read_address);
+        pub echo: Echo = Echo::Unknown, "echo" => Echo::KEYWORDS;
         /// Whether the encoder's time-out is 44 bits rather than 11 bits.
-        pub long_timeout: bool = true, "timeout" => Checked(AllowedValues::TimeoutBits, read_timeout);
+        pub long_timeout: bool = true, "timeout" => CustomNotation(AllowedValues::TimeoutBits, read_timeout);
         /// Time allowed for a reply beyond the worst case of the protocol. `None` means the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
-        pub periods: Option<u32> = None, "periods" => OptionalValue(Checked(AllowedValues::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
-        pub turns: Option<u32> = None, "turns" => OptionalValue(Checked(AllowedValues::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
+        pub periods: Option<u32> = None, "periods" => OptionalValue(CustomNotation(AllowedValues::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
+        pub turns: Option<u32> = None, "turns" => OptionalValue(CustomNotation(AllowedValues::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
     }
 }
 
@@ -165,14 +167,14 @@ impl fmt::Display for Station {
 
 struct BaudValues;
 
-impl Values for BaudValues {
+impl ParameterValues for BaudValues {
     type Value = Baud;
 
     fn read(&self, text: &str) -> Option<Baud> {
         text.parse().ok().and_then(Baud::new).filter(|baud| BAUDS.contains(baud))
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::OneOf(BAUDS.map(|baud| baud.to_string()).to_vec())
     }
 }
@@ -200,17 +202,19 @@ fn read_timeout(text: &str) -> Option<bool> {
 pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
-    number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
+    parse_whole(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
 }
 
 /// Returns the geometry given by `periods=` and `turns=`. The default is one turn.
-fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
+fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, RejectedParameter> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {
-        None if link.turns.is_some() => Err(Refused::new("turns", turns, AllowedValues::OnlyWith("periods="))),
+        None if link.turns.is_some() => {
+            Err(RejectedParameter::new("turns", turns, AllowedValues::OnlyWith("periods=")))
+        }
         None => Ok(None),
         Some(periods) if turns > MOST_PERIODS / periods => {
-            Err(Refused::new("turns", turns, AllowedValues::MostTurns { most: MOST_PERIODS / periods }))
+            Err(RejectedParameter::new("turns", turns, AllowedValues::MostTurns { most: MOST_PERIODS / periods }))
         }
         Some(periods) => Ok(Some(Geometry::Rotary { periods, turns })),
     }

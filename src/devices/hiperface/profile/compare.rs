@@ -2,7 +2,7 @@
 
 use super::{FieldImage, FieldRange, Item};
 use crate::bits::hex_compact;
-use crate::profile::difference::runs;
+use crate::profile::difference::differing_ranges;
 use crate::profile::{Comparison, Difference};
 
 pub(super) fn compare(left: &[FieldImage], right: &[FieldImage]) -> Comparison {
@@ -41,7 +41,7 @@ fn compare_fields(left: &FieldImage, right: &FieldImage, comparison: &mut Compar
 fn compare_bytes(number: u8, left: &[u8], right: &[u8], comparison: &mut Comparison) {
     let common = left.len().min(right.len());
     comparison.compared += common as u64;
-    for run in runs(left, right) {
+    for run in differing_ranges(left, right) {
         let part = |side: &[u8]| hex_compact(side.get(run.clone()).unwrap_or_default());
         comparison.differences.push(Difference {
             item: FieldRange::new(number, run.start, run.len()).to_string(),

@@ -3,8 +3,8 @@
 use super::{EntryError, FieldRange, Item};
 use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
 use crate::expected::AllowedValues;
-use crate::profile::mounting::NEVER_BY_ITSELF;
-use crate::profile::ron_text::{Entries, Unknown, Writer};
+use crate::profile::mounting::MOUNTING_COMMENT;
+use crate::profile::ron_text::{Entries, UnknownValues, Writer};
 use crate::profile::{Comparison, Profile, ProfileError};
 
 /// Profile of a HIPERFACE encoder.
@@ -23,7 +23,7 @@ pub struct HiperfaceProfile {
     /// Fields that the write created, with their content. Only a backup has these, and restoring it deletes them.
     pub created: Vec<FieldImage>,
     /// Unknown profile entries by field number.
-    pub unknown_in_fields: Vec<(u8, Unknown)>,
+    pub unknown_in_fields: Vec<(u8, UnknownValues)>,
 }
 
 /// Identity of an encoder.
@@ -46,7 +46,7 @@ pub struct ProfileIdentity {
     /// Content of data field FFh.
     pub extended_label: Option<Vec<u8>>,
     /// Unknown profile entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// Address and interface settings.
@@ -57,7 +57,7 @@ pub struct Interface {
     /// Stored interface settings.
     pub settings: LineSettings,
     /// Unknown profile entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// Values that change by themselves.
@@ -68,7 +68,7 @@ pub struct Recorded {
     /// Value of the counter.
     pub counter: Option<u32>,
     /// Unknown profile entries, preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// Mark on a part of a data field that contains a mounting value.
@@ -105,7 +105,7 @@ impl HiperfaceProfile {
                 self.mounting.push(MountingMark {
                     item: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
                     meaning: "commutation offset".to_owned(),
-                    unknown: Unknown::new(),
+                    unknown: UnknownValues::new(),
                 });
             }
         }
@@ -129,7 +129,7 @@ impl HiperfaceProfile {
         if let Some(label) = &identity.extended_label {
             writer.bytes("extended_label", label);
         }
-        writer.unknown(&identity.unknown);
+        writer.write_unknown(&identity.unknown);
         writer.close(')');
     }
 }
@@ -138,17 +138,17 @@ impl Profile for HiperfaceProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let identity = read_identity(entries.structure("identity")?)?;
-        let interface = read_interface(entries.structure("interface")?)?;
+        let identity = read_identity(entries.take_structure("identity")?)?;
+        let interface = read_interface(entries.take_structure("interface")?)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("field:0@0+16"), parse_mounting_item)?;
         let mut fields: Vec<FieldImage> = Vec::new();
         let mut unknown_in_fields = Vec::new();
         for entries in entries.required_structures("fields")? {
-            let path = entries.path_of("number");
+            let path = entries.entry_path("number");
             let (field, unknown) = read_field(entries)?;
             if fields.iter().any(|other| other.number == field.number) {
-                return Err(ProfileError::refused(path, EntryError::Twice(field.number)));
+                return Err(ProfileError::invalid_entry(path, EntryError::Twice(field.number)));
             }
             if !unknown.is_empty() {
                 unknown_in_fields.push((field.number, unknown));
@@ -157,7 +157,7 @@ impl Profile for HiperfaceProfile {
         }
         fields.sort_by_key(|field| field.number);
         let mut created = Vec::new();
-        for entries in entries.structures("created")? {
+        for entries in entries.take_structures("created")? {
             created.push(read_field(entries)?.0);
         }
         Ok(HiperfaceProfile { identity, interface, recorded, mounting, fields, created, unknown_in_fields })
@@ -169,9 +169,9 @@ impl Profile for HiperfaceProfile {
         writer.entry("address", &format!("0x{:02X}", self.interface.address), "");
         let settings = self.interface.settings;
         writer.entry("settings", &format!("0x{:02X}", settings.byte()), &settings.to_string());
-        writer.unknown(&self.interface.unknown);
+        writer.write_unknown(&self.interface.unknown);
         writer.close(')');
-        writer.comment("recorded, neither compared nor restored; the position belongs to the mounting");
+        writer.write_comment("recorded, neither compared nor restored; the position belongs to the mounting");
         writer.open("recorded", '(');
         if let Some(position) = self.recorded.position {
             writer.entry("position", &position.to_string(), "steps");
@@ -179,9 +179,9 @@ impl Profile for HiperfaceProfile {
         if let Some(counter) = self.recorded.counter {
             writer.entry("counter", &counter.to_string(), "");
         }
-        writer.unknown(&self.recorded.unknown);
+        writer.write_unknown(&self.recorded.unknown);
         writer.close(')');
-        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
+        MountingMark::write_all(&self.mounting, MOUNTING_COMMENT, writer);
         writer.open("fields", '[');
         for field in &self.fields {
             let unknown = self.unknown_in_fields.iter().find(|(number, _)| *number == field.number);
@@ -191,7 +191,9 @@ impl Profile for HiperfaceProfile {
         if self.created.is_empty() {
             return;
         }
-        writer.comment("created by the write: restoring this deletes them again where they are unchanged and the last");
+        writer.write_comment(
+            "created by the write: restoring this deletes them again where they are unchanged and the last",
+        );
         writer.open("created", '[');
         for field in &self.created {
             write_field(writer, field, None);
@@ -204,7 +206,7 @@ impl Profile for HiperfaceProfile {
     }
 }
 
-fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown>) {
+fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&UnknownValues>) {
     writer.open("", '(');
     writer.entry("number", &field.number.to_string(), "");
     writer.entry("status", &format!("0x{:02X}", field.status.byte()), &field.status.to_string());
@@ -213,7 +215,7 @@ fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown
         None => writer.entry("locked", "true", "the access code is not known, so there are no bytes"),
     }
     if let Some(unknown) = unknown {
-        writer.unknown(unknown);
+        writer.write_unknown(unknown);
     }
     writer.close(')');
 }
@@ -228,7 +230,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
         eeprom_bytes: entries.take_optional("eeprom_bytes", AllowedValues::Whole)?.unwrap_or_default(),
         options: entries.take_optional("options", AllowedValues::Byte)?.unwrap_or_default(),
         extended_label: entries.bytes("extended_label")?,
-        unknown: entries.rest()?,
+        unknown: entries.into_unknown()?,
     })
 }
 
@@ -236,15 +238,15 @@ fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
     Ok(Interface {
         address: entries.take_required("address", AllowedValues::Byte)?,
         settings: LineSettings::from_byte(entries.take_required("settings", AllowedValues::Byte)?),
-        unknown: entries.rest()?,
+        unknown: entries.into_unknown()?,
     })
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        position: entries.take_optional("position", AllowedValues::between(0, 4_294_967_295))?,
-        counter: entries.take_optional("counter", AllowedValues::between(0, 16_777_215))?,
-        unknown: entries.rest()?,
+        position: entries.take_optional("position", AllowedValues::whole_range(0, 4_294_967_295))?,
+        counter: entries.take_optional("counter", AllowedValues::whole_range(0, 16_777_215))?,
+        unknown: entries.into_unknown()?,
     })
 }
 
@@ -255,10 +257,11 @@ fn parse_mounting_item(text: &str) -> Result<FieldRange, EntryError> {
     }
 }
 
-fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
-    let number: u8 = entries.take_required("number", AllowedValues::between(0, 254))?;
+fn read_field(mut entries: Entries) -> Result<(FieldImage, UnknownValues), ProfileError> {
+    let number: u8 = entries.take_required("number", AllowedValues::whole_range(0, 254))?;
     let status = DataFieldStatus::from_byte(entries.take_required("status", AllowedValues::Byte)?);
-    let wrong = |entries: &Entries, name: &str, error| Err(ProfileError::refused(entries.path_of(name), error));
+    let wrong =
+        |entries: &Entries, name: &str, error| Err(ProfileError::invalid_entry(entries.entry_path(name), error));
     if !status.exists() {
         return wrong(&entries, "status", EntryError::Status(status.byte()));
     }
@@ -273,7 +276,7 @@ fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileErro
         let size = EntryError::Size { got: bytes.len(), expected: status.size().bytes() };
         return wrong(&entries, "bytes", size);
     }
-    Ok((FieldImage { number, status, bytes }, entries.rest()?))
+    Ok((FieldImage { number, status, bytes }, entries.into_unknown()?))
 }
 
 #[cfg(test)]

@@ -330,7 +330,7 @@ impl MaskableFrame {
 
     /// Returns the bytes for display. Access codes are masked, and so is the checksum that would reveal them.
     pub fn masked(&self) -> MaskedBytes {
-        MaskedBytes::masked(&self.bytes, &self.secret)
+        MaskedBytes::with_masked(&self.bytes, &self.secret)
     }
 }
 

@@ -2,14 +2,14 @@
 
 use super::{Bus, Config};
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, SerialDevice};
-use crate::parameter::{Parameters, Words};
+use crate::parameter::{Keywords, ParameterGroup};
 use crate::parameters;
 use crate::sim::ConfigError;
 use crate::units::Moment;
 
 parameters! {
     struct Settings: ConfigError {
-        is_there: bool = false, "uart" => Words(&[("none", false), ("hiperface", true)]);
+        is_there: bool = false, "uart" => Keywords(&[("none", false), ("hiperface", true)]);
     }
 }
 

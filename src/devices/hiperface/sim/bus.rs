@@ -10,7 +10,7 @@ use super::config::Config;
 use super::encoder::{Encoder, ReceivedCharacter};
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::SimulatedFaults;
-use crate::sim::line::{SerialCharacter, TransitQueue, VirtualLine, Wires};
+use crate::sim::line::{LineConditions, SerialCharacter, TransitQueue, VirtualLine};
 use crate::units::{CharacterFormat, Moment, Parity};
 
 /// Line with one or several encoders, as the host sees it. It is created from a [`Config`].
@@ -18,7 +18,7 @@ use crate::units::{CharacterFormat, Moment, Parity};
 pub struct Bus {
     encoders: Vec<Encoder>,
     echo: bool,
-    wires: Wires,
+    wires: LineConditions,
     /// Characters in transit to the encoders, by start time.
     to_encoders: TransitQueue<CharacterInTransit>,
     /// Characters in transit to the host, by end time.
@@ -65,7 +65,7 @@ impl Bus {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
             echo: config.echo,
-            wires: Wires::new(&config.faults, config.seed, CharacterFormat::FACTORY),
+            wires: LineConditions::new(&config.faults, config.seed, CharacterFormat::FACTORY),
             to_encoders: TransitQueue::default(),
             to_host: TransitQueue::default(),
             talks: Vec::new(),
@@ -93,7 +93,7 @@ impl Bus {
     }
 
     pub fn power_cycle(&mut self, now: Moment) {
-        self.advance(now);
+        self.advance_to(now);
         for encoder in &mut self.encoders {
             encoder.power_cycle(self.wires.now);
         }
@@ -175,19 +175,19 @@ fn garbage_byte(rng: &mut Rng) -> u8 {
 impl VirtualLine for Bus {
     type Event = Event;
 
-    fn wires(&self) -> &Wires {
+    fn line_conditions(&self) -> &LineConditions {
         &self.wires
     }
 
-    fn wires_mut(&mut self) -> &mut Wires {
+    fn wires_mut(&mut self) -> &mut LineConditions {
         &mut self.wires
     }
 
     fn next_event(&self) -> Option<(Moment, Event)> {
         let acting =
             |(index, encoder): (usize, &Encoder)| Some((encoder.next_action_time()?, Event::EncoderActs(index)));
-        let hearing = self.to_encoders.due().map(|at| (at, Event::EncodersHear));
-        let receiving = self.to_host.due().map(|at| (at, Event::HostReceives));
+        let hearing = self.to_encoders.next_due().map(|at| (at, Event::EncodersHear));
+        let receiving = self.to_host.next_due().map(|at| (at, Event::HostReceives));
         self.encoders.iter().enumerate().filter_map(acting).chain(hearing).chain(receiving).min()
     }
 

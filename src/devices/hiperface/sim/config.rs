@@ -5,7 +5,9 @@ use super::encoder::Pace;
 use super::models::{MODELS, Model};
 use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
 use crate::expected::{AllowedValues, Quantity};
-use crate::parameter::{Checked, OptionalValue, Refused, SWITCH, Values, Whole, Words, number};
+use crate::parameter::{
+    CustomNotation, Keywords, OptionalValue, ParameterValues, RejectedParameter, SWITCH, WholeNumbers, parse_whole,
+};
 use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
@@ -16,17 +18,17 @@ parameters! {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
         pub(super) model: Model = default_model(), "model" => ModelValues;
-        pub(super) encoder_type: Option<u8> = None, "type" => OptionalValue(Checked(AllowedValues::TypeByte, number::<u8>));
-        pub(super) serial_number: Option<String> = None, "serial" => OptionalValue(Checked(AllowedValues::SerialNumber, serial));
-        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => Checked(AllowedValues::BusAddress { last: DeviceAddress::LAST.byte() }, address);
+        pub(super) encoder_type: Option<u8> = None, "type" => OptionalValue(CustomNotation(AllowedValues::TypeByte, parse_whole::<u8>));
+        pub(super) serial_number: Option<String> = None, "serial" => OptionalValue(CustomNotation(AllowedValues::SerialNumber, serial));
+        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => CustomNotation(AllowedValues::BusAddress { last: DeviceAddress::LAST.byte() }, address);
         pub(super) settings: LineSettings = LineSettings::FACTORY,
-            "settings" => Checked(AllowedValues::SettingsByte, settings);
+            "settings" => CustomNotation(AllowedValues::SettingsByte, settings);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        pub(super) position: Option<u32> = None, "position" => OptionalValue(Checked(AllowedValues::Steps, number::<u32>));
-        pub(super) temperature: i16 = 42, "temperature" => Whole(Quantity::WholeCelsius, -100..=300);
+        pub(super) position: Option<u32> = None, "position" => OptionalValue(CustomNotation(AllowedValues::Steps, parse_whole::<u32>));
+        pub(super) temperature: i16 = 42, "temperature" => WholeNumbers(Quantity::WholeCelsius, -100..=300);
         pub(super) echo: bool = false, "echo" => SWITCH;
-        pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Number, 1..=8);
-        pub(super) pace: Pace = Pace::Typical, "pace" => Words(&[("typical", Pace::Typical), ("worst", Pace::Worst)]);
+        pub(super) encoders: u8 = 1, "encoders" => WholeNumbers(Quantity::Number, 1..=8);
+        pub(super) pace: Pace = Pace::Typical, "pace" => Keywords(&[("typical", Pace::Typical), ("worst", Pace::Worst)]);
         pub(super) codes: [AccessCode; 4] = [AccessCode::FACTORY; 4], secret "codes" => Codes;
     }
 }
@@ -79,13 +81,13 @@ impl Config {
             && u64::from(position) >= range
         {
             let allowed = AllowedValues::range(Quantity::Position, 0, range - 1);
-            return Err(Refused::new("position", position, allowed).into());
+            return Err(RejectedParameter::new("position", position, allowed).into());
         }
         let last_first = DeviceAddress::LAST.byte() - (self.encoders - 1);
         if self.address.byte() > last_first {
             let allowed = AllowedValues::FirstAddress { last: last_first };
             let address = format!("{:#04X}", self.address.byte());
-            return Err(Refused::new("address", address, allowed).into());
+            return Err(RejectedParameter::new("address", address, allowed).into());
         }
         Ok(())
     }
@@ -98,14 +100,14 @@ const fn default_model() -> Model {
 
 struct ModelValues;
 
-impl Values for ModelValues {
+impl ParameterValues for ModelValues {
     type Value = Model;
 
     fn read(&self, text: &str) -> Option<Model> {
         Model::find(text).copied()
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::OneOf(MODELS.map(|model| model.name.to_owned()).to_vec())
     }
 }
@@ -113,7 +115,7 @@ impl Values for ModelValues {
 /// Access codes by number, such as `0:55,2:66`.
 struct Codes;
 
-impl Values for Codes {
+impl ParameterValues for Codes {
     type Value = [AccessCode; 4];
 
     fn read(&self, text: &str) -> Option<[AccessCode; 4]> {
@@ -126,7 +128,7 @@ impl Values for Codes {
         Some(codes)
     }
 
-    fn allowed(&self) -> AllowedValues {
+    fn allowed_values(&self) -> AllowedValues {
         AllowedValues::AccessCodes
     }
 }
@@ -137,21 +139,21 @@ fn serial(text: &str) -> Option<String> {
 }
 
 fn address(text: &str) -> Option<DeviceAddress> {
-    number(text).and_then(DeviceAddress::new)
+    parse_whole(text).and_then(DeviceAddress::new)
 }
 
 fn settings(text: &str) -> Option<LineSettings> {
-    number(text).map(LineSettings::from_byte).filter(|settings| settings.is_valid())
+    parse_whole(text).map(LineSettings::from_byte).filter(|settings| settings.is_valid())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::setting::pairs;
+    use crate::sim::setting::query_pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        Config::from_pairs(&pairs(query))
+        Config::from_pairs(&query_pairs(query))
     }
 
     #[test]

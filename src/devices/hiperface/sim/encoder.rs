@@ -197,7 +197,7 @@ impl Encoder {
             Power::Off => None,
             Power::OnForLong => Some(switched),
             Power::Starting { since, keeps_default } => {
-                let running = at.since(since);
+                let running = at.duration_since(since);
                 let factory = Some(self.temporary.unwrap_or(LineSettings::FACTORY));
                 if running < Timing::INITIALISATION {
                     None
@@ -305,7 +305,7 @@ impl Encoder {
         self.frames_processed = self.frames_processed.saturating_add(1);
         let verdict = frame.and_then(|frame| self.parse_request(&frame));
         if let (Power::Starting { since, keeps_default }, Ok(_)) = (&mut self.power, &verdict)
-            && at.since(*since) < Timing::DEFAULT_WINDOW_END
+            && at.duration_since(*since) < Timing::DEFAULT_WINDOW_END
         {
             *keeps_default = true;
         }
@@ -366,7 +366,7 @@ impl Encoder {
             return false;
         }
         self.stores_begun = self.stores_begun.saturating_add(1);
-        self.faults.die_in_store() == Some(self.stores_begun)
+        self.faults.failing_store() == Some(self.stores_begun)
             && self.electronics.store_first_half(*field, *address, data, *code).is_ok()
     }
 }

@@ -86,7 +86,7 @@ impl Shaft {
     fn place(&self, at: Moment) -> f64 {
         // A linear scale has no turns, so `rpm` means periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;
-        let moved = at.since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
+        let moved = at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
         let range = self.range() as f64;
         // rem_euclid may round up to the range itself.
         let place = (self.place + moved).rem_euclid(range);

@@ -12,7 +12,7 @@ use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::forms::with_address_range;
 use crate::link::{LinkScheme, LinkUrl, PORT_EXAMPLE, UrlError};
-use crate::parameter::{Entry, Parameters as _, Values as _, chosen};
+use crate::parameter::{Entry, ParameterGroup as _, ParameterValues as _, select_entries};
 use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
@@ -76,7 +76,7 @@ impl FormModel for LinkForm {
     type Finder = EncoderSearchForm;
 
     fn default_link() -> LinkUrl {
-        LinkUrl::sim()
+        LinkUrl::simulated()
     }
 
     fn from_url(url: &LinkUrl) -> Self {
@@ -121,7 +121,7 @@ impl LinkForm {
 
     /// Returns the parameters of the virtual encoder that the form offers as text entries.
     pub fn virtual_device_entries() -> Vec<Entry> {
-        chosen(&Config::entries(), &["rpm", "fault"])
+        select_entries(&Config::entries(), &["rpm", "fault"])
     }
 
     pub fn link_entries() -> Vec<Entry> {
@@ -146,7 +146,7 @@ impl LinkForm {
     fn set_choice(&mut self, name: &str, value: &str) -> bool {
         let (baud, parity, echo, long_timeout) = (self.baud, self.parity, self.echo, self.long_timeout);
         let mut link = LinkParameters { baud, parity, echo, long_timeout, ..LinkParameters::default() };
-        let is_taken = link.set(name, value).unwrap_or(false);
+        let is_taken = link.set_value(name, value).unwrap_or(false);
         (self.baud, self.parity, self.echo, self.long_timeout) = (link.baud, link.parity, link.echo, link.long_timeout);
         if is_taken && name == "address" {
             self.address = address_text(link.address);
@@ -176,14 +176,14 @@ impl LinkForm {
             parameters.set("baud", &self.baud.to_string());
         }
         if self.parity != usual.parity {
-            parameters.set("parity", self.parity.word());
+            parameters.set("parity", self.parity.keyword());
         }
         let address = self.address_byte()?;
         if address != DeviceAddress::FACTORY.byte() {
             parameters.set("address", &format!("0x{address:02X}"));
         }
         if self.echo != Echo::Unknown {
-            parameters.set("echo", &Echo::WORDS.print(&self.echo));
+            parameters.set("echo", &Echo::KEYWORDS.format_example(&self.echo));
         }
         if !self.long_timeout {
             parameters.set("timeout", "11");

@@ -126,7 +126,7 @@ impl Encoder {
             url.query.set("baud", &format.baud.to_string());
         }
         if now.format.parity != format.parity {
-            url.query.set("parity", format.parity.word());
+            url.query.set("parity", format.parity.keyword());
         }
         if now.long_timeout != settings.has_long_timeout() {
             url.query.set("timeout", if settings.has_long_timeout() { "44" } else { "11" });

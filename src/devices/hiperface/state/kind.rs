@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
-use crate::parameter::Parameters as _;
+use crate::parameter::ParameterGroup as _;
 use crate::profile::Cause;
 use crate::store::{Store, StoreError};
 use crate::worker::OpenError;

@@ -17,7 +17,7 @@ impl Meaning {
     pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
         match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), Direction::Sent) => self.sent(&bytes),
-            (None, Direction::Sent) => self.sent(&with_checksum(entry.bytes.filled(0))),
+            (None, Direction::Sent) => self.sent(&with_checksum(entry.bytes.with_stand_in(0))),
             (Some(bytes), Direction::Received) => self.received(&bytes),
             (None, Direction::Received) => {
                 self.request = None;
@@ -101,7 +101,7 @@ mod tests {
             assert!(text.join(" ").contains(words), "{label}: {text:?}");
         }
         let mut meaning = Meaning::default();
-        let hidden = TraceEntry { bytes: MaskedBytes::hidden(3), ..entry(Direction::Received, &[]) };
+        let hidden = TraceEntry { bytes: MaskedBytes::fully_masked(3), ..entry(Direction::Received, &[]) };
         assert_eq!(meaning.of(&hidden).fault, Some(TraceFault::Broken));
     }
 }

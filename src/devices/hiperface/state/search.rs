@@ -44,7 +44,7 @@ impl Search {
     pub(crate) fn encoder_link(&self, found: &FoundEncoder) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());
-        url.query.set("parity", found.format.parity.word());
+        url.query.set("parity", found.format.parity.keyword());
         url.query.set("address", &format!("0x{:02X}", found.address));
         url
     }

@@ -12,7 +12,7 @@ use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_changes;
-use crate::cli::{Done, Failure, Result, check};
+use crate::cli::{Failure, Result, Success, check};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{Item, ItemValue};
 use crate::devices::interbus::protocol::{KIND, Reply};
@@ -29,7 +29,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
         (InterbusAction::Check, []) => check_device(common, output),
         (InterbusAction::LeadBack, []) => lead_back(common, output),
         (InterbusAction::Default, []) => {
-            output.remark(&TEXTS.text("ib_disturbs.default").terminal_text());
+            output.print_message(&TEXTS.text("ib_disturbs.default").terminal_text());
             change(common, output, act, |_| Ok(Change::Default))
         }
         (InterbusAction::Preset, []) => {
@@ -65,7 +65,7 @@ fn lead_back(common: &CommonArgs, output: &Output) -> Result {
     let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
     let Reply::Error(error) = reading.reply() else {
         output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
-        return Ok(Done::Well);
+        return Ok(Success::Well);
     };
     output.show(&json, &format!("the encoder is in mode {is}\n"))?;
     let why = words::refusal(error).terminal_text();

@@ -6,7 +6,7 @@ use super::DisturbanceLevel;
 use super::run::{Runner, identity};
 use crate::cli::args::CommonArgs;
 use crate::cli::output::{Lines, Output};
-use crate::cli::{Done, Result};
+use crate::cli::{Result, Success};
 use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::{Identity, Status};
 use crate::devices::interbus::profile::ItemValue;
@@ -31,7 +31,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "steps_minus_one": identity.flags.steps_minus_one(),
     });
     output.show(&json, &identity_text(&identity))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn identity_text(identity: &Identity) -> String {
@@ -40,12 +40,12 @@ fn identity_text(identity: &Identity) -> String {
     let direction = words::direction(identity.direction).terminal_text();
     let mut lines = Lines::default();
     lines
-        .add("encoder", format!("INTERBUS K3, {kind}{less}"))
-        .add("serial number", &identity.serial_number)
-        .add("software version", identity.software_version)
-        .add("steps", format!("{} over {}", identity.steps, turns(identity.revolutions)))
-        .add("direction", format!("{} ({direction})", identity.direction))
-        .add("mode", words::startup_mode_text(identity.mode).terminal_text());
+        .add_line("encoder", format!("INTERBUS K3, {kind}{less}"))
+        .add_line("serial number", &identity.serial_number)
+        .add_line("software version", identity.software_version)
+        .add_line("steps", format!("{} over {}", identity.steps, turns(identity.revolutions)))
+        .add_line("direction", format!("{} ({direction})", identity.direction))
+        .add_line("mode", words::startup_mode_text(identity.mode).terminal_text());
     lines.text()
 }
 
@@ -88,7 +88,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "operating_minutes": status.operating_minutes,
     });
     output.show(&json, &status_text(&status))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 /// Returns the bits of a position word that are set although they should be 0, with a message.
@@ -107,12 +107,12 @@ fn status_text(status: &Status) -> String {
         .map(|error| format!("0x{:08X}: {}", Reply::Error(error).emit(), words::refusal(error).terminal_text()));
     let mut lines = Lines::default();
     lines
-        .add("errors", error.unwrap_or_else(|| "none".to_owned()))
-        .add("warnings", unexpected_bits(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
-        .add("IN word", format!("0x{:08X}", status.reading.word))
-        .add("mode", words::startup_mode_text(status.mode).terminal_text())
-        .add("temperature", format!("{:.1} °C", celsius(status.temperature_tenths)))
-        .add("operating time", format!("{} min", status.operating_minutes));
+        .add_line("errors", error.unwrap_or_else(|| "none".to_owned()))
+        .add_line("warnings", unexpected_bits(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
+        .add_line("IN word", format!("0x{:08X}", status.reading.word))
+        .add_line("mode", words::startup_mode_text(status.mode).terminal_text())
+        .add_line("temperature", format!("{:.1} °C", celsius(status.temperature_tenths)))
+        .add_line("operating time", format!("{} min", status.operating_minutes));
     lines.text()
 }
 
@@ -145,5 +145,5 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     }
     let text = if unit.is_empty() { format!("{value}\n") } else { format!("{value} {unit}\n") };
     output.show(&json, &text)?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }

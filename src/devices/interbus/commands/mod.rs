@@ -18,10 +18,10 @@ use clap::builder::PossibleValue;
 
 use self::args::{InterbusAction, WordOptions};
 use crate::cli::args::{Command, CommonArgs, ConsentArgs, SimulateArgs};
-use crate::cli::commands::{CommandId, DeviceCommands, enum_values, options_of};
-use crate::cli::consent::{ask, can_prompt};
+use crate::cli::commands::{CommandId, DeviceCommands, arg_list, enum_values};
+use crate::cli::consent::{ask_yes_no, can_prompt};
 use crate::cli::output::Output;
-use crate::cli::simulate::Simulated;
+use crate::cli::simulate::ServableDevice;
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Item, ItemError};
 use crate::devices::interbus::protocol::KIND;
@@ -40,15 +40,15 @@ impl DeviceCommands for InterbusCommands {
         KIND
     }
 
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "INTERBUS encoder (K3) behind a Modbus/TCP gateway (modbus:); decode also explains words of K1 and K2"
     }
 
-    fn note(&self) -> Option<&'static str> {
+    fn help_note(&self) -> Option<&'static str> {
         Some("Reading a value of an INTERBUS encoder briefly replaces its position in the process data.")
     }
 
-    fn help(&self, command: CommandId) -> Option<String> {
+    fn command_help(&self, command: CommandId) -> Option<String> {
         let help = match command {
             CommandId::Read => {
                 let items = "items: steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
@@ -74,12 +74,12 @@ impl DeviceCommands for InterbusCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Decode => options_of::<WordOptions>(),
+            CommandId::Decode => arg_list::<WordOptions>(),
             _ => Vec::new(),
         }
     }
 
-    fn actions(&self) -> Vec<PossibleValue> {
+    fn action_values(&self) -> Vec<PossibleValue> {
         enum_values::<InterbusAction>()
     }
 
@@ -97,7 +97,7 @@ impl DeviceCommands for InterbusCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+    fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
         simulate::simulated(output, arguments)
     }
 }
@@ -130,7 +130,7 @@ impl DisturbanceLevel {
         if !matches!(self, DisturbanceLevel::Programs) || is_virtual || consented || !can_prompt() {
             return Ok(());
         }
-        if ask("Does the machine stand still? [y/N] ") {
+        if ask_yes_no("Does the machine stand still? [y/N] ") {
             return Ok(());
         }
         Err(Failure::Failed(vec!["Not confirmed; no cam program was selected.".to_owned()]))
@@ -142,6 +142,6 @@ impl DisturbanceLevel {
             DisturbanceLevel::Programs => "ib_disturbs.programs",
             DisturbanceLevel::LeadingBack => "ib_disturbs.lead_back",
         };
-        output.remark(&TEXTS.text(id).terminal_text());
+        output.print_message(&TEXTS.text(id).terminal_text());
     }
 }

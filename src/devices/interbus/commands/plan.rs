@@ -27,7 +27,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     let prepared =
         result_of!(runner.run(InterbusJob::Prepare(change))?, InterbusOutput::Prepared(prepared) => *prepared);
     if !reads_all && prepared.plan.ops.iter().any(reduces_steps) {
-        output.remark(&TEXTS.text("ib_disturbs.shorter").terminal_text());
+        output.print_message(&TEXTS.text("ib_disturbs.shorter").terminal_text());
     }
     Ok(prepared)
 }
@@ -51,7 +51,7 @@ pub(super) fn commit(
     check_wear::<Interbus>(consent, &prepared)?;
     let wear_text = words::wear(&prepared).map(|text| text.terminal_text());
     if let Some(wear_text) = &wear_text {
-        output.remark(wear_text);
+        output.print_message(wear_text);
     }
     let stop = TEXTS.text("ib_disturbs.writing").terminal_text();
     let text = format!("{}{stop}", shown(&prepared).text);
@@ -62,13 +62,13 @@ pub(super) fn commit(
     }
     let agreed = confirm_plan(output, consent, prepared, &texts)?;
     let committed = result_of!(runner.run(InterbusJob::Commit(Box::new(agreed)))?, InterbusOutput::Committed(committed) => *committed);
-    Ok(WriteSummary::of(output, committed))
+    Ok(WriteSummary::from_commit(output, committed))
 }
 
 /// Returns the plan as text and JSON. It contains the cost and the old and new value of each item.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
-    PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
+    PlanReport::from_plan(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
 /// Returns the operations as JSON. Items that are stored together share one cost.
@@ -78,7 +78,7 @@ pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
 
 /// Returns the operations as text with the old and new values, one per line.
 pub(super) fn change_lines(plan: &InterbusPlan) -> String {
-    plan::lines(plan.ops.iter().flat_map(steps)).text()
+    plan::step_lines(plan.ops.iter().flat_map(steps)).text()
 }
 
 fn steps(op: &Op) -> Vec<PlanStep> {

@@ -8,7 +8,7 @@ use super::run::{Runner, identity, programs};
 use crate::cli::Result;
 use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::Output;
-use crate::cli::positions::readings;
+use crate::cli::positions::print_readings;
 use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
@@ -24,12 +24,12 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
         programs(&mut runner, Vec::new())?;
     }
     if position.csv {
-        output.print("t_s,raw,turns,steps,degrees,valid\n")?;
+        output.write_stdout("t_s,raw,turns,steps,degrees,valid\n")?;
     }
     let job = || InterbusJob::Position;
-    readings(&mut runner, position, job, |came| {
+    print_readings(&mut runner, position, job, |came| {
         let reading = result_of!(came, InterbusOutput::Position(reading) => reading);
-        if position.csv { output.print(&row(&reading)) } else { show(output, &reading) }
+        if position.csv { output.write_stdout(&row(&reading)) } else { show(output, &reading) }
     })
 }
 

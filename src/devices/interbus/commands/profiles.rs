@@ -14,7 +14,7 @@ use crate::cli::profiles::{
     write_restore,
 };
 use crate::cli::runner::unexpected_output;
-use crate::cli::{Done, Result};
+use crate::cli::{Result, Success};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, programs_to_read};
 use crate::devices::interbus::state::explain as words;
@@ -26,7 +26,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     save_profile(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "programs": programs});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 impl ProfileCommands for InterbusCommands {
@@ -39,7 +39,7 @@ impl ProfileCommands for InterbusCommands {
         disturbs.begin(common, output, Some(&restore.consent))?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
-            output.remark(&words::other_type(types).terminal_text());
+            output.print_message(&words::other_type(types).terminal_text());
         }
         print_missing(output, &prepared.missing);
         print_skipped_mounting(output, &prepared.mounting_left);
@@ -51,7 +51,7 @@ impl ProfileCommands for InterbusCommands {
 
     /// Reads the encoder for a comparison. If a profile is given, only its items are read. Reading a cam program
     /// switches the outputs of the encoder.
-    fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
+    fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
             None => saved(common, output)?,
             Some(profile) => read_comparable_profile(common, output, profile)?,

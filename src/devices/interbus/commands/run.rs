@@ -4,7 +4,7 @@ use super::InterbusCommands;
 use crate::app::TypeMap;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
-use crate::cli::runner::{self, Runs, failed};
+use crate::cli::runner::{self, CliDevice, to_failure};
 use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput, JobStep};
 use crate::devices::interbus::procedures::{Identity, Survey};
 use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
@@ -15,27 +15,27 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Interbus>;
 
 // Only the window shows the steps of the handshake. A recording contains their bytes.
-impl Runs for Interbus {
+impl CliDevice for Interbus {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
 
-    fn begin(_session: &mut Session<Self>, _given: &TypeMap) {}
+    fn prepare_context(_session: &mut Session<Self>, _given: &TypeMap) {}
 
-    fn step(doing: &JobStep) -> String {
+    fn describe_step(doing: &JobStep) -> String {
         doing.to_string()
     }
 }
 
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     let identity = result_of!(runner.run(InterbusJob::Identify)?, InterbusOutput::Identity(identity) => identity);
-    identity.gear().map_err(|why| failed(&words::implausible(why)))?;
+    identity.gear().map_err(|why| to_failure(&words::implausible(why)))?;
     Ok(identity)
 }
 
 /// Reads all values that are available without selecting a cam program.
 pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
     let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
-    survey.identity.gear().map_err(|why| failed(&words::implausible(why)))?;
+    survey.identity.gear().map_err(|why| to_failure(&words::implausible(why)))?;
     Ok(survey)
 }
 

@@ -4,11 +4,11 @@ use std::net::Ipv4Addr;
 
 use crate::cli::args::SimulateArgs;
 use crate::cli::output::Output;
-use crate::cli::simulate::{Simulated, settings};
+use crate::cli::simulate::{ServableDevice, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::sim::{Config, Gateway};
 
-pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     if arguments.pty.is_some() {
         let what =
             "an INTERBUS encoder is reached through a Modbus/TCP gateway: use --listen HOST:PORT instead of --pty";
@@ -23,9 +23,9 @@ pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box
     Ok(Box::new(Gateway::new(&config)))
 }
 
-impl Simulated for Gateway {
+impl ServableDevice for Gateway {
     /// Returns a further connection to the gateway, since it serves several masters at once.
-    fn duplicate(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+    fn clone_for_peer(&self, _peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         Some(Box::new(self.connection()))
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn commit(
     let master = encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
     let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        (tell.borrow_mut())(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
+        (tell.borrow_mut())(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item()))));
     })
 }
 

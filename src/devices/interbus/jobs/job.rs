@@ -228,7 +228,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
 }
 
 pub(super) fn logbook_key(serial_number: &str, is_virtual: bool) -> DeviceKey {
-    DeviceKey::of(KIND, "K3", serial_number, is_virtual)
+    DeviceKey::new(KIND, "K3", serial_number, is_virtual)
 }
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ impl Notes {
         let mut logbook = Logbook::open(&self.store.logbook_path())?;
         let items = vec![ChangedItem::new(WHAT, None, None)];
         let intent = Intent { kind: EntryKind::Procedure, items, planned_cycles: stores, backup: None };
-        let entry = logbook.intend(Timestamp::now(), &self.key(serial_number), &intent)?;
+        let entry = logbook.record_intent(Timestamp::now(), &self.key(serial_number), &intent)?;
         Ok((logbook, entry))
     }
 }

@@ -27,7 +27,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, WatchReply};
 
 pub struct Interbus {
     wire: Box<dyn ByteLink>,
@@ -47,7 +47,9 @@ impl Interbus {
     /// Returns the master of the encoder. It calls `on_step` for each step of the handshake.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(context.store.clone(), context.is_virtual);
-        Master::new(context.ctx(&mut *self.wire), &mut self.station).with_reporter(on_step).with_journal(notes)
+        Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
+            .with_reporter(on_step)
+            .with_journal(notes)
     }
 }
 
@@ -62,7 +64,7 @@ impl Session<Interbus> {
         motor: Option<Motor>,
     ) -> Self {
         let is_virtual = motor.is_some();
-        Session::with(Interbus { wire, station, motor }, clock, store, is_virtual)
+        Session::from_device(Interbus { wire, station, motor }, clock, store, is_virtual)
     }
 
     pub fn station(&self) -> &Station {
@@ -142,16 +144,20 @@ impl Device for Interbus {
         }
     }
 
-    fn sample(&mut self, context: &mut SessionContext) -> Result<WordReading, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<WordReading, JobError> {
         Ok(self.master(context, |_| {}).reading()?)
     }
 
-    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<WordReading>, JobError> {
+    fn read_watched(
+        &mut self,
+        _desk: &mut SessionContext,
+        what: &Infallible,
+    ) -> Result<WatchReply<WordReading>, JobError> {
         match *what {}
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.wire.check_connection()
     }
 }
 

@@ -9,7 +9,9 @@ use crate::devices::interbus::procedures::{LinkParameters, Station};
 use crate::devices::interbus::sim::{Config, Gateway};
 use crate::link::{Clock, Direction, LinkScheme, LinkUrl, RealClock, ReplayLink, TraceEntry, Wire};
 use crate::store::Store;
-use crate::worker::open::{inside, open_byte_stream, read_recording, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{
+    connect_simulated, open_byte_stream, read_recording, reply_margin, simulator_settings, wrong_target_error,
+};
 use crate::worker::{OpenError, Session};
 
 /// Checks the link URL of an INTERBUS encoder. The link is not opened.
@@ -38,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     let wire = open_byte_stream(url, FORMAT, &clock, || {
         let gateway = Gateway::new(&config);
         motor = Some(gateway.shaft());
-        Ok(inside(gateway, &clock))
+        Ok(connect_simulated(gateway, &clock))
     })?;
     Ok(Session::for_gateway(wire, clock, station, store, motor))
 }
@@ -48,7 +50,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Modbus | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, modbus:, replay:"));
     }
-    let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
+    let config = Config::from_pairs(&simulator_settings(url, LinkParameters::KEYS, Config::KEYS)?)?;
     let mut station = Station::from_query(&url.query, reply_margin(url.scheme))?;
     station.recorded = url.scheme == LinkScheme::Replay;
     Ok((station, config))
@@ -57,7 +59,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
 /// Masks the number of a request. It differs in each request, so a recording could otherwise not answer.
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
-    TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }
+    TraceEntry { bytes: MaskedBytes::with_masked(&bytes, &[0, 1]), ..entry }
 }
 
 #[cfg(test)]

@@ -102,7 +102,7 @@ pub fn check(
     match master.run_guarded(|master| read_survey(master, progress)) {
         Ok(survey) => {
             let requested = survey.read_outs().count() as u64;
-            let each_ms = master.now().since(begun).as_millis() as u64 / requested.max(1);
+            let each_ms = master.now().duration_since(begun).as_millis() as u64 / requested.max(1);
             lines.push(InterbusStepResult::new(
                 CheckStep::Handshake,
                 vec![(Verdict::Good, CheckFinding::ReadOuts { requested, each_ms })],
@@ -125,7 +125,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
     for _ in 0..LOOKS {
         let begun = master.now();
         word = master.reading()?.word;
-        slowest = slowest.max(master.now().since(begun));
+        slowest = slowest.max(master.now().duration_since(begun));
     }
     let slowest_ms = slowest.as_millis() as u64;
     let answers = InterbusStepResult::new(

@@ -125,7 +125,7 @@ impl<'a> Gateway<'a> {
             return Ok(Err(ExchangeError::Damage(Damage::Registers)));
         };
         let sent_at = self.line.now();
-        self.state.line.sent(sent_at);
+        self.state.line.mark_sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
         let deadline = sent_at + self.link.timeout + self.state.line.margin;
         loop {
@@ -137,7 +137,7 @@ impl<'a> Gateway<'a> {
                         if self.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
                             let judged = judge(&request, requested, frame);
                             if !matches!(judged, Err(ExchangeError::Damage(_))) {
-                                self.state.line.answered();
+                                self.state.line.mark_replied();
                                 self.state.line.record_answer_start(now);
                             }
                             return Ok(judged);

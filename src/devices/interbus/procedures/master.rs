@@ -257,7 +257,7 @@ impl<'a> Master<'a> {
             if let Some(ended) = judge(CycleResult { now, word, same }) {
                 return ended;
             }
-            if cycles >= least && now.since(begun) >= patience {
+            if cycles >= least && now.duration_since(begun) >= patience {
                 return Err(self.timeout_error(command, awaited, word, patience));
             }
         }

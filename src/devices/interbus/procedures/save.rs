@@ -5,11 +5,15 @@ use super::write::read_parameter;
 use super::{Error, Identity, Master, Survey};
 use crate::devices::interbus::profile::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
 use crate::devices::interbus::protocol::{Command, Parameter, ProgramNumber, ReadOutNumber, ReadOutValue, StartupMode};
-use crate::profile::Unknown;
+use crate::profile::UnknownValues;
 
 impl Identity {
     pub fn profile(&self) -> ProfileIdentity {
-        ProfileIdentity { serial_number: self.serial_number.clone(), flags: Some(self.flags), unknown: Unknown::new() }
+        ProfileIdentity {
+            serial_number: self.serial_number.clone(),
+            flags: Some(self.flags),
+            unknown: UnknownValues::new(),
+        }
     }
 }
 
@@ -22,7 +26,7 @@ impl Survey {
             temperature_tenths: Some(self.temperature_tenths),
             mode: Some(self.identity.mode),
             preset_flag: Some(self.preset_flag),
-            unknown: Unknown::new(),
+            unknown: UnknownValues::new(),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::devices::interbus::protocol::{Command, Gear, INPUT, OUTPUT, StartupMode, UNIT, WindowShift, WordOrder};
 use crate::link::line::LineState;
 use crate::link::{UrlError, UrlQuery};
-use crate::parameter::{Milliseconds, Parameters};
+use crate::parameter::{Milliseconds, ParameterGroup};
 use crate::parameters;
 
 parameters! {

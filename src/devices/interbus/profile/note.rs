@@ -20,8 +20,8 @@ impl Op {
     /// Returns the changed items with their old and new values.
     pub fn changed_items(&self) -> Vec<ChangedItem> {
         match self {
-            Op::FirePreset { value } => vec![ChangedItem::set("position", value)],
-            Op::Default => vec![ChangedItem::set("default", "all parameters as delivered")],
+            Op::FirePreset { value } => vec![ChangedItem::new_value("position", value)],
+            Op::Default => vec![ChangedItem::new_value("default", "all parameters as delivered")],
             op => {
                 let steps = op.steps().into_iter();
                 steps.map(|step| ChangedItem::new(step.name, Some(step.from), Some(step.to))).collect()

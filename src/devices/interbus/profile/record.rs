@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::{Image, Item};
 use crate::devices::interbus::protocol::{CamNumber, Flags, ProgramNumber, StartupMode};
-use crate::profile::ron_text::Unknown;
+use crate::profile::ron_text::UnknownValues;
 
 /// A profile of an INTERBUS encoder.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct ProfileIdentity {
     /// Flags, read-out Ah, or `None` if unknown. They state how steps are counted and whether turns are counted.
     pub flags: Option<Flags>,
     /// Entries that this version does not know. They are preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// Values that change without a write or cannot be written.
@@ -49,7 +49,7 @@ pub struct Recorded {
     /// Preset flag, read-out 6.
     pub preset_flag: Option<u32>,
     /// Entries that this version does not know. They are preserved when the profile is saved.
-    pub unknown: Unknown,
+    pub unknown: UnknownValues,
 }
 
 /// A mark on a value that is only valid for one encoder in one machine.
@@ -65,9 +65,9 @@ pub struct CamNames {
 /// Entries that this version does not know, by the structure that contains them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
-    pub(super) parameters: Unknown,
-    pub(super) programs: BTreeMap<ProgramNumber, Unknown>,
-    pub(super) cams: BTreeMap<(ProgramNumber, CamNumber), Unknown>,
+    pub(super) parameters: UnknownValues,
+    pub(super) programs: BTreeMap<ProgramNumber, UnknownValues>,
+    pub(super) cams: BTreeMap<(ProgramNumber, CamNumber), UnknownValues>,
 }
 
 impl InterbusProfile {
@@ -89,7 +89,7 @@ impl InterbusProfile {
     pub fn mark_mounting_dependent_values(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
             if !self.depends_on_mounting(item) {
-                self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: Unknown::new() });
+                self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: UnknownValues::new() });
             }
         }
     }

@@ -8,13 +8,13 @@ use crate::devices::interbus::protocol::{
     self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
 };
 use crate::expected::AllowedValues;
-use crate::profile::mounting::NEVER_BY_ITSELF;
-use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::mounting::MOUNTING_COMMENT;
+use crate::profile::ron_text::{Entries, UnknownValues, Writer, entries_text, quote};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const NUMBER: AllowedValues = AllowedValues::between(0, Value::MAX.get() as i128);
+const NUMBER: AllowedValues = AllowedValues::whole_range(0, Value::MAX.get() as i128);
 const DIRECTION: AllowedValues = AllowedValues::words(&["cw", "ccw"]);
-const SHIFT: AllowedValues = AllowedValues::between(0, 25);
+const SHIFT: AllowedValues = AllowedValues::whole_range(0, 25);
 
 impl Profile for InterbusProfile {
     const KIND: &'static str = protocol::KIND;
@@ -25,16 +25,16 @@ impl Profile for InterbusProfile {
             None => ProfileIdentity::default(),
         };
         let mut unknown = UnknownEntries::default();
-        let mut image = Image::of(read_parameters(entries.structure("parameters")?, &mut unknown)?);
+        let mut image = Image::of(read_parameters(entries.take_structure("parameters")?, &mut unknown)?);
         image.shift = entries.take_optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
         let mut names = CamNames::default();
-        for entries in entries.structures("programs")? {
-            let path = entries.path_of("program");
+        for entries in entries.take_structures("programs")? {
+            let path = entries.entry_path("program");
             let (number, program) = read_program(entries, &mut names, &mut unknown)?;
             match image.program_mut(number) {
                 Some(place @ None) => *place = Some(program),
                 _ => {
-                    return Err(ProfileError::refused(path, EntryError::ProgramTwice(number)));
+                    return Err(ProfileError::invalid_entry(path, EntryError::ProgramTwice(number)));
                 }
             }
         }
@@ -51,7 +51,7 @@ impl Profile for InterbusProfile {
         if self.recorded != Recorded::default() {
             self.recorded.write(writer);
         }
-        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
+        MountingMark::write_all(&self.mounting, MOUNTING_COMMENT, writer);
         self.write_parameters(writer);
         if let Some(shift) = self.image.shift {
             number(writer, "shift", shift.get(), "of the position under its window in cam mode");
@@ -68,7 +68,7 @@ impl Profile for InterbusProfile {
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for item in Item::writable() {
-            comparison.add(item.to_string(), self.image.item(item), other.image.item(item));
+            comparison.compare_item(item.to_string(), self.image.item(item), other.image.item(item));
         }
         comparison
     }
@@ -83,7 +83,7 @@ impl InterbusProfile {
         writer.text("direction", direction.word());
         number(writer, "preset", preset, "stored, never fired by a restore");
         number(writer, "zero_shift", zero_shift, "");
-        writer.unknown(&self.unknown.parameters);
+        writer.write_unknown(&self.unknown.parameters);
         writer.close(')');
     }
 
@@ -100,7 +100,7 @@ impl InterbusProfile {
             let Some(Cam { start, stop }) = program.cam(cam) else { continue };
             let called = match self.names.cam(at, cam) {
                 "" => String::new(),
-                called => format!(", name: {}", quoted(called)),
+                called => format!(", name: {}", quote(called)),
             };
             let more = self.unknown.cams.get(&(at, cam)).map(entries_text).unwrap_or_default();
             let (cam, start, stop) = (cam.get(), start.get(), stop.get());
@@ -108,7 +108,7 @@ impl InterbusProfile {
         }
         writer.close(']');
         if let Some(unknown) = self.unknown.programs.get(&at) {
-            writer.unknown(unknown);
+            writer.write_unknown(unknown);
         }
         writer.close(')');
     }
@@ -121,14 +121,14 @@ impl ProfileIdentity {
         if let Some(flags) = self.flags {
             number(writer, "flags", flags.value().get(), flags.type_name());
         }
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
 
 impl Recorded {
     fn write(&self, writer: &mut Writer) {
-        writer.comment("recorded, neither compared nor restored");
+        writer.write_comment("recorded, neither compared nor restored");
         writer.open("recorded", '(');
         if let Some(version) = self.software_version {
             number(writer, "software_version", version, "");
@@ -146,7 +146,7 @@ impl Recorded {
         if let Some(flag) = self.preset_flag {
             number(writer, "preset_flag", flag, "");
         }
-        writer.unknown(&self.unknown);
+        writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
@@ -164,18 +164,18 @@ fn name(writer: &mut Writer, name: &str) {
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     let serial_number = entries.take_optional("serial_number", AllowedValues::Text)?.unwrap_or_default();
     let flags = optional_value(&mut entries, "flags")?.map(Flags::new);
-    Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
+    Ok(ProfileIdentity { serial_number, flags, unknown: entries.into_unknown()? })
 }
 
 fn read_parameters(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Parameters, ProfileError> {
     let steps = value(&mut entries, "steps")?.get();
     let revolutions = value(&mut entries, "revolutions")?.get();
-    let path = entries.path_of("direction");
+    let path = entries.entry_path("direction");
     let word: String = entries.take_required("direction", DIRECTION)?;
     let direction = word.parse::<Direction>().map_err(|_| ProfileError::Shape { path, expected: DIRECTION })?;
     let preset = value(&mut entries, "preset")?.get();
     let zero_shift = value(&mut entries, "zero_shift")?.get();
-    unknown.parameters = entries.rest()?;
+    unknown.parameters = entries.into_unknown()?;
     Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
 }
 
@@ -184,19 +184,18 @@ fn read_program(
     names: &mut CamNames,
     unknown: &mut UnknownEntries,
 ) -> Result<(ProgramNumber, Program), ProfileError> {
-    let path = entries.path_of("program");
+    let path = entries.entry_path("program");
     let number: u32 = entries.take_required("program", AllowedValues::Whole)?;
-    let at = u8::try_from(number)
-        .ok()
-        .and_then(ProgramNumber::new)
-        .ok_or_else(|| ProfileError::refused(path, EntryError::Item(ItemError::Program { number: number.into() })))?;
+    let at = u8::try_from(number).ok().and_then(ProgramNumber::new).ok_or_else(|| {
+        ProfileError::invalid_entry(path, EntryError::Item(ItemError::Program { number: number.into() }))
+    })?;
     names.set_program(at, entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default());
     let mut program = Program { mask: entries.take_required("mask", AllowedValues::Byte)?, ..Program::default() };
-    for mut entries in entries.structures("cams")? {
-        let path = entries.path_of("cam");
+    for mut entries in entries.take_structures("cams")? {
+        let path = entries.entry_path("cam");
         let number: u32 = entries.take_required("cam", AllowedValues::Whole)?;
         let cam = u8::try_from(number).ok().and_then(CamNumber::new);
-        let wrong = |error: EntryError| ProfileError::refused(path, error);
+        let wrong = |error: EntryError| ProfileError::invalid_entry(path, error);
         let Some(cam) = cam else {
             return Err(wrong(ItemError::Cam { number: number.into() }.into()));
         };
@@ -205,13 +204,13 @@ fn read_program(
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
         names.set_cam(at, cam, entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default());
-        add_unknown(&mut unknown.cams, (at, cam), entries.rest()?);
+        add_unknown(&mut unknown.cams, (at, cam), entries.into_unknown()?);
     }
-    add_unknown(&mut unknown.programs, at, entries.rest()?);
+    add_unknown(&mut unknown.programs, at, entries.into_unknown()?);
     Ok((at, program))
 }
 
-fn add_unknown<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place: K, unknown: Unknown) {
+fn add_unknown<K: Ord>(kept: &mut std::collections::BTreeMap<K, UnknownValues>, place: K, unknown: UnknownValues) {
     if !unknown.is_empty() {
         kept.insert(place, unknown);
     }
@@ -232,22 +231,22 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
         temperature_tenths: entries.take_optional("temperature_tenths", AllowedValues::Whole)?,
         mode: optional_value(&mut entries, "startup_mode")?.map(StartupMode::parse),
         preset_flag: entries.take_optional("preset_flag", AllowedValues::Whole)?,
-        unknown: entries.rest()?,
+        unknown: entries.into_unknown()?,
     })
 }
 
 fn value(entries: &mut Entries, name: &str) -> Result<Value, ProfileError> {
-    optional_value(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
+    optional_value(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.entry_path(name) })
 }
 
 fn optional_value(entries: &mut Entries, name: &str) -> Result<Option<Value>, ProfileError> {
     let Some(number) = entries.take_optional(name, NUMBER)? else { return Ok(None) };
-    let shape = || ProfileError::Shape { path: entries.path_of(name), expected: NUMBER };
+    let shape = || ProfileError::Shape { path: entries.entry_path(name), expected: NUMBER };
     Value::new(number).ok_or_else(shape).map(Some)
 }
 
 fn window_shift(entries: &Entries, shift: u8) -> Result<WindowShift, ProfileError> {
-    WindowShift::new(shift).ok_or_else(|| ProfileError::Shape { path: entries.path_of("shift"), expected: SHIFT })
+    WindowShift::new(shift).ok_or_else(|| ProfileError::Shape { path: entries.entry_path("shift"), expected: SHIFT })
 }
 
 #[cfg(test)]

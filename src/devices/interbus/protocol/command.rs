@@ -100,7 +100,7 @@ impl Command {
         }
     }
 
-    /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::Unknown`] if the manual
+    /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::UnknownValues`] if the manual
     /// does not define the word.
     pub fn readings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =

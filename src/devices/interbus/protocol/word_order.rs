@@ -1,14 +1,14 @@
 //! Order of the two 16-bit registers in which a gateway keeps a process data word (reference 1, `U`).
 
 use crate::expected::Quantity;
-use crate::parameter::{Whole, Words};
+use crate::parameter::{Keywords, WholeNumbers};
 
 /// Valid unit identifiers of a gateway.
-pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
+pub const UNIT: WholeNumbers<u8> = WholeNumbers(Quantity::Unit, 0..=255);
 /// Valid addresses of the first input register of an IN word.
-pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
+pub const INPUT: WholeNumbers<u16> = WholeNumbers(Quantity::InputRegister, 0..=LAST);
 /// Valid addresses of the first holding register of an OUT word.
-pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
+pub const OUTPUT: WholeNumbers<u16> = WholeNumbers(Quantity::HoldingRegister, 0..=LAST);
 /// Last register address that has a successor.
 const LAST: u16 = u16::MAX - 1;
 
@@ -24,8 +24,8 @@ pub enum WordOrder {
 
 impl WordOrder {
     /// Names of the word orders in the address of a connection.
-    pub const WORDS: Words<WordOrder> =
-        Words(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
+    pub const WORDS: Keywords<WordOrder> =
+        Keywords(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 
     /// Splits a word into its two registers.
     pub const fn registers(self, word: u32) -> [u16; 2] {

@@ -9,7 +9,8 @@ use crate::devices::interbus::protocol::{
 };
 use crate::expected::{AllowedValues, Quantity};
 use crate::parameter::{
-    ANY, Checked, Decimal, Milliseconds, OptionalValue, Refused, SWITCH, Values, Whole, Words, number,
+    ANY, CustomNotation, DecimalNumbers, Keywords, Milliseconds, OptionalValue, ParameterValues, RejectedParameter,
+    SWITCH, WholeNumbers, parse_whole,
 };
 use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
@@ -22,42 +23,42 @@ parameters! {
         steps: Option<String> = None, "steps" => OptionalValue(ANY);
         revolutions: Option<String> = None, "revolutions" => OptionalValue(ANY);
         pub(super) memory: Memory = Memory::factory_default();
-        counterclockwise: bool = false, "direction" => Words(&[("cw", false), ("ccw", true)]);
+        counterclockwise: bool = false, "direction" => Keywords(&[("cw", false), ("ccw", true)]);
         /// Preset in steps within the range. It is programmed but was not fired.
         preset: Option<String> = None, "preset" => OptionalValue(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         /// Initial shaft position in disc steps.
-        pub(super) position: u32 = 0x12_3456, "position" => Whole(Quantity::PlaceOfDisc, 0..=PLACES - 1);
+        pub(super) position: u32 = 0x12_3456, "position" => WholeNumbers(Quantity::PlaceOfDisc, 0..=PLACES - 1);
         pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
         /// Operating time in units of ten minutes.
         pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
-        pub(super) celsius: f64 = 25.3, "temperature" => Decimal(Quantity::Celsius, -273.0..=1000.0);
+        pub(super) celsius: f64 = 25.3, "temperature" => DecimalNumbers(Quantity::Celsius, -273.0..=1000.0);
         /// Whether a negative temperature has 16 bits instead of 25 (`U`). See reference 3.
-        pub(super) narrow_temperature: bool = false, "temperature-bits" => Words(&[("25", false), ("16", true)]);
+        pub(super) narrow_temperature: bool = false, "temperature-bits" => Keywords(&[("25", false), ("16", true)]);
         /// Whether read-out 3 returns 0 or 1 instead of the parameter value (`U`).
-        pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
+        pub(super) complement_bit: bool = false, "complement" => Keywords(&[("code", false), ("bit", true)]);
         /// Selected cam program, or normal operation.
-        pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(AllowedValues::Program, mode);
+        pub(super) mode: StartupMode = StartupMode::K3, "program" => CustomNotation(AllowedValues::Program, mode);
         /// Whether the encoder starts with demonstration cam programs.
-        demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
-        pub(super) stores: u32 = 3, "stores" => Checked(AllowedValues::Stores, number::<u32>);
+        demonstration: bool = false, "cams" => Keywords(&[("demo", true), ("none", false)]);
+        pub(super) stores: u32 = 3, "stores" => CustomNotation(AllowedValues::Stores, parse_whole::<u32>);
         /// Whether the encoder reports its number of steps minus one, as older encoders do.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
         /// Number of cycles for which the old IN word remains after a new OUT word.
-        pub(super) stale: u32 = 1, "stale" => Whole(Quantity::Cycles, 0..=1000);
+        pub(super) stale: u32 = 1, "stale" => WholeNumbers(Quantity::Cycles, 0..=1000);
         /// Whether the echo of a program selection precedes the outputs of the program (`U`).
-        pub(super) acknowledges_selection: bool = true, "selection" => Words(&[("echo", true), ("output", false)]);
-        pub(super) class: Class = Class::K3, "class" => Words(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
+        pub(super) acknowledges_selection: bool = true, "selection" => Keywords(&[("echo", true), ("output", false)]);
+        pub(super) class: Class = Class::K3, "class" => Keywords(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
         /// Number of encoders. Each has two registers, starting at `input` and `output`.
-        pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Encoders, 1..=8);
+        pub(super) encoders: u8 = 1, "encoders" => WholeNumbers(Quantity::Encoders, 1..=8);
         pub(super) unit: u8 = 1, "unit" => UNIT;
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
         pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
         /// Share of requests that are refused with exception 0Bh.
-        pub(super) exceptions: f64 = 0.0, "exception" => Decimal(Quantity::RefusedRequests, 0.0..=1.0);
+        pub(super) exceptions: f64 = 0.0, "exception" => DecimalNumbers(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
         /// Shares of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced by random bytes
         /// (`garbage`).
@@ -65,7 +66,7 @@ parameters! {
     }
 }
 
-const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
+const VALUE: WholeNumbers<u32> = WholeNumbers(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
     /// Parses percent-decoded keys and values. The last value of a repeated key applies. Numbers are decimal or start
@@ -89,20 +90,21 @@ impl Config {
     fn apply_memory_settings(&mut self) -> Result<(), ConfigError> {
         let memory = &mut self.memory;
         if let Some(turns) = self.revolutions.take() {
-            let range = Whole(Quantity::Turns, 1..=TURNS);
-            let turns = range.take("revolutions", &turns)?;
+            let range = WholeNumbers(Quantity::Turns, 1..=TURNS);
+            let turns = range.parse_value("revolutions", &turns)?;
             let steps = memory.gear.steps().min(STEPS_PER_TURN.saturating_mul(turns));
             let gear = Gear::new(steps, turns);
-            memory.gear = gear.map_err(|_| Refused::new("revolutions", turns, range.allowed()))?;
+            memory.gear = gear.map_err(|_| RejectedParameter::new("revolutions", turns, range.allowed_values()))?;
         }
         if let Some(steps) = self.steps.take() {
             let range = Parameter::Steps.range(memory.gear);
             let allowed = AllowedValues::StepsOfTurns { low: *range.start(), high: *range.end() };
-            let gear = number(&steps).and_then(|steps| Gear::new(steps, memory.gear.turns()).ok());
-            memory.gear = gear.ok_or_else(|| Refused::new("steps", steps, allowed))?;
+            let gear = parse_whole(&steps).and_then(|steps| Gear::new(steps, memory.gear.turns()).ok());
+            memory.gear = gear.ok_or_else(|| RejectedParameter::new("steps", steps, allowed))?;
         }
         if let Some(preset) = self.preset.take() {
-            memory.preset = Whole(Quantity::Steps, 0..=memory.gear.steps() - 1).take("preset", &preset)?;
+            memory.preset =
+                WholeNumbers(Quantity::Steps, 0..=memory.gear.steps() - 1).parse_value("preset", &preset)?;
         }
         (memory.counterclockwise, memory.zero_shift) = (self.counterclockwise, self.zero_shift);
         if self.demonstration {
@@ -113,7 +115,7 @@ impl Config {
 }
 
 fn mode(text: &str) -> Option<StartupMode> {
-    match number(text)? {
+    match parse_whole(text)? {
         0 => Some(StartupMode::K3),
         program => ProgramNumber::new(program).map(StartupMode::Cams),
     }
@@ -123,11 +125,11 @@ fn mode(text: &str) -> Option<StartupMode> {
 mod tests {
     use super::*;
     use crate::devices::interbus::sim::Gateway;
-    use crate::sim::setting::pairs;
+    use crate::sim::setting::query_pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        Config::from_pairs(&pairs(query))
+        Config::from_pairs(&query_pairs(query))
     }
 
     #[test]

@@ -132,12 +132,12 @@ impl Encoder {
                 narrow_temperature: config.narrow_temperature,
                 operating_time: config.operating_time,
             },
-            motor: Motor::at(config.rpm),
+            motor: Motor::with_speed(config.rpm),
             shaft: Shaft::new(config.position, config.rpm),
             offset: 0,
             mode: config.mode,
             activity: Activity::Running,
-            eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.die_in_store()),
+            eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.failing_store()),
             memory,
             unstored: None,
             power: true,
@@ -201,7 +201,7 @@ impl Encoder {
 
     /// Replaces the faults of the EEPROM. The number of stores is kept.
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.eeprom.set_store_failure(faults.die_in_store());
+        self.eeprom.set_store_failure(faults.failing_store());
     }
 
     pub const fn has_power(&self) -> bool {

@@ -150,7 +150,7 @@ impl ByteDevice for Gateway {
     }
 
     fn poll_at(&self) -> Option<Moment> {
-        self.to_host.due()
+        self.to_host.next_due()
     }
 
     /// Connects a client. Pending replies of the previous connection are dropped. Encoders that have lost power are

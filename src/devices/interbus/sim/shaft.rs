@@ -38,7 +38,7 @@ impl Shaft {
     }
 
     fn exact(&self, at: Moment) -> f64 {
-        self.place + at.since(self.since).as_secs_f64() * self.rpm / 60.0 * f64::from(STEPS_PER_TURN)
+        self.place + at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * f64::from(STEPS_PER_TURN)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::devices::interbus::jobs::check;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
 use crate::link::{LinkScheme, LinkUrl};
-use crate::parameter::{Entry, Parameters as _};
+use crate::parameter::{Entry, ParameterGroup as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusLinkKind {
@@ -45,7 +45,7 @@ impl FormModel for InterbusForm {
 
     // The window initially offers this virtual encoder, which is a slowly turning machine with cams.
     fn default_link() -> LinkUrl {
-        let mut url = LinkUrl::sim();
+        let mut url = LinkUrl::simulated();
         for (name, value) in [("rpm", "6"), ("steps", "3600"), ("revolutions", "1"), ("cams", "demo")] {
             url.query.set(name, value);
         }

@@ -11,7 +11,7 @@ use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::sim::Config;
 use crate::devices::interbus::state::explain;
 use crate::link::LinkUrl;
-use crate::parameter::Parameters as _;
+use crate::parameter::ParameterGroup as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;

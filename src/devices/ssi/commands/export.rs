@@ -8,7 +8,7 @@ use super::args::{SsiExportArgs, SsiFormat};
 use super::layout::{Chosen, choose};
 use super::profiles::{document, write};
 use crate::cli::output::Output;
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::protocol::{
     ReadConditions, Times, TooWideError, bit_table, c99, english, frame_picture, scl_source, settings_sheet,
     structured_text, structured_text_32, timing_picture, to_linuxcnc,
@@ -47,12 +47,12 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             let timing = match times {
                 Some(times) => times.calculate_timing(&reads),
                 None => {
-                    output.remark(&TEXTS.text("ssi_timing.general").terminal_text());
+                    output.print_message(&TEXTS.text("ssi_timing.general").terminal_text());
                     Times::for_any_encoder(&reads)
                 }
             };
             for warning in timing.warnings {
-                output.remark(&words::timing(&warning).terminal_text());
+                output.print_message(&words::timing(&warning).terminal_text());
             }
             timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english).svg()
         }
@@ -64,7 +64,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             output.show(&json!({ "file": path.display().to_string() }), "")?;
         }
     }
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn wide(error: TooWideError) -> Failure {

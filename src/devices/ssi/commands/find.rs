@@ -6,8 +6,8 @@ use super::args::SsiFindArgs;
 use super::layout::families;
 use super::source;
 use crate::cli::output::{Lines, Output, count};
-use crate::cli::runner::failed;
-use crate::cli::{Done, Result};
+use crate::cli::runner::to_failure;
+use crate::cli::{Result, Success};
 use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain as words;
@@ -23,7 +23,7 @@ pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) 
         None if are_numbers => {
             let any = frames.iter().fold(1, |any, frame| any | frame);
             let clocks = (u64::BITS - any.leading_zeros()) as u8;
-            output.remark(&format!(
+            output.print_message(&format!(
                 "Frames in hex and decimal do not show their number of clocks; {clocks} was assumed. Use --clocks N to set it."
             ));
             clocks
@@ -33,9 +33,9 @@ pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) 
     let search = protocol::find(&frames, clocks, &families);
     output.show(&json(&search, &families), &text(&search, &families))?;
     if search.classes.is_empty() {
-        return Err(failed(&words::doubt(search.doubt)));
+        return Err(to_failure(&words::doubt(search.doubt)));
     }
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 fn json(search: &Search, families: &Families) -> Json {
@@ -66,17 +66,17 @@ fn text(search: &Search, families: &Families) -> String {
         return String::new();
     }
     let mut lines = Lines::default();
-    lines.add("frames", search.frames);
+    lines.add_line("frames", search.frames);
     for (number, class) in (1..).zip(&search.classes) {
-        lines.add(format!("layout {number}"), spec_text(class, families));
-        lines.add("  score", format!("{:.2}", class.evidence.score));
-        lines.add("  why", evidence_text(class));
+        lines.add_line(format!("layout {number}"), spec_text(class, families));
+        lines.add_line("  score", format!("{:.2}", class.evidence.score));
+        lines.add_line("  why", evidence_text(class));
         let others = class.members.len().saturating_sub(1);
         if others > 0 {
             let shown: Vec<String> =
                 class.members.iter().skip(1).take(3).map(|member| member.spec_text(families)).collect();
             let same = format!("{}, as {}", count(others, "layout"), shown.join(" or "));
-            lines.add("  the same here", same);
+            lines.add_line("  the same here", same);
         }
     }
     let verdict = words::doubt(search.doubt).terminal_text();

@@ -7,7 +7,7 @@ use super::layout::choose;
 use super::source::named;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::protocol::{Flags, FrameFinding, FrameReading, Layout, Location, Meaning, Role, frame_bits};
 use crate::devices::ssi::state::explain as words;
 
@@ -19,7 +19,7 @@ pub(super) fn decode(output: &Output, SsiDecodeArgs { layout: spec, frames }: &S
         let told = DecodedFrame::new(&layout, frame);
         output.show(&told.json(), &told.text())?;
     }
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 pub(super) struct DecodedFrame<'a> {
@@ -74,17 +74,17 @@ impl<'a> DecodedFrame<'a> {
 
     fn text(&self) -> String {
         let mut lines = Lines::default();
-        lines.add("frame", fields(self.layout, self.frame));
+        lines.add_line("frame", fields(self.layout, self.frame));
         match self.place() {
             Some((position, Location::Shaft { turns, steps, degrees })) => {
-                lines.add("position", position);
-                lines.add("turns", turns).add("steps", steps).add("degrees", format!("{degrees:.4}"));
+                lines.add_line("position", position);
+                lines.add_line("turns", turns).add_line("steps", steps).add_line("degrees", format!("{degrees:.4}"));
             }
             Some((position, Location::Length { millimetres })) => {
-                lines.add("position", position).add("millimetres", format!("{millimetres:.4}"));
+                lines.add_line("position", position).add_line("millimetres", format!("{millimetres:.4}"));
             }
             None => {
-                lines.add("position", "none");
+                lines.add_line("position", "none");
             }
         }
         let findings = self.layout.findings(self.reading);
@@ -143,15 +143,17 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncodeArgs) -> Result {
     let last = layout.coding().last();
     let frame = layout.encode(position, flags).ok_or_else(|| beyond("position", &position.to_string(), last))?;
     if layout.loses_lowest_bit() && position % 2 == 1 {
-        output.remark("Shifting to the right pushes the lowest bit out: the frame is that of the position before.");
+        output.print_message(
+            "Shifting to the right pushes the lowest bit out: the frame is that of the position before.",
+        );
     }
     let clocks = usize::from(layout.clocks());
     let bits = format!("{frame:0clocks$b}");
     let hex = format!("{frame:0digits$X}", digits = clocks.div_ceil(4));
     let mut lines = Lines::default();
-    lines.add("bits", &bits).add("hex", &hex).add("frame", fields(&layout, frame));
+    lines.add_line("bits", &bits).add_line("hex", &hex).add_line("frame", fields(&layout, frame));
     output.show(&json!({ "bits": bits, "hex": hex }), &lines.text())?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 /// Returns the position given by `--position`, or by `--turns` and `--steps`. If both are given, they must agree.

@@ -7,7 +7,7 @@ use super::args::SsiLayoutArgs;
 use crate::app::{KindRegistry, explain};
 use crate::cli::output::Output;
 use crate::cli::profiles::load;
-use crate::cli::runner::failed;
+use crate::cli::runner::to_failure;
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::jobs::families as read_families;
 use crate::devices::ssi::profile::SsiProfile;
@@ -42,10 +42,10 @@ pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) ->
 /// Returns the encoder families. User-defined families replace built-in ones with the same key, and errors in their
 /// files are printed.
 pub(super) fn families(output: &Output) -> Result<Families> {
-    let store = Store::for_user().map_err(|error| failed(&explain::store_error_text(&error)))?;
+    let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
     let (families, broken) = read_families(&store);
     for error in broken {
-        output.remark(&words::store(&error).terminal_text());
+        output.print_message(&words::store(&error).terminal_text());
     }
     Ok(families)
 }
@@ -68,14 +68,14 @@ fn choose_frame_layout(spec: &str, frame: std::result::Result<FrameDescriptor, S
 
 fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let path = Path::new(spec);
-    let failure = |error| failed(&explain::profile(path, &error, KindRegistry::NONE));
+    let failure = |error| to_failure(&explain::profile(path, &error, KindRegistry::NONE));
     let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(failure)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let family = profile.family.as_deref().and_then(|key| families.named(key));
     match (profile.family.as_deref(), family) {
         (Some(key), None) => {
-            output.remark(&format!("{spec} names the unknown family {key:?}, so its times are not known."));
+            output.print_message(&format!("{spec} names the unknown family {key:?}, so its times are not known."));
         }
         (_, Some(family)) => show_differences_from_family(output, family, &profile),
         (None, None) => {}
@@ -92,7 +92,7 @@ fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiP
     let settings = family.settings_for_frame(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {
         Some(resolved) => print_advice(output, &resolved),
-        None => output.remark(&format!(
+        None => output.print_message(&format!(
             "No settings of {} result in this frame; only the times of the family are used.",
             family.name
         )),
@@ -101,7 +101,7 @@ fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiP
 
 fn print_advice(output: &Output, resolved: &ResolvedFrame) {
     for advice in &resolved.advice {
-        output.remark(&words::advice_text(advice).terminal_text());
+        output.print_message(&words::advice_text(advice).terminal_text());
     }
 }
 

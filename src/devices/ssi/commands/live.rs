@@ -8,9 +8,9 @@ use super::layout::{Chosen, choose};
 use super::run::{begin, words};
 use crate::analysis::SampleTime;
 use crate::cli::args::{CommonArgs, Position, Status};
-use crate::cli::output::{Lines, Output, count, say};
-use crate::cli::positions::readings;
-use crate::cli::{Done, Failure, Result};
+use crate::cli::output::{Lines, Output, count, write_stderr};
+use crate::cli::positions::print_readings;
+use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{FindingCounts, FrameFinding, Layout, Location, Meaning};
 use crate::devices::ssi::state::explain as explained;
@@ -29,21 +29,25 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let chosen = layout(output, "position", &position.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     if position.csv {
-        output.print("t_s,raw,turns,steps,degrees,millimetres,valid\n")?;
+        output.write_stdout("t_s,raw,turns,steps,degrees,millimetres,valid\n")?;
     }
     let mut tally = FindingCounts::default();
     let mut first = None;
     let job = || SsiJob::Read;
-    let ended = readings(&mut runner, position, job, |came| {
+    let ended = print_readings(&mut runner, position, job, |came| {
         for (at, word) in words(came)?.iter_with_times() {
             let decoded = DecodedFrame::new(&chosen.layout, word);
             let first = *first.get_or_insert(SampleTime::from(at));
             let begun = tally.note(&chosen.layout, decoded.reading, at.into());
             for finding in begun.iter().filter(|one| is_reported(one, first == at.into())) {
-                say(&format!("{}: {}\n", seconds(at.into()), explained::finding_text(finding).terminal_text()));
+                write_stderr(&format!(
+                    "{}: {}\n",
+                    seconds(at.into()),
+                    explained::finding_text(finding).terminal_text()
+                ));
             }
             if position.csv {
-                output.print(&row(at, &decoded))?;
+                output.write_stdout(&row(at, &decoded))?;
             } else {
                 show(output, at, &decoded)?;
             }
@@ -52,7 +56,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     });
     for noted in tally.finding_counts().iter().filter(|noted| is_reported(&noted.finding, Some(noted.first) == first)) {
         let times = count(usize::try_from(noted.count).unwrap_or(usize::MAX), "time");
-        say(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));
+        write_stderr(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));
     }
     ended
 }
@@ -154,15 +158,15 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> R
         if names.is_empty() { "none".to_owned() } else { names.join(", ") }
     };
     let mut lines = Lines::default();
-    lines.add("errors", named(Meaning::Invalid)).add("warnings", named(Meaning::Warning));
+    lines.add_line("errors", named(Meaning::Invalid)).add_line("warnings", named(Meaning::Warning));
     if chosen.layout.descriptor().errors.is_empty() {
-        lines.add("", "This frame has no error bits.");
+        lines.add_line("", "This frame has no error bits.");
     }
-    lines.add("position", place(&decoded));
+    lines.add_line("position", place(&decoded));
     let finding_lines =
         findings.iter().map(|finding| format!("{}\n", explained::finding_text(finding).terminal_text()));
     output.show(&json, &(lines.text() + &finding_lines.collect::<String>()))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 /// Converts a finding to JSON. The result includes the clock number if the finding concerns a single clock.

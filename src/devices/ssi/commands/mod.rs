@@ -15,9 +15,9 @@ use clap::{Arg, ArgMatches, Subcommand};
 use self::args::{LayoutOption, Ssi, SsiLayoutArgs};
 use crate::buses::bridge::sim::{Adapter, AttachableKind};
 use crate::cli::args::{Command, CommonArgs, Restore, SimulateArgs};
-use crate::cli::commands::{CliCommand, CommandId, DeviceCommands, ProfileCommands, options_of, parse};
+use crate::cli::commands::{CliCommand, CommandId, DeviceCommands, ProfileCommands, arg_list, parse};
 use crate::cli::output::Output;
-use crate::cli::simulate::{Simulated, settings};
+use crate::cli::simulate::{ServableDevice, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::KIND;
 use crate::devices::ssi::sim::{AttachableEncoder, Encoder};
@@ -31,11 +31,11 @@ impl DeviceCommands for SsiCommands {
         KIND
     }
 
-    fn about(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         "SSI encoder, which sends only its position; --layout defines the frame"
     }
 
-    fn note(&self) -> Option<&'static str> {
+    fn help_note(&self) -> Option<&'static str> {
         Some(
             "An SSI encoder sends only its position: --layout defines the frame, and ssi works with frames without a device.",
         )
@@ -49,7 +49,7 @@ impl DeviceCommands for SsiCommands {
             _ => return Vec::new(),
         };
         let help = format!("{help}, as a profile or a family with settings (listed by help ssi decode)");
-        options_of::<LayoutOption>().into_iter().map(|option| option.help(help.clone())).collect()
+        arg_list::<LayoutOption>().into_iter().map(|option| option.help(help.clone())).collect()
     }
 
     fn refused_option(&self, option: &str) -> Option<String> {
@@ -75,7 +75,7 @@ impl DeviceCommands for SsiCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+    fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
         simulated(output, arguments)
     }
 }
@@ -85,7 +85,7 @@ impl ProfileCommands for SsiCommands {
         refuse("restore", SET)
     }
 
-    fn present(&self, _: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
+    fn read_for_comparison(&self, _: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
         refuse("reading a profile from a link", "compare two files with diff FILE FILE")
     }
 }
@@ -114,7 +114,7 @@ impl CliCommand for SsiCommand {
 }
 
 /// Creates a virtual adapter with an encoder that sends the frames of `--layout`.
-fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     let settings = settings(output, arguments)?;
     let LayoutOption { layout } = arguments.own.read()?;
     let encoder = match layout {

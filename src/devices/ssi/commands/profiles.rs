@@ -10,8 +10,8 @@ use super::layout::choose;
 use crate::app::explain;
 use crate::cli::args::{CommonArgs, SaveArgs};
 use crate::cli::output::{Output, count};
-use crate::cli::runner::failed;
-use crate::cli::{Done, Failure, Result};
+use crate::cli::runner::to_failure;
+use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::profile::SsiProfile;
 use crate::profile::{Body, ProfileDocument};
 use crate::store::write_atomically;
@@ -29,7 +29,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     write(&save.file, &document(profile).emit())?;
     let json = json!({"file": save.file, "clocks": clocks});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(clocks.into(), "clock")))?;
-    Ok(Done::Well)
+    Ok(Success::Well)
 }
 
 /// Creates a profile document. It has no time stamp, because the layout was not read from a device.
@@ -38,5 +38,5 @@ pub(super) fn document(profile: SsiProfile) -> ProfileDocument {
 }
 
 pub(super) fn write(path: &Path, text: &str) -> Result<()> {
-    write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file_error_text(&error)))
+    write_atomically(path, text.as_bytes()).map_err(|error| to_failure(&explain::file_error_text(&error)))
 }

@@ -7,7 +7,7 @@ use crate::cli::Result;
 use crate::cli::args::CommonArgs;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::Output;
-use crate::cli::runner::{self, Runs};
+use crate::cli::runner::{self, CliDevice};
 use crate::devices::ssi::jobs::{JobStep, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{ClockSettings, Words};
 use crate::devices::ssi::protocol::ReadConditions;
@@ -18,16 +18,16 @@ use crate::worker::Session;
 /// Runner of jobs in a session with an SSI encoder.
 pub(super) type Runner = runner::Runner<Ssi>;
 
-impl Runs for Ssi {
+impl CliDevice for Ssi {
     /// Settings for reading words, taken from the link unless an option overrides them.
     type Context = ClockSettings;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &TypeMap) -> ClockSettings {
+    fn prepare_context(session: &mut Session<Self>, _given: &TypeMap) -> ClockSettings {
         session.station().asking
     }
 
-    fn step(_: &JobStep) -> String {
+    fn describe_step(_: &JobStep) -> String {
         "words".to_owned()
     }
 }
@@ -53,7 +53,7 @@ pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Re
             ..chosen.profile.reads()
         };
         for warning in times.calculate_timing(&reads).warnings {
-            output.remark(&words::timing(&warning).terminal_text());
+            output.print_message(&words::timing(&warning).terminal_text());
         }
     }
     Ok(runner)

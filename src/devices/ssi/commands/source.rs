@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::cli::output::Output;
-use crate::cli::runner::failed;
+use crate::cli::runner::to_failure;
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::{FrameTextError, Layout, parse_frame};
 use crate::devices::ssi::state::{Frames, Origin, TEXTS, parse_frame_file, read_frames};
@@ -21,9 +21,9 @@ pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
     } else {
         read_frames(path, clocks)
     };
-    let frames = frames.map_err(|why| failed(&why))?;
+    let frames = frames.map_err(|why| to_failure(&why))?;
     if frames.left_out > 0 {
-        output.remark(&TEXTS.text("ssi_capture.left_out").with("count", frames.left_out).terminal_text());
+        output.print_message(&TEXTS.text("ssi_capture.left_out").with("count", frames.left_out).terminal_text());
     }
     Ok(frames)
 }
@@ -34,7 +34,7 @@ fn input() -> Result<String> {
     std::io::stdin().lock().take(MAX_TEXT + 1).read_to_string(&mut text).map_err(unreadable)?;
     if text.len() as u64 > MAX_TEXT {
         let too_large = TEXTS.text("ssi_capture.too_large").with("path", "Standard input");
-        return Err(failed(&too_large.with("megabytes", MAX_TEXT >> 20)));
+        return Err(to_failure(&too_large.with("megabytes", MAX_TEXT >> 20)));
     }
     Ok(text)
 }
@@ -54,7 +54,7 @@ pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<
             Origin::Live => path.to_owned(),
         };
         let other = TEXTS.text("ssi_capture.other_clocks").with("name", name);
-        return Err(failed(&other.with("bits", bits).with("clocks", clocks)));
+        return Err(to_failure(&other.with("bits", bits).with("clocks", clocks)));
     }
     Ok(frames)
 }

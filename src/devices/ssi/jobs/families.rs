@@ -22,7 +22,7 @@ mod tests {
     #[test]
     fn user_families_precede_built_in_ones() {
         let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
+        let store = Store::at_root(root.path());
         assert_eq!(families(&store), (Families::built_in(), Vec::new()));
         let folder = store.device_folder(KIND);
         fs::create_dir_all(&folder).unwrap();

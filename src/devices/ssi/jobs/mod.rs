@@ -18,7 +18,7 @@ use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::{Device, JobInterruption, JobReport, Progress, Session, SessionContext, Watched};
+use crate::worker::{Device, JobInterruption, JobReport, Progress, Session, SessionContext, WatchReply};
 
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
@@ -70,7 +70,7 @@ impl fmt::Debug for Ssi {
 
 impl Ssi {
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
-        Master::new(context.ctx(&mut *self.wire), &mut self.station)
+        Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 }
 
@@ -84,7 +84,7 @@ impl Session<Ssi> {
         motor: Option<Motor>,
     ) -> Self {
         let is_virtual = motor.is_some();
-        Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
+        Session::from_device(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
     pub fn request_settings(&mut self, asking: ClockSettings) {
@@ -144,22 +144,22 @@ impl Device for Ssi {
         }
     }
 
-    fn sample(&mut self, context: &mut SessionContext) -> Result<Words, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Words, JobError> {
         match self.streamed_us {
             Some(period_us) => self.master(context).words(period_us),
             None => self.master(context).next_word(),
         }
     }
 
-    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<Words>, JobError> {
+    fn read_watched(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<WatchReply<Words>, JobError> {
         match *what {}
     }
 
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+    fn check_connection(&mut self) -> Result<(), LinkError> {
+        self.wire.check_connection()
     }
 
-    fn leave(&mut self, context: &mut SessionContext) {
+    fn restore_state(&mut self, context: &mut SessionContext) {
         log_supply_failure(self.master(context).leave_supply());
     }
 }

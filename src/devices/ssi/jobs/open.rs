@@ -9,7 +9,7 @@ use crate::devices::ssi::procedures::{LinkParameters, Station};
 use crate::kinds::attachable_kinds;
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
-use crate::worker::open::{inside, open_byte_stream, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{connect_simulated, open_byte_stream, reply_margin, simulator_settings, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an SSI encoder, without opening the link.
@@ -32,7 +32,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     // The serial format matters only for an adapter behind a converter. It is the same for all adapters.
     let wire = open_byte_stream(url, FORMAT, &clock, || {
         motor = Some(adapter.motor());
-        Ok(inside(adapter, &clock))
+        Ok(connect_simulated(adapter, &clock))
     })?;
     Ok(Session::for_adapter(wire, clock, station, store, motor))
 }
@@ -42,7 +42,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Bridge | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, bridge:, replay:"));
     }
-    let adapter = Adapter::from_pairs(&simulated(url, LinkParameters::KEYS, &[])?, attachable_kinds())?;
+    let adapter = Adapter::from_pairs(&simulator_settings(url, LinkParameters::KEYS, &[])?, attachable_kinds())?;
     Ok((Station::from_query(&url.query, reply_margin(url.scheme))?, adapter))
 }
 

@@ -10,7 +10,7 @@ use crate::buses::bridge::protocol::Hello;
 use crate::expected::Quantity;
 use crate::link::line::{LineState, MARGIN};
 use crate::link::{UrlError, UrlQuery};
-use crate::parameter::{Millivolts, OptionalValue, Parameters, Whole};
+use crate::parameter::{Millivolts, OptionalValue, ParameterGroup, WholeNumbers};
 use crate::parameters;
 use crate::units::SupplyVoltage;
 
@@ -21,7 +21,7 @@ parameters! {
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
         /// Minimum pause between two words in microseconds.
-        pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
+        pub pause_us: u16 = 200, "pause" => WholeNumbers(Quantity::Microseconds, 1..=u16::MAX);
         /// Supply voltage in millivolts that the adapter provides to the encoder, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE)), "connect.voltage" like "";
         pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;

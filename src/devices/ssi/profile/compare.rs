@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(listed(&comparison), expected);
         // Family, clocks, turns and steps, seven of the frame, five of its error bit, two, four of the reading.
         assert_eq!(comparison.compared, 1 + 1 + 2 + 7 + 5 + 2 + 4);
-        assert_eq!(comparison.missing(), Vec::<String>::new());
+        assert_eq!(comparison.one_sided_items(), Vec::<String>::new());
         assert_eq!(compare(&right, &right).differences, []);
     }
 

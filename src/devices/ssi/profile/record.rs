@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::devices::ssi::protocol::{Direction, Family, FrameDescriptor, Range, ReadConditions, ResolvedFrame};
-use crate::profile::ron_text::Unknown;
+use crate::profile::ron_text::UnknownValues;
 
 /// A profile of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,13 +40,13 @@ pub struct ReadingSettings {
 /// Unknown entries of a profile, by the structure in which they occur.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
-    pub(super) frame: Unknown,
-    pub(super) reading: Unknown,
-    pub(super) parity: Unknown,
-    pub(super) repeat: Unknown,
+    pub(super) frame: UnknownValues,
+    pub(super) reading: UnknownValues,
+    pub(super) parity: UnknownValues,
+    pub(super) repeat: UnknownValues,
     /// Unknown entries by the name of the error bit, so they stay with the bit if the order changes.
-    pub(super) errors: Vec<(String, Unknown)>,
-    pub(super) patterns: Vec<(String, Unknown)>,
+    pub(super) errors: Vec<(String, UnknownValues)>,
+    pub(super) patterns: Vec<(String, UnknownValues)>,
 }
 
 impl Default for ReadingSettings {

@@ -12,14 +12,14 @@ use crate::devices::ssi::protocol::{
     Range, Repeat, Word,
 };
 use crate::expected::AllowedValues;
-use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::ron_text::{Entries, UnknownValues, Writer, entries_text, quote};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const SMALL: AllowedValues = AllowedValues::between(0, 255);
+const SMALL: AllowedValues = AllowedValues::whole_range(0, 255);
 const FLAG: AllowedValues = AllowedValues::words(&["true", "false"]);
-const CLOCK_HZ: AllowedValues = AllowedValues::between(1000, 20_000_000);
-const PAUSE_US: AllowedValues = AllowedValues::between(1, 65_535);
-const METRES: AllowedValues = AllowedValues::between(0, 65_535);
+const CLOCK_HZ: AllowedValues = AllowedValues::whole_range(1000, 20_000_000);
+const PAUSE_US: AllowedValues = AllowedValues::whole_range(1, 65_535);
+const METRES: AllowedValues = AllowedValues::whole_range(0, 65_535);
 /// Keyword for a pattern that consists only of ones.
 const ONES: &str = "ones";
 
@@ -31,15 +31,15 @@ impl Profile for SsiProfile {
         // Keys are in lower case, but a user may write the product name.
         let family = entries.take_optional("family", AllowedValues::Text)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = UnknownEntries::default();
-        let path = entries.path_of("frame");
-        let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
-        let refused = |error| ProfileError::refused(path, EntryError::Layout(error));
+        let path = entries.entry_path("frame");
+        let descriptor = read_frame(entries.take_structure("frame")?, &mut unknown)?;
+        let refused = |error| ProfileError::invalid_entry(path, EntryError::Layout(error));
         let layout = Layout::new(descriptor.clone()).map_err(refused)?;
         let direction = word(entries, "direction")?.unwrap_or_default();
         let preset = entries.take_optional("preset", AllowedValues::Whole)?.unwrap_or(0);
         let last = layout.coding().last();
         if preset > last {
-            return Err(ProfileError::refused(entries.path_of("preset"), EntryError::Preset { preset, last }));
+            return Err(ProfileError::invalid_entry(entries.entry_path("preset"), EntryError::Preset { preset, last }));
         }
         let reading = match entries.optional_structure("reading")? {
             Some(entries) => parse_reading_settings(entries, &mut unknown)?,
@@ -105,14 +105,14 @@ impl SsiProfile {
             writer.entry("repeat", &format!("(word: {word}, gap: {gap}{more})"), "");
         }
         self.write_patterns(writer);
-        writer.unknown(&self.unknown.frame);
+        writer.write_unknown(&self.unknown.frame);
         writer.close(')');
     }
 
     fn write_errors(&self, writer: &mut Writer) {
         let mut kept: VecDeque<_> = self.unknown.errors.iter().collect();
         let line = |bit: &ErrorBit| {
-            let (name, clock, meaning) = (quoted(&bit.name), bit.clock, bit.meaning);
+            let (name, clock, meaning) = (quote(&bit.name), bit.clock, bit.meaning);
             let low = if bit.active_low { ", active_low: true" } else { "" };
             let cleared = if bit.cleared_by_transfer { ", cleared_by_transfer: true" } else { "" };
             let more = entries_text(&take_unknown_by_name(&mut kept, &bit.name));
@@ -125,9 +125,9 @@ impl SsiProfile {
         let mut kept: VecDeque<_> = self.unknown.patterns.iter().collect();
         let digits = usize::from(self.descriptor.clocks).div_ceil(4);
         let line = |pattern: &Pattern| {
-            let (name, meaning) = (quoted(&pattern.name), pattern.meaning);
+            let (name, meaning) = (quote(&pattern.name), pattern.meaning);
             let word = match pattern.word {
-                Word::Ones => quoted(ONES),
+                Word::Ones => quote(ONES),
                 Word::Bits(bits) => format!("0x{bits:0digits$X}"),
             };
             let more = entries_text(&take_unknown_by_name(&mut kept, &pattern.name));
@@ -154,7 +154,7 @@ impl SsiProfile {
         if reading.synchronous {
             writer.entry("synchronous", "true", "");
         }
-        writer.unknown(&self.unknown.reading);
+        writer.write_unknown(&self.unknown.reading);
         writer.close(')');
     }
 }
@@ -196,7 +196,7 @@ fn write_list(writer: &mut Writer, name: &str, lines: impl ExactSizeIterator<Ite
     }
 }
 
-fn take_unknown_by_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> Unknown {
+fn take_unknown_by_name(kept: &mut VecDeque<&(String, UnknownValues)>, name: &str) -> UnknownValues {
     let at = kept.iter().position(|(own, _)| own == name);
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
 }
@@ -225,7 +225,7 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Fram
         patterns: Vec::new(),
     };
     frame.area = entries.take_optional("area", SMALL)?.unwrap_or_else(|| default_area_clocks(&frame));
-    for entries in entries.structures("errors")? {
+    for entries in entries.take_structures("errors")? {
         let (bit, more) = read_error(entries)?;
         unknown.errors.push((bit.name.clone(), more));
         frame.errors.push(bit);
@@ -233,21 +233,21 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Fram
     if let Some(mut entries) = entries.optional_structure("parity")? {
         let clock = entries.take_required("clock", SMALL)?;
         frame.parity = Some(Parity { clock, even: entries.take_required("even", FLAG)? });
-        unknown.parity = entries.rest()?;
+        unknown.parity = entries.into_unknown()?;
     }
     if let Some(mut entries) = entries.optional_structure("repeat")? {
         let word = entries.take_required("word", SMALL)?;
         frame.repeat = Some(Repeat { word, gap: entries.take_optional("gap", SMALL)?.unwrap_or(1) });
-        unknown.repeat = entries.rest()?;
+        unknown.repeat = entries.into_unknown()?;
     }
-    for entries in entries.structures("patterns")? {
+    for entries in entries.take_structures("patterns")? {
         let (pattern, more) = read_pattern(entries)?;
         unknown.patterns.push((pattern.name.clone(), more));
         frame.patterns.push(pattern);
     }
     unknown.errors.retain(|(_, more)| !more.is_empty());
     unknown.patterns.retain(|(_, more)| !more.is_empty());
-    unknown.frame = entries.rest()?;
+    unknown.frame = entries.into_unknown()?;
     Ok(frame)
 }
 
@@ -274,7 +274,7 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
         let other = given.iter().find(|(name, is_given)| *is_given && *name != own && !others.contains(name));
         match other {
             None => Ok(()),
-            Some((name, _)) => Err(ProfileError::refused(entries.path_of(name), EntryError::NotWith(own))),
+            Some((name, _)) => Err(ProfileError::invalid_entry(entries.entry_path(name), EntryError::NotWith(own))),
         }
     };
     match (singleturn, steps, bits) {
@@ -294,15 +294,15 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
         },
         (None, None, Some(bits)) => {
             only("bits", &["step_nanometres"])?;
-            let missing = || ProfileError::Missing { path: entries.path_of("step_nanometres") };
+            let missing = || ProfileError::Missing { path: entries.entry_path("step_nanometres") };
             Ok(Range::Length { bits, step_nanometres: step_nanometres.ok_or_else(missing)? })
         }
-        (None, None, None) => Err(ProfileError::refused(entries.path().to_owned(), EntryError::NoPositions)),
+        (None, None, None) => Err(ProfileError::invalid_entry(entries.path().to_owned(), EntryError::NoPositions)),
     }
 }
 
 fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileError> {
-    let path = entries.path_of("revolutions");
+    let path = entries.entry_path("revolutions");
     let Some(value) = entries.take_optional::<Value>("revolutions", AllowedValues::Revolutions)? else {
         return Ok(None);
     };
@@ -313,7 +313,7 @@ fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileEr
     revolutions.map(Some).ok_or(ProfileError::Shape { path, expected: AllowedValues::Revolutions })
 }
 
-fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError> {
+fn read_error(mut entries: Entries) -> Result<(ErrorBit, UnknownValues), ProfileError> {
     let bit = ErrorBit {
         name: entries.take_required("name", AllowedValues::Text)?,
         clock: entries.take_required("clock", SMALL)?,
@@ -321,45 +321,45 @@ fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError>
         active_low: entries.take_optional("active_low", FLAG)?.unwrap_or(false),
         cleared_by_transfer: entries.take_optional("cleared_by_transfer", FLAG)?.unwrap_or(false),
     };
-    Ok((bit, entries.rest()?))
+    Ok((bit, entries.into_unknown()?))
 }
 
-fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError> {
+fn read_pattern(mut entries: Entries) -> Result<(Pattern, UnknownValues), ProfileError> {
     let wrong = |path| ProfileError::Shape { path, expected: AllowedValues::Frame };
-    let path = entries.path_of("word");
+    let path = entries.entry_path("word");
     let word = match entries.take_required::<Value>("word", AllowedValues::Frame)? {
         Value::String(word) if word == ONES => Word::Ones,
         value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
     };
     let name = entries.take_required("name", AllowedValues::Text)?;
-    Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
+    Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.into_unknown()?))
 }
 
 fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<ReadingSettings, ProfileError> {
     let usual = ReadingSettings::default();
     let clock_hz = entries.take_optional("clock_hz", CLOCK_HZ)?.unwrap_or(usual.clock_hz);
     if !(1_000..=20_000_000).contains(&clock_hz) {
-        return Err(ProfileError::Shape { path: entries.path_of("clock_hz"), expected: CLOCK_HZ });
+        return Err(ProfileError::Shape { path: entries.entry_path("clock_hz"), expected: CLOCK_HZ });
     }
     let pause_us = entries.take_optional("pause_us", PAUSE_US)?.unwrap_or(usual.pause_us);
     if pause_us == 0 {
-        return Err(ProfileError::Shape { path: entries.path_of("pause_us"), expected: PAUSE_US });
+        return Err(ProfileError::Shape { path: entries.entry_path("pause_us"), expected: PAUSE_US });
     }
     let cable_metres = entries.take_optional("cable_metres", METRES)?;
     let synchronous = entries.take_optional("synchronous", FLAG)?.unwrap_or(usual.synchronous);
-    unknown.reading = entries.rest()?;
+    unknown.reading = entries.into_unknown()?;
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
 
 /// Parses an entry whose value is a keyword from a fixed set.
 fn word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
-    let path = entries.path_of(name);
+    let path = entries.entry_path(name);
     let Some(word) = entries.take_optional::<String>(name, AllowedValues::Text)? else { return Ok(None) };
     word.parse().map(Some).map_err(|expected| ProfileError::Shape { path, expected })
 }
 
 fn required_word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
-    word(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
+    word(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.entry_path(name) })
 }
 
 #[cfg(test)]

@@ -66,7 +66,7 @@ impl<'t> Setting<'t> {
     }
 
     pub(super) fn small(self) -> Result<u8, SpecError> {
-        self.value.parse().map_err(|_| self.wrong(AllowedValues::between(0, 255)))
+        self.value.parse().map_err(|_| self.wrong(AllowedValues::whole_range(0, 255)))
     }
 
     pub(super) fn number(self) -> Result<u32, SpecError> {

@@ -4,7 +4,7 @@ use super::encoder::{Encoder, FrameSender};
 use super::injected_fault::InjectedFault;
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice};
 use crate::expected::AllowedValues;
-use crate::parameter::{ANY, Checked, OptionalValue, Parameters, Refused};
+use crate::parameter::{ANY, CustomNotation, OptionalValue, ParameterGroup, RejectedParameter};
 use crate::parameters;
 use crate::sim::ConfigError;
 
@@ -15,7 +15,7 @@ parameters! {
         /// Family and settings of the encoder. If the host clocks fewer bits, it receives a part of the frame; if it
         /// clocks more bits, zeros follow the frame.
         encoder: Option<Encoder> = None,
-            "ssi" => OptionalValue(Checked(AllowedValues::Family, Encoder::named)),
+            "ssi" => OptionalValue(CustomNotation(AllowedValues::Family, Encoder::named)),
             "connect.ssi_layout" like "atm60,code=gray";
         /// Active error bits, and words sent instead of the frame, such as `ERRSYNC:0.5,ERRSI:4` or `safety-fault`. The
         /// number is the interval in seconds.
@@ -53,11 +53,11 @@ impl AttachableKind for AttachableEncoder {
     }
 }
 
-fn parse_faults(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, Refused> {
+fn parse_faults(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, RejectedParameter> {
     let allowed = || match InjectedFault::names(&encoder.layout) {
         own if own.is_empty() => AllowedValues::NoErrorBits,
         own => AllowedValues::ErrorBits(own),
     };
     let troubles = InjectedFault::read(value, &encoder.layout);
-    troubles.ok_or_else(|| Refused::new("ssi-error", value, allowed()))
+    troubles.ok_or_else(|| RejectedParameter::new("ssi-error", value, allowed()))
 }

@@ -9,7 +9,7 @@ use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::AttachableKind;
 use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
 use crate::sim::ConfigError;
-use crate::sim::setting::pairs;
+use crate::sim::setting::query_pairs;
 
 /// Creates a host with the encoder on the shaft of a test.
 fn host_with_dial(query: &str) -> Host {
@@ -17,7 +17,7 @@ fn host_with_dial(query: &str) -> Host {
 }
 
 fn read(query: &str) -> Result<(), ConfigError> {
-    AttachableEncoder::DELIVERED.attach_device(&pairs(query)).map(|_| ())
+    AttachableEncoder::DELIVERED.attach_device(&query_pairs(query)).map(|_| ())
 }
 
 /// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a

@@ -13,7 +13,7 @@ use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::sim::Settings;
 use crate::kinds::attachable_kinds;
 use crate::link::{LinkScheme, LinkUrl, PORT_EXAMPLE};
-use crate::parameter::{Entry, Parameters as _};
+use crate::parameter::{Entry, ParameterGroup as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SsiLinkKind {
@@ -46,7 +46,7 @@ impl FormModel for SsiForm {
 
     // The clock of the virtual encoder is slow enough to see the bits.
     fn default_link() -> LinkUrl {
-        let mut url = LinkUrl::sim();
+        let mut url = LinkUrl::simulated();
         url.query.set("rpm", "6");
         url
     }

@@ -41,7 +41,7 @@ impl HasDraft for Encoder {
         let wire = if self.session.is_virtual() {
             self.session.data_source()
         } else {
-            format!("{}:{}", url.scheme.word(), url.target)
+            format!("{}:{}", url.scheme.keyword(), url.target)
         };
         Some(("link".to_owned(), wire))
     }
@@ -59,7 +59,7 @@ impl HasDraft for Encoder {
             let changes: Vec<Change> = edits.iter().filter_map(|text| ron::from_str(text).ok()).collect();
             let all = changes.len() == edits.len();
             let changed =
-                document_of(self.designer.saved()).changed(&changes, SsiProfile::FORMATS).ok().filter(|_| all)?;
+                document_of(self.designer.saved()).with_changes(&changes, SsiProfile::FORMATS).ok().filter(|_| all)?;
             changed.body.into_profile().ok()
         });
         match whole {

@@ -15,7 +15,7 @@ use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::sim::Settings;
 use crate::devices::ssi::state::explain;
 use crate::link::LinkUrl;
-use crate::parameter::Parameters as _;
+use crate::parameter::ParameterGroup as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;

@@ -13,7 +13,10 @@ use crate::store::Store;
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     (
-        Services::new(StudioEnvironment::production(Store::at(folder.path()), KindRegistry::NONE), Arc::new(|| ())),
+        Services::new(
+            StudioEnvironment::production(Store::at_root(folder.path()), KindRegistry::NONE),
+            Arc::new(|| ()),
+        ),
         folder,
     )
 }

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::{Adapter, AttachableKind, AttachedDevice, BissDevice, SsiDevice};
-use crate::parameter::Values as _;
-use crate::sim::setting::pairs;
+use crate::parameter::ParameterValues as _;
+use crate::sim::setting::query_pairs;
 use crate::sim::{ByteDevice, ConfigError, Motor, RPM, SimulatedFaults};
 use crate::units::Moment;
 
@@ -30,7 +30,7 @@ impl Host {
 
     /// Creates a host with an adapter for these devices.
     pub(crate) fn to(query: &str, devices: &[&dyn AttachableKind]) -> Self {
-        let adapter = Adapter::from_pairs(&pairs(query), devices).unwrap();
+        let adapter = Adapter::from_pairs(&query_pairs(query), devices).unwrap();
         Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
     }
 
@@ -112,7 +112,7 @@ impl Dial {
     const START: Duration = Duration::from_millis(500);
 
     fn advance(&mut self, to: Moment) {
-        self.revolutions += self.motor.rpm() / 60.0 * to.since(self.now).as_secs_f64();
+        self.revolutions += self.motor.rpm() / 60.0 * to.duration_since(self.now).as_secs_f64();
         self.now = self.now.max(to);
     }
 
@@ -130,10 +130,10 @@ impl AttachableKind for DialSettings {
     fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let mut rpm = 0.0;
         for (key, value) in pairs.iter().filter(|(key, _)| key == "rpm") {
-            rpm = RPM.take(key, value)?;
+            rpm = RPM.parse_value(key, value)?;
         }
         let revolutions = f64::from(0x1234) + 0.75;
-        let (motor, registers) = (Motor::at(rpm), [0x61; 0x80]);
+        let (motor, registers) = (Motor::with_speed(rpm), [0x61; 0x80]);
         let dial = Dial { motor, revolutions, now: Moment::START, ready: Some(Moment::START), registers };
         Ok(Some(AttachedDevice::Biss(Box::new(dial))))
     }
@@ -141,7 +141,7 @@ impl AttachableKind for DialSettings {
 
 impl BissDevice for Dial {
     fn duplicate(&self) -> Box<dyn BissDevice> {
-        Box::new(Dial { motor: Motor::at(self.motor.rpm()), ..*self })
+        Box::new(Dial { motor: Motor::with_speed(self.motor.rpm()), ..*self })
     }
 
     fn frame(&mut self, at: Moment) -> Option<(u64, u8)> {

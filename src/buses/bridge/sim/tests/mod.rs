@@ -11,7 +11,7 @@ pub(crate) use host::{BISS, Dial, Host, SSI};
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::{Adapter, keys};
 use crate::sim::ByteDevice;
-use crate::sim::setting::pairs;
+use crate::sim::setting::query_pairs;
 use crate::units::Moment;
 
 #[test]
@@ -154,7 +154,7 @@ fn without_a_biss_encoder_the_adapter_has_a_shaft() {
     assert_eq!(word(&mut host).1, still);
     assert_eq!(host.adapter.motor().rpm(), 0.0);
     assert!(keys(&[&SsiTestEncoder]).contains(&"rpm"));
-    assert!(Adapter::from_pairs(&pairs("rpm=x"), &[&SsiTestEncoder]).is_err());
+    assert!(Adapter::from_pairs(&query_pairs("rpm=x"), &[&SsiTestEncoder]).is_err());
 }
 
 #[test]

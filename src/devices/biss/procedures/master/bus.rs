@@ -81,7 +81,7 @@ impl<'a> Master<'a> {
     fn select_bank_once(&mut self, address: RegisterAddress) -> Attempt<()> {
         let Some(bank) = address.bank() else { return Ok(Ok(())) };
         let now = self.now();
-        let fresh = |(own, at): (u8, Moment)| own == bank && now.since(at) < BANK_TRUST;
+        let fresh = |(own, at): (u8, Moment)| own == bank && now.duration_since(at) < BANK_TRUST;
         if self.station.bank.is_some_and(fresh) {
             return Ok(Ok(()));
         }

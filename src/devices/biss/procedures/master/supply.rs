@@ -58,7 +58,7 @@ impl Master<'_> {
         // Nothing was written in this session, but an encoder that does not reply may be busy with an operation started
         // earlier.
         let Some(written_at) = self.station.written_at else { return Ok(!self.has_power()) };
-        let since = self.now().since(written_at);
+        let since = self.now().duration_since(written_at);
         self.wait(SETTLES.saturating_sub(since))?;
         let Some(lock) = self.station.description.as_ref().and_then(|own| own.lock()) else { return Ok(false) };
         // An encoder that does not reply is calibrating or restarting.

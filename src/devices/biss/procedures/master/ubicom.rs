@@ -13,7 +13,7 @@ use crate::devices::biss::procedures::error::{Damage, RequestedItem, requested_r
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
-use crate::link::line::MOST_KEPT;
+use crate::link::line::MAX_KEPT_BYTES;
 use crate::units::Moment;
 
 /// Length in bytes of the longest frame, which is the reply to 03h.
@@ -94,10 +94,10 @@ impl Master<'_> {
     }
 
     fn exchange(&mut self, request: Request, order: ByteOrder) -> Attempt<TimedReply> {
-        self.line.begin(&mut self.station.line, BYTE_TIME_OUT)?;
+        self.line.begin_exchange(&mut self.station.line, BYTE_TIME_OUT)?;
         let frame = request.emit(order);
         let sent_at = self.now();
-        self.station.line.sent(sent_at);
+        self.station.line.mark_sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
         let deadline = sent_at + self.max_pin_exchange_duration();
         let received = ReceivedBytes {
@@ -131,7 +131,7 @@ impl Master<'_> {
                 last_at = self.now();
             }
             received.bytes += portion.len();
-            received.raw.extend(portion.iter().take(MOST_KEPT.saturating_sub(received.raw.len())));
+            received.raw.extend(portion.iter().take(MAX_KEPT_BYTES.saturating_sub(received.raw.len())));
             received.receiver.push(&portion);
             let next = if portion.is_empty() { Receiver::handle_silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut received.receiver) {
@@ -163,9 +163,9 @@ impl Master<'_> {
 
     fn understood(&mut self, received: &ReceivedBytes, reply: &[u8], at: Moment) {
         let state = &mut self.station.line;
-        state.answered();
+        state.mark_replied();
         state.record_answer_start(at);
-        state.echo.learn(received.echo_heard);
+        state.echo.store_heard(received.echo_heard);
         if received.receiver.skipped() > 0 || received.damage.is_some() {
             // The checksum of this reply is correct, but the line has damaged other bytes.
             state.damaged += 1;

@@ -238,9 +238,9 @@ impl<'g, 'm> Guide<'g, 'm> {
         loop {
             let requested = self.master.now();
             let status = self.master.with_reply_timeout(SILENCE, |master| master.read(procedure.status))?;
-            let elapsed = self.master.now().since(started);
+            let elapsed = self.master.now().duration_since(started);
             begun |= status == course.active || status != course.was;
-            begun |= course.run.is_calibration() && self.master.now().since(requested) >= BEGUN;
+            begun |= course.run.is_calibration() && self.master.now().duration_since(requested) >= BEGUN;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
                 // Not started yet.
@@ -293,7 +293,7 @@ impl<'g, 'm> Guide<'g, 'm> {
                 self.operator.on_task_start();
                 is_told = true;
             }
-            let demand = OperatorPrompt::new(task, measured, self.master.now().since(begun));
+            let demand = OperatorPrompt::new(task, measured, self.master.now().duration_since(begun));
             self.report(StepDetail::Demand(demand.clone()));
             match self.operator.attend(&demand) {
                 Answer::Go if demand.is_ready() => return Ok(OperatorDecision::Go(demand.motion)),

@@ -81,11 +81,11 @@ fn an_exchange_takes_the_expected_time() {
     let mut line = Line::with("");
     line.port.on_bytes(line.now, &parse_hex(READ_TEMPERATURE).unwrap());
     let (_, last) = line.receive();
-    let micros = last.since(Moment::START).as_micros();
+    let micros = last.duration_since(Moment::START).as_micros();
     assert!((2_301..=2_303).contains(&micros), "{micros}");
     let mut slow = Line::with("fault=delay:50");
     slow.port.on_bytes(slow.now, &parse_hex(READ_TEMPERATURE).unwrap());
-    let micros = slow.receive().1.since(Moment::START).as_micros();
+    let micros = slow.receive().1.duration_since(Moment::START).as_micros();
     assert!((52_301..=52_303).contains(&micros), "{micros}");
 }
 

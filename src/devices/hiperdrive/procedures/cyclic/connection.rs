@@ -73,7 +73,7 @@ impl Connection {
 
     /// Returns whether no packet has arrived for three intervals. The positions of the drives are then unknown.
     pub fn has_timed_out(&self, now: Moment) -> bool {
-        self.began && now.since(self.last_received) > self.come_interval * MAX_MISSED_PACKETS
+        self.began && now.duration_since(self.last_received) > self.come_interval * MAX_MISSED_PACKETS
     }
 
     /// Returns the time without packets if it is too long.
@@ -82,12 +82,12 @@ impl Connection {
     /// packets queued. At rest, the limit is the time that the target itself waits for a packet. This is also the
     /// absolute limit.
     pub fn excessive_silence(&mut self, now: Moment, moves: bool) -> Option<Duration> {
-        if now.since(self.next) > self.come_interval {
+        if now.duration_since(self.next) > self.come_interval {
             self.awake = now;
         }
         let intervals = self.come_interval * MAX_MISSED_PACKETS;
-        let silence = now.since(self.last_received);
-        let listened = now.since(self.last_received.max(self.awake));
+        let silence = now.duration_since(self.last_received);
+        let listened = now.duration_since(self.last_received.max(self.awake));
         let most = if self.began { self.timeout.max(intervals) } else { FIRST.max(self.timeout) };
         (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
@@ -109,7 +109,7 @@ impl Connection {
             PacketVerdict::New { missing } => {
                 if self.began {
                     self.figures.missed += u64::from(missing);
-                    self.figures.intervals.count(self.come_interval, now.since(self.last_received));
+                    self.figures.intervals.count(self.come_interval, now.duration_since(self.last_received));
                 }
                 self.figures.received += 1;
                 (self.last_received, self.began) = (now, true);

@@ -162,7 +162,7 @@ impl Drives {
     fn check_for_end(&mut self, now: Moment, drives: &mut [OutputData]) {
         let idle = self.dead_man_switches().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
-        if idle || ending.off > 0 || now.since(ending.since) >= STOP_LADDER_TIME {
+        if idle || ending.off > 0 || now.duration_since(ending.since) >= STOP_LADDER_TIME {
             ending.off += 1;
             for out in drives {
                 out.control = 0;

@@ -74,12 +74,12 @@ impl ParameterWords {
     pub fn request(&mut self, now: Moment) -> Pkw {
         match self.phase {
             Phase::Clear if !self.watched.is_empty() => self.phase = Phase::Clearing { since: now },
-            Phase::Clearing { since } if now.since(since) > LIMIT => {
+            Phase::Clearing { since } if now.duration_since(since) > LIMIT => {
                 let silent = ParameterReading { at: now, result: ParameterResult::NoReply };
                 self.readings.extend(self.watched.iter().map(|number| (*number, silent)));
                 self.phase = Phase::Clear;
             }
-            Phase::Reading { number, since } if now.since(since) > LIMIT => {
+            Phase::Reading { number, since } if now.duration_since(since) > LIMIT => {
                 self.finish(number, ParameterReading { at: now, result: ParameterResult::NoReply });
             }
             Phase::Ready => {

@@ -224,7 +224,7 @@ impl MotionIntent {
 
     /// Returns whether the request has not been refreshed in time.
     pub fn is_stale(&self, now: Moment) -> bool {
-        now.since(self.refreshed) > MotionIntent::REFRESH_VALIDITY
+        now.duration_since(self.refreshed) > MotionIntent::REFRESH_VALIDITY
     }
 }
 

@@ -65,7 +65,7 @@ impl DeadMan {
         let act = self.act?;
         let status = actual.status;
         let state = status.state();
-        let is_out_of_contact = self.received.is_none_or(|(at, _)| now.since(at) > CONTACT_TIMEOUT);
+        let is_out_of_contact = self.received.is_none_or(|(at, _)| now.duration_since(at) > CONTACT_TIMEOUT);
         let (down, acknowledges) = match (self.stage, act.request) {
             (Stage::Lead(lead), MotionRequest::Lead(_)) => {
                 (lead.only_removes_torque(state), lead.goal() == super::TargetState::Off)

@@ -58,7 +58,7 @@ const REPORTS: u64 = 2;
 impl ReportMark {
     /// Returns whether at least `time` has passed since `earlier`, and [`REPORTS`] reports have arrived.
     pub(super) fn has_elapsed_since(self, earlier: ReportMark, time: Duration) -> bool {
-        self.at.since(earlier.at) >= time && self.report >= earlier.report + REPORTS
+        self.at.duration_since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }
 }
 
@@ -109,7 +109,7 @@ impl DeadMan {
                 };
                 if begun {
                     self.stage = Stage::Go { since: mark, acknowledged, standing_since: None };
-                } else if now.since(since.at) >= START {
+                } else if now.duration_since(since.at) >= START {
                     let at_end = self.act.and_then(|act| act.watch).is_some_and(|watch| watch.at_end);
                     self.stop(now, if at_end { ActionEnd::RangeEnd } else { ActionEnd::NotStarted });
                 }
@@ -168,7 +168,7 @@ impl DeadMan {
         if mark.has_elapsed_since(begun, MAX_REPORT_DELAY) && actual.status.is_set(StatusBit::StandingStill) {
             // The held state is never above the state of the word sent last.
             self.hold_state(actual.status.state());
-        } else if mark.at.since(since) >= LEVEL_TIME {
+        } else if mark.at.duration_since(since) >= LEVEL_TIME {
             let level = level.next();
             self.stage = Stage::Stop { level, since: mark.at, begun, word };
         }
@@ -182,7 +182,7 @@ impl DeadMan {
         }
         let moves = (actual.status.state() == State::Moving).then(|| moves.unwrap_or(now));
         self.stage = Stage::Rest { moves };
-        if moves.is_some_and(|since| now.since(since) >= LEVEL_TIME) {
+        if moves.is_some_and(|since| now.duration_since(since) >= LEVEL_TIME) {
             let level = match self.level {
                 TargetState::Enabled => StopLevel::Operational,
                 TargetState::Operational | TargetState::Ready => StopLevel::Off,

@@ -2,7 +2,7 @@
 
 use super::super::test_profiles::{drive, identity, image_of, number, profile};
 use super::*;
-use crate::profile::testing::{assert_edit_in_place, edited};
+use crate::profile::testing::{assert_edit_in_place, edit_profile};
 use crate::profile::{Body, ProfileDocument};
 
 fn document(profile: HiperdriveProfile) -> ProfileDocument {
@@ -156,7 +156,7 @@ fn a_change_edits_only_its_value() {
 /// Issue 22.26: an added or removed entry changes its own line only.
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
-    let (_, carried) = edited(COMMENTED, |_, own: &mut HiperdriveProfile| {
+    let (_, carried) = edit_profile(COMMENTED, |_, own: &mut HiperdriveProfile| {
         own.image.values.remove(&number(158));
         own.image.values.insert(number(24), 1);
     });

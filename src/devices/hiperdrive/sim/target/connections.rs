@@ -81,7 +81,7 @@ impl Connections {
     }
 
     pub(super) fn remove_timed_out(&mut self, now: Moment) {
-        self.explicit.retain(|explicit| now.since(explicit.heard) < explicit.timeout);
+        self.explicit.retain(|explicit| now.duration_since(explicit.heard) < explicit.timeout);
     }
 
     /// Handles a message over an explicit connection and returns the data for its reply.

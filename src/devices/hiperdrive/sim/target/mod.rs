@@ -157,7 +157,7 @@ impl ByteDevice for Target {
     }
 
     fn poll_at(&self) -> Option<Moment> {
-        self.to_host.due()
+        self.to_host.next_due()
     }
 
     fn connect(&mut self, now: Moment) {

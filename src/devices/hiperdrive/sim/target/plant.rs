@@ -72,7 +72,7 @@ impl TargetDevice {
     }
 
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.station.die_in_store(faults.die_in_store());
+        self.station.die_in_store(faults.failing_store());
         self.faults = faults.clone();
     }
 
@@ -177,6 +177,6 @@ impl TargetDevice {
     }
 
     pub(super) fn poll_datagrams_at(&self) -> Option<Moment> {
-        [self.datagrams.due(), self.connections.due()].into_iter().flatten().min()
+        [self.datagrams.next_due(), self.connections.due()].into_iter().flatten().min()
     }
 }

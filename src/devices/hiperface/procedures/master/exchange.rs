@@ -53,14 +53,14 @@ impl Master<'_> {
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
-        self.station.line.sent(sent_at);
+        self.station.line.mark_sent(sent_at);
         self.send(&frame, sent_at)?;
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
         let judgement = self.judge(request, heard);
         // A damaged reply to a frame with an access code may be its echo, so none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
-        let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
+        let shown = if secret { MaskedBytes::fully_masked(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
         // Damaged bytes may contain a whole reply. Late or extra bytes were kept while listening, and an echo is not a
         // reply.
@@ -84,7 +84,7 @@ impl Master<'_> {
     /// Checks for cancellation, then waits for the dead time and for silence on the line.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let quiet = self.silence_duration();
-        Ok(self.line.begin(&mut self.station.line, quiet)?)
+        Ok(self.line.begin_exchange(&mut self.station.line, quiet)?)
     }
 
     /// Sends a frame, and traces it with its access codes masked.
@@ -149,7 +149,7 @@ impl Master<'_> {
         let trailing = line.len() > before;
         if trailing {
             let (quiet, echo) = (self.silence_duration(), self.station.line.echo);
-            self.line.skip_bytes(echo.strip(line, frame.bytes()).unwrap_or_default());
+            self.line.skip_bytes(echo.strip_echo(line, frame.bytes()).unwrap_or_default());
             self.line.wait_for_silence(&mut self.station.line, quiet)?;
         }
         Ok(trailing)
@@ -157,7 +157,7 @@ impl Master<'_> {
 
     /// Returns the reply received so far, or `None` while it may still be the echo.
     fn strip_echo<'l>(&self, line: &'l [u8], frame: &MaskableFrame) -> Option<&'l [u8]> {
-        self.station.line.echo.strip(line, frame.bytes())
+        self.station.line.echo.strip_echo(line, frame.bytes())
     }
 
     fn parse_received_line(
@@ -198,9 +198,9 @@ impl Master<'_> {
             // The request was correct when it was sent, so the line damaged it.
             return Err(ExchangeFailure::Damage(Damage::AtEncoder(*code)));
         }
-        self.station.line.answered();
+        self.station.line.mark_replied();
         self.station.line.record_answer_start(heard.first_at);
-        self.station.line.echo.learn(heard.echo_heard);
+        self.station.line.echo.store_heard(heard.echo_heard);
         let sender = heard.reply.first().copied().unwrap_or(self.station.address);
         Ok(ReceivedAnswer { answer, sender, at: heard.first_at - self.station.timing().character })
     }

@@ -1,7 +1,7 @@
 //! The user's text is parsed, the written text is parsed again, and errors are named.
 
 use super::*;
-use crate::profile::testing::{assert_edit_in_place, edited};
+use crate::profile::testing::{assert_edit_in_place, edit_profile};
 use crate::profile::{ProfileDocument, ProfileError};
 
 /// Profile as a user may write it.
@@ -138,7 +138,7 @@ fn a_newer_schema_is_read_only() {
     assert!(document.is_newer());
     assert_eq!(document.beyond, ["fields[0].statsu", "feilds"]);
     assert!(document.emit().contains("schema: 7,"), "never as an older one");
-    assert_eq!(document.known(), Err(ProfileError::Schema { found: 7, known: 1 }));
+    assert_eq!(document.check_schema(), Err(ProfileError::Schema { found: 7, known: 1 }));
     let zero = parse(&SHORT.replace("schema: 1,", "schema: 0,"));
     assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
 }
@@ -153,7 +153,7 @@ fn a_change_edits_only_its_value() {
 /// Issue 22.26: bytes in lines of another length are rewritten, which is reported; the rest stays.
 #[test]
 fn bytes_with_custom_line_breaks_are_reformatted() {
-    let (_, carried) = edited(&commented_profile(), |_, own: &mut HiperfaceProfile| {
+    let (_, carried) = edit_profile(&commented_profile(), |_, own: &mut HiperfaceProfile| {
         own.fields[0].bytes.as_mut().unwrap()[1] = 0xFF;
     });
     assert_eq!(carried.lost, ["name plate"]);

@@ -6,7 +6,7 @@ use super::undo::delete;
 use super::{DeviceState, PlanError};
 use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize};
-use crate::profile::difference::runs;
+use crate::profile::difference::differing_ranges;
 
 pub(super) struct Planner<'a> {
     pub(super) profile: &'a HiperfaceProfile,
@@ -68,7 +68,7 @@ impl Planner<'_> {
             let now = self.device.fields.iter().find(|field| field.number == target.number);
             let old = now.and_then(|now| now.bytes.as_deref()).unwrap_or_default();
             let new = target.bytes.as_deref().unwrap_or_default();
-            for range in runs(old, new).into_iter().chain(std::iter::once(old.len()..new.len())) {
+            for range in differing_ranges(old, new).into_iter().chain(std::iter::once(old.len()..new.len())) {
                 self.allowed(target.number, range);
             }
         }
@@ -186,7 +186,7 @@ impl Planner<'_> {
             return;
         };
         let mut stores: Vec<(Range<usize>, bool)> = Vec::new();
-        for run in runs(old, new) {
+        for run in differing_ranges(old, new) {
             stores.extend(self.allowed(now.number, run).into_iter().map(|range| (range, true)));
         }
         if new.len() > old.len() {
@@ -194,7 +194,7 @@ impl Planner<'_> {
             stores.extend(self.allowed(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
         }
         self.unchanged += u64::from(now.status == target.status);
-        let changed: usize = runs(old, new).iter().map(ExactSizeIterator::len).sum();
+        let changed: usize = differing_ranges(old, new).iter().map(ExactSizeIterator::len).sum();
         self.unchanged += (old.len().min(new.len()) - changed) as u64;
 
         let can_write_first = now.status.is_writable() && now.status.size() >= target.status.size();

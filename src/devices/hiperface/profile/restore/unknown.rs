@@ -2,7 +2,7 @@
 
 use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
-use crate::profile::difference::runs;
+use crate::profile::difference::differing_ranges;
 
 /// Data field in which bytes of unknown meaning differ between the profile and another encoder. They may contain an
 /// offset between encoder and motor.
@@ -43,7 +43,7 @@ pub(super) fn unknown_fields(
             None => &[],
         };
         let grown = old.len()..new.len();
-        let differing = runs(old, new).into_iter().flatten().chain(grown);
+        let differing = differing_ranges(old, new).into_iter().flatten().chain(grown);
         let bytes = differing.filter(|at| !profile.depends_on_mounting(target.number, *at)).count();
         let answer = options.copy.get(&target.number).copied();
         (bytes > 0).then_some(UnknownMeaningField { field: target.number, bytes, answer })

@@ -76,7 +76,7 @@ impl Host {
         self.send(request);
         let (_, last) = self.receive();
         self.wait(ms(20.0));
-        last.since(start)
+        last.duration_since(start)
     }
 
     fn wait(&mut self, duration: Duration) {

@@ -26,7 +26,7 @@ fn step(step: CheckStep) -> Text {
 }
 
 pub fn line_quality(quality: &LineQuality) -> Text {
-    let [retries, damaged, silent, late] = quality.troubles();
+    let [retries, damaged, silent, late] = quality.counts();
     TEXTS
         .text(if quality.has_errors() { "line.troubled" } else { "line.good" })
         .with("requests", quality.requests)

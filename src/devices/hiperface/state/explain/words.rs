@@ -143,7 +143,7 @@ mod tests {
             );
         }
         for known in Parity::ALL {
-            assert_eq!(parity(known).to_string_in(Language::English), known.word());
+            assert_eq!(parity(known).to_string_in(Language::English), known.keyword());
         }
     }
 

@@ -117,7 +117,7 @@ impl Master<'_> {
         let mut looks = 0;
         loop {
             self.input = self.data.input()?;
-            let waited = self.data.now().since(begun);
+            let waited = self.data.now().duration_since(begun);
             match Reply::parse(self.input) {
                 Reply::Echo { .. } | Reply::Busy { .. } if waited >= self.patience => {
                     let input = self.input;
@@ -136,7 +136,7 @@ impl Master<'_> {
             self.found_error = Some(self.input);
         }
         let runs = matches!(Reply::parse(self.input), Reply::Run { .. });
-        if runs && self.rested.take().is_some_and(|rested| self.data.now().since(rested) < STILL) {
+        if runs && self.rested.take().is_some_and(|rested| self.data.now().duration_since(rested) < STILL) {
             return Ok(());
         }
         let mode = self.read_startup_mode()?;

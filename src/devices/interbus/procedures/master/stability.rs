@@ -45,7 +45,7 @@ impl StabilityTimer {
             return;
         }
         self.cycles += 1;
-        self.lasted = now.since(*self.since.get_or_insert(now));
+        self.lasted = now.duration_since(*self.since.get_or_insert(now));
     }
 
     /// Returns whether the condition has held long enough for an echo or a value.

@@ -2,8 +2,8 @@
 
 use super::super::test_profiles::{cam, edges, profile, program};
 use super::*;
-use crate::profile::testing::{assert_edit_in_place, edited};
-use crate::profile::{Body, Carried, Change, ChangedSide, ProfileDocument, diverging_changes};
+use crate::profile::testing::{assert_edit_in_place, edit_profile};
+use crate::profile::{Body, Change, ChangedSide, ProfileDocument, UpdatedText, diverging_changes};
 
 fn document(profile: InterbusProfile) -> ProfileDocument {
     let saved = Some("2024-06-03T14:05:00Z".to_owned());
@@ -130,7 +130,7 @@ fn a_change_edits_only_its_value() {
 /// Issue 22.26: an added or removed entry changes its own line only.
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
-    let (_, carried) = edited(COMMENTED, |note, own: &mut InterbusProfile| {
+    let (_, carried) = edit_profile(COMMENTED, |note, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), None);
         program.set_cam(cam(4), Some(edges(300, 400)));
@@ -149,11 +149,11 @@ fn adding_or_removing_an_entry_changes_only_its_line() {
 #[test]
 fn generated_comments_follow_their_values() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
-    let (document, carried) = edited(text, |_, own: &mut InterbusProfile| {
+    let (document, carried) = edit_profile(text, |_, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(1).unwrap()).unwrap().as_mut().unwrap();
         program.mask = 0x03;
     });
-    assert_eq!(carried, Carried { text: document.emit(), lost: Vec::new() });
+    assert_eq!(carried, UpdatedText { text: document.emit(), lost: Vec::new() });
     assert!(carried.text.contains("mask: 0x03, // these cams work: 0, 1\n"));
 }
 
@@ -164,7 +164,7 @@ fn divergent_changes_are_listed_by_entry() {
     let theirs = parse_document(&COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1"));
     let mine = parse_document(&COMMENTED.replace("start: 10,", "start: 14,").replace("stop: 200", "stop: 222"));
     let found = diverging_changes(&base, &theirs, &mine);
-    let told: Vec<(String, ChangedSide)> = found.iter().map(|(change, who)| (change.place(), *who)).collect();
+    let told: Vec<(String, ChangedSide)> = found.iter().map(|(change, who)| (change.location(), *who)).collect();
     let place = |rest: &str| format!("programs[program: 2].{rest}");
     let expected = [
         (place("mask"), ChangedSide::There),
@@ -174,7 +174,7 @@ fn divergent_changes_are_listed_by_entry() {
     assert_eq!(told, expected);
     let here: Vec<Change> =
         found.into_iter().filter(|(_, who)| *who == ChangedSide::Here).map(|(own, _)| own).collect();
-    let merged = theirs.changed(&here, InterbusProfile::FORMATS).unwrap();
+    let merged = theirs.with_changes(&here, InterbusProfile::FORMATS).unwrap();
     let expected = COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1");
     assert_eq!(merged, parse_document(&expected.replace("stop: 200", "stop: 222")));
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 use super::Target;
 use crate::bits::{hex, parse_hex};
 use crate::devices::hiperdrive::sim::Config;
-use crate::sim::setting::pairs;
+use crate::sim::setting::query_pairs;
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::Moment;
 
@@ -36,7 +36,7 @@ fn bytes(text: &str) -> Vec<u8> {
 }
 
 fn config(query: &str) -> Config {
-    Config::from_pairs(&pairs(query)).unwrap()
+    Config::from_pairs(&query_pairs(query)).unwrap()
 }
 
 /// Builds a frame: command, session, data; status, context and options are 0.
