@@ -31,7 +31,7 @@ pub fn attachable_kinds() -> &'static [&'static dyn AttachableKind] {
     static DEVICES: OnceLock<Vec<&'static dyn AttachableKind>> = OnceLock::new();
     DEVICES.get_or_init(|| {
         let mut devices: Vec<_> = KINDS.iter().filter_map(|kind| kind.at_adapter).collect();
-        devices.sort_by_key(|device| device.keys().contains(&"rpm"));
+        devices.sort_by_key(|device| device.setting_names().contains(&"rpm"));
         devices
     })
 }

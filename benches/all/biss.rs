@@ -110,13 +110,13 @@ fn receive(bytes: &[u8], layout: &Layout) -> u64 {
         receiver.push(portion);
         while let Some(packet) = receiver.next_packet() {
             let Ok(Message::Data(data)) = Message::parse(&packet) else { panic!("nothing else was sent") };
-            assert_eq!(continuity.follow(&data), PacketGap::None);
+            assert_eq!(continuity.gap_before(&data), PacketGap::None);
             let StreamData::Biss(data) = data else { panic!("nothing else was sent") };
             times.clear();
             steps.clear();
             for (at, (_, raw)) in data.values.iter().enumerate() {
                 let reading: Result<PositionData, FrameError> = layout.parse(*raw);
-                let position = i64::try_from(layout.steps(&reading.unwrap())).unwrap();
+                let position = i64::try_from(layout.steps_of(&reading.unwrap())).unwrap();
                 steps.push(unwrap.next(position).unwrap().steps);
                 let nanoseconds = (data.t0_us as i64 + at as i64 * i64::from(data.period_us)) * 1000;
                 times.push(SampleTime::from_nanoseconds(nanoseconds));

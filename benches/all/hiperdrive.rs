@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, unbounded};
 use encoder_studio::buses::ethernet_ip::protocol::{
-    EPath, ForwardClose, IoPacket, Owner, RealTimeFormat, RequestTimeout,
+    ConnectionOwner, EPath, ForwardClose, IoPacket, RealTimeFormat, RequestTimeout,
 };
 use encoder_studio::devices::hiperdrive::jobs::{Cyclic, Motion};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::{Drives, Histogram};
@@ -31,8 +31,8 @@ const TO_TARGET: u32 = 0x0002_0001;
 const TO_ORIGINATOR: u32 = 0x0003_0001;
 
 fn opened(port: u16) -> OpenedConnection {
-    let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
-    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::assemblies(104, 100, 101) };
+    let owner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
+    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::to_assemblies(104, 100, 101) };
     OpenedConnection {
         to_target_id: TO_TARGET,
         to_originator_id: TO_ORIGINATOR,

@@ -108,7 +108,7 @@ fn stream() {
             };
             if self.began.is_some_and(|began| began.elapsed() >= STREAMED) {
                 let (pictures, positions, lost) =
-                    (self.took.len(), encoder.record.positions(), encoder.record.dropped_count());
+                    (self.took.len(), encoder.record.position_count(), encoder.record.dropped_count());
                 let middle = median(&mut self.took) as f64 / 1e3;
                 let most = self.took[self.took.len() - 1] as f64 / 1e3;
                 let seconds = STREAMED.as_secs();

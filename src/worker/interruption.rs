@@ -21,7 +21,7 @@ pub trait JobInterruption {
     }
 }
 
-/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`InterruptedWrite`]
+/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`Interrupted`]
 /// write, and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {

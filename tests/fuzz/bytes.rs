@@ -79,7 +79,7 @@ fn ethernet_ip_packets() {
         let mut receiver = Receiver::default();
         bytes.chunks(11).for_each(|part| receiver.push(part));
         if let Ok(frame) = Frame::parse(bytes) {
-            let _ = frame.body();
+            let _ = frame.parse_body();
         }
         let _ = (ItemList::parse(bytes), Request::parse(bytes), Reply::parse(bytes), EPath::parse(bytes));
         let _ = (ForwardOpen::parse(bytes), ForwardClose::parse(bytes), Identity::parse_all(bytes));
@@ -111,7 +111,7 @@ fn interbus_words() {
 #[test]
 fn biss_data_sheets_and_frames() {
     let descriptions = Descriptions::built_in();
-    let layout = descriptions.named("POSITAL IXARC kit encoder").unwrap().layout().unwrap();
+    let layout = descriptions.find_by_name("POSITAL IXARC kit encoder").unwrap().layout().unwrap();
     fuzz("biss", &hex_lines(include_str!("corpus/biss.txt")), |bytes| {
         let mut bank = [0; 64];
         let length = bytes.len().min(64);

@@ -8,7 +8,7 @@ use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Recording, Severity, Tab};
 use encoder_studio::devices::biss::protocol::Role;
-use encoder_studio::devices::biss::state::{BissAction as Biss, Mark};
+use encoder_studio::devices::biss::state::{BissAction as Biss, ValidityMark};
 use encoder_studio::devices::biss::state::{BissForm, BissLinkKind};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
@@ -85,10 +85,10 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
 #[test]
 fn a_position_is_marked_over_either_interface() {
     for link in ["sim:", "sim:?bridge=on"] {
-        assert_eq!(encoder(&open(link)).mark(), None, "{link}");
+        assert_eq!(encoder(&open(link)).position_mark(), None, "{link}");
     }
     for link in ["sim:?errors=0x12", "sim:?bridge=on&errors=0x12"] {
-        assert_eq!(encoder(&open(link)).mark(), Some(Mark::Invalid), "{link}");
+        assert_eq!(encoder(&open(link)).position_mark(), Some(ValidityMark::Invalid), "{link}");
     }
 }
 
@@ -143,7 +143,7 @@ fn a_register_is_watched_with_the_position() {
         let record = &studio.biss().unwrap().record;
         let watched = record.recorder().series().iter().find(|line| line.heading.contains("temperature"));
         let history = watched.and_then(|line| record.recorder().history(line));
-        record.positions() > 50 && history.is_some_and(|history| !history.indices().is_empty())
+        record.position_count() > 50 && history.is_some_and(|history| !history.indices().is_empty())
     });
     let recorder = encoder(&desk).record.recorder();
     let line = recorder.series().iter().find(|line| line.heading.contains("temperature")).unwrap();

@@ -36,7 +36,7 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
 fn check(encoder: &Encoder, seconds: f64) {
     let (samples, breaks) = recorded(encoder);
     // One single reading before, to which the stream is not joined.
-    let streamed = &samples[samples.len() - (encoder.record.positions() as usize - 2)..];
+    let streamed = &samples[samples.len() - (encoder.record.position_count() as usize - 2)..];
     assert!(streamed.windows(2).all(|pair| (pair[1].0 - pair[0].0 - 50_000).abs() <= 5_000));
     assert!(streamed.windows(2).all(|pair| (32..=33).contains(&(pair[1].1 - pair[0].1))));
     assert!(breaks <= 2, "{breaks}");
@@ -52,7 +52,7 @@ fn a_stream_is_recorded_without_loss_and_ends_on_request() {
     desk.studio.start_with(Some(LINK.parse().unwrap()), None);
     desk.until("the encoder is read", is_read);
     desk.act(poll(&desk.studio, Some(FAST)));
-    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
+    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.active_stream().is_some()));
     let began = Instant::now();
     desk.until("two seconds pass", |_| began.elapsed() > Duration::from_secs(2));
     desk.act(poll(&desk.studio, None));
@@ -60,16 +60,16 @@ fn a_stream_is_recorded_without_loss_and_ends_on_request() {
     desk.settle();
     let encoder = desk.studio.biss().unwrap();
     check(encoder, seconds);
-    assert_eq!(encoder.streamed(), None);
+    assert_eq!(encoder.active_stream(), None);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
     // A job in between causes a gap, and nothing worse.
     desk.act(poll(&desk.studio, Some(FAST)));
-    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
-    let before = desk.studio.biss().unwrap().record.positions();
+    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.active_stream().is_some()));
+    let before = desk.studio.biss().unwrap().record.position_count();
     let id = desk.studio.biss().unwrap().session.id;
     desk.act(Action::device(id, Biss::ReadStatus));
     desk.until("it goes on", |studio| {
-        studio.biss().is_some_and(|own| own.session.is_ready() && own.record.positions() > before + 2_000)
+        studio.biss().is_some_and(|own| own.session.is_ready() && own.record.position_count() > before + 2_000)
     });
     assert_eq!(desk.studio.biss().unwrap().record.dropped_count(), 0);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
@@ -85,7 +85,7 @@ fn the_window_shows_a_stream_without_loss() {
     screen.until("the encoder is read", is_read);
     let action = poll(screen.studio(), Some(FAST));
     screen.act(action);
-    screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
+    screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.active_stream().is_some()));
     let began = Instant::now();
     for page in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::BISS) {
         screen.click(page);

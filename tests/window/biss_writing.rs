@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio};
 use encoder_studio::devices::biss::jobs::Change;
-use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
+use encoder_studio::devices::biss::procedures::procedure::{OperatorAnswer, OperatorTask, Outcome};
 use encoder_studio::devices::biss::profile::{MotorSource, MountingSteps, Op, PresetParts};
 use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
-use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder, End, ReviewState, StepStatus};
+use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder, ProcedureEnd, ReviewState, StepStatus};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
@@ -40,7 +40,7 @@ fn plan(desk: &mut Desk, change: Change) {
 
 /// Polls until the procedure asks for this.
 #[track_caller]
-fn until_asked(desk: &mut Desk, task: Task, ready: bool) {
+fn until_asked(desk: &mut Desk, task: OperatorTask, ready: bool) {
     desk.until("it is asked", |studio| {
         let guide = studio.biss().and_then(|own| own.guide.as_ref());
         let demand = guide.and_then(|guide| guide.operator_prompt());
@@ -109,7 +109,7 @@ fn calibration() -> Change {
     Change::Guided { run, motor: MotorSource::Other }
 }
 
-fn turn_of(studio: &Studio) -> Option<Task> {
+fn turn_of(studio: &Studio) -> Option<OperatorTask> {
     Some(studio.biss()?.guide.as_ref()?.operator_prompt()?.task)
 }
 
@@ -122,17 +122,17 @@ fn a_calibration_is_guided_step_by_step() {
     let first = turn_of(&desk.studio).unwrap();
     until_asked(&mut desk, first, false);
     // Too early: nothing starts.
-    ask(&mut desk, Biss::Answer(first, Answer::Go));
+    ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
     ask(&mut desk, Biss::Turn(-500.0));
     until_asked(&mut desk, first, true);
-    ask(&mut desk, Biss::Answer(first, Answer::Go));
+    ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
     desk.until("the second run is asked for", |studio| turn_of(studio).is_some_and(|task| task != first));
     let second = turn_of(&desk.studio).unwrap();
     ask(&mut desk, Biss::Turn(500.0));
     until_asked(&mut desk, second, true);
-    ask(&mut desk, Biss::Answer(second, Answer::Go));
+    ask(&mut desk, Biss::Answer(second, OperatorAnswer::Go));
     desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
-    let End::Done(outcomes) = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else { panic!() };
+    let ProcedureEnd::Done(outcomes) = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else { panic!() };
     assert!(matches!(outcomes.as_slice(), [Outcome::Calibrated(_)]), "{outcomes:?}");
     desk.until("it is read", is_read);
     let status = encoder(&desk).status.as_ref().unwrap();
@@ -149,7 +149,7 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     desk.until("it waits", |studio| turn_of(studio).is_some());
     let first = turn_of(&desk.studio).unwrap();
     until_asked(&mut desk, first, true);
-    ask(&mut desk, Biss::Answer(first, Answer::Go));
+    ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
     desk.until("it runs", |studio| turn_of(studio).is_none());
     std::thread::sleep(Duration::from_millis(200));
     desk.act(Action::Stop);
@@ -158,8 +158,8 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     let status = encoder(&desk).status.as_ref().unwrap();
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
     let guide = encoder(&desk).guide.as_ref().unwrap();
-    let End::Failed { texts, may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
-    let weights: Vec<Severity> = texts.iter().map(encoder_studio::devices::biss::state::explain::weight).collect();
+    let ProcedureEnd::Failed { texts, may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
+    let weights: Vec<Severity> = texts.iter().map(encoder_studio::devices::biss::state::explain::severity_of).collect();
     assert_eq!(weights, [Severity::Warning, Severity::Note, Severity::Good, Severity::Note]);
     assert_eq!(texts.last().unwrap().id(), "write.backup_calibration");
     assert!(!may_lead_back, "it is in operation");
@@ -214,8 +214,8 @@ fn the_position_is_preset_at_standstill() {
     let value = PresetValue::new(0x8000, 7);
     plan(&mut desk, Change::Preset { value, parts: Some(PresetParts::Both) });
     write(&mut desk);
-    until_asked(&mut desk, Task::StandAtPlace, true);
-    ask(&mut desk, Biss::Answer(Task::StandAtPlace, Answer::Go));
+    until_asked(&mut desk, OperatorTask::StandAtPlace, true);
+    ask(&mut desk, Biss::Answer(OperatorTask::StandAtPlace, OperatorAnswer::Go));
     desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
     command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("it is read", |studio| {

@@ -127,7 +127,7 @@ impl Outside {
                     let station =
                         encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
                     let link = Box::new(TestLink::plug_into(wire)?);
-                    Ok(Session::over(link, wire.clock(), station, store, None))
+                    Ok(Session::from_connection(link, wire.clock(), station, store, None))
                 }))
                 .with_value(LinkOpener::new(move |url, store| {
                     let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };

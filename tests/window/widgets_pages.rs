@@ -89,7 +89,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     assert!(screen.shows("Der Geber ist im Gerätemodus 0x04"));
     screen.check_language();
     screen.click("lead_back_card.button");
-    screen.until("it is back", |studio| is_read(studio) && studio.biss().unwrap().unsaved().is_none());
+    screen.until("it is back", |studio| is_read(studio) && studio.biss().unwrap().unsaved_warning().is_none());
     assert!(
         screen.shows("Der Geber war im Gerätemodus 0x04 Schreiben von OEM- und Motordaten. Er ist wieder im Betrieb")
     );

@@ -1,6 +1,6 @@
 //! The settings of the virtual adapter with all that hangs on it.
 
-use crate::buses::bridge::sim::{Adapter, keys};
+use crate::buses::bridge::sim::{Adapter, all_setting_names};
 use crate::kinds::attachable_kinds;
 use crate::sim::ConfigError;
 use crate::sim::setting::query_pairs;
@@ -26,6 +26,6 @@ fn each_device_reads_its_own_settings() {
 proptest! {
     #[test]
     fn no_value_panics(key in 0..25_usize, value in ".*") {
-        let _ = Adapter::from_pairs(&[(keys(attachable_kinds())[key].to_owned(), value)], attachable_kinds());
+        let _ = Adapter::from_pairs(&[(all_setting_names(attachable_kinds())[key].to_owned(), value)], attachable_kinds());
     }
 }

@@ -10,8 +10,8 @@ use crossbeam_channel::Receiver;
 use crate::analysis::wiring::Wires;
 use crate::app::services::Services;
 use crate::app::{Text, explain};
-use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
-use crate::buses::bridge::procedures::{AdapterStreamError, Streaming};
+use crate::buses::bridge::jobs::{Bridge, BridgeError, OpenAdapterFn, SineCosine, SineCosineSamples, open_adapter};
+use crate::buses::bridge::procedures::{AdapterStreamError, StreamingAdapter};
 use crate::buses::bridge::state as bridge;
 use crate::kinds::attachable_kinds;
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
@@ -46,8 +46,8 @@ impl From<Wires> for ChannelSamples {
     }
 }
 
-impl From<Pair> for ChannelSamples {
-    fn from(pair: Pair) -> Self {
+impl From<SineCosineSamples> for ChannelSamples {
+    fn from(pair: SineCosineSamples) -> Self {
         ChannelSamples { sine_v: pair.sine_v, cosine_v: pair.cosine_v, wires: None }
     }
 }
@@ -57,7 +57,7 @@ pub(super) enum SignalFeed {
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
         /// Identity and actual sampling of the adapter. It is empty until the adapter has replied.
-        streaming: Arc<OnceLock<Streaming>>,
+        streaming: Arc<OnceLock<StreamingAdapter>>,
         url: LinkUrl,
     },
 }
@@ -67,7 +67,7 @@ pub(super) struct AdapterLink {
     url: LinkUrl,
     clock: Arc<dyn Clock>,
     margin: Duration,
-    open: Open,
+    open: OpenAdapterFn,
 }
 
 impl AdapterLink {
@@ -98,7 +98,7 @@ impl AdapterLink {
     ) -> Result<SignalFeed, Text> {
         let AdapterLink { url, clock, margin, open } = self;
         let (before, patience) = (services.sessions_closing_on_link(&url), services.world.patience.job);
-        let open: Open = Box::new(move || {
+        let open: OpenAdapterFn = Box::new(move || {
             if let Some(earlier) = earlier {
                 // This waits for the disconnection only, because the channel carries no messages.
                 let _ = earlier.recv_timeout(patience);
@@ -110,7 +110,7 @@ impl AdapterLink {
             open()
         });
         let bridge = Bridge::new(SineCosine { sample_hz }, supply, margin, open);
-        let streaming = bridge.streaming();
+        let streaming = bridge.streaming_adapter();
         Ok(SignalFeed::Adapter { stream: spawn_stream(bridge, clock, services)?, streaming, url })
     }
 }
@@ -163,7 +163,7 @@ impl SignalFeed {
     }
 
     /// Returns the identity and actual sampling of the adapter. The virtual encoder has none.
-    pub(super) fn streaming_adapter(&self) -> Option<&Streaming> {
+    pub(super) fn streaming_adapter(&self) -> Option<&StreamingAdapter> {
         match self {
             SignalFeed::Virtual(_) => None,
             SignalFeed::Adapter { streaming, .. } => streaming.get(),
@@ -216,7 +216,7 @@ fn bridge_error_text(error: &BridgeError) -> Text {
     match error {
         BridgeError::Open(error) => open_error_text(error),
         BridgeError::Tap(AdapterStreamError::Link(error)) => explain::link_error_text(error),
-        BridgeError::Tap(AdapterStreamError::Adapter(error)) => bridge::adapter(error),
+        BridgeError::Tap(AdapterStreamError::Adapter(error)) => bridge::adapter_error_text(error),
         BridgeError::Tap(AdapterStreamError::Cancelled) => TEXTS.text("virtual.ended"),
     }
 }

@@ -16,7 +16,7 @@ use crate::analysis::wiring::Wire;
 use crate::app::services::Services;
 use crate::app::shutdown::is_same_connection;
 use crate::app::{Severity, Text, explain};
-use crate::buses::bridge::procedures::Streaming;
+use crate::buses::bridge::procedures::StreamingAdapter;
 use crate::link::LinkUrl;
 use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 
@@ -144,7 +144,7 @@ impl Source {
     }
 
     /// Returns the identity and sampling of the running adapter, or `None` until they are known.
-    pub fn streaming_adapter(&self) -> Option<&Streaming> {
+    pub fn streaming_adapter(&self) -> Option<&StreamingAdapter> {
         self.live.as_ref().and_then(|live| live.feed.streaming_adapter())
     }
 

@@ -109,7 +109,7 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::buses::bridge::jobs::Pair;
+    use crate::buses::bridge::jobs::SineCosineSamples;
 
     fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<ChannelSamples> {
         let column = |at: f64| (0..count).map(|own| (first as f64 + own as f64) * at).collect();
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn signals_without_wire_samples_are_measured() {
         let mut recent = RecentSamples::default();
-        let pair = Pair { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
+        let pair = SineCosineSamples { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
         recent.add_batch(Batch {
             first: 0,
             time: SampleTime::ORIGIN,

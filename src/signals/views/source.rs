@@ -189,7 +189,7 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
         if let Some((millivolt, milliampere)) = streaming.supplied {
             let text = TEXTS.text("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
             ui.label(theme.label(theme.format_text(&text.with("milliampere", milliampere))));
-        } else if hello.capabilities.has(Capabilities::SUPPLY) {
+        } else if hello.capabilities.contains(Capabilities::SUPPLY) {
             let word = RichText::new(translate(theme, "adapter.supply_off")).color(palette.warn);
             ui.label(word).on_hover_text(translate(theme, "adapter.supply_off_hint"));
         }

@@ -18,11 +18,14 @@ fn registers_and_position_are_read() {
     assert_eq!(bus.master().read(at("0x66")), Ok(75));
     assert_eq!(bus.master().read_consecutive(at("0x7E"), 2), Ok(b"Fr".to_vec()));
     let reading = bus.master().position().unwrap();
-    assert_eq!((reading.turns, reading.steps, reading.raw().to_string()), (0x1234, 0x18000, "024698000".to_owned()));
+    assert_eq!(
+        (reading.turns, reading.steps, reading.position_word().to_string()),
+        (0x1234, 0x18000, "024698000".to_owned())
+    );
     assert_eq!(reading.frame.map(|frame| frame.to_string()).as_deref(), Some("024698000CF"));
     assert_eq!((reading.error, reading.warning, reading.crc_errors), (Some(false), Some(false), 0));
     assert_eq!((bus.count(Operation::Hello), bus.count(Operation::BissConfig)), (1, 1));
-    let hello = bus.station.adapter.hello().unwrap();
+    let hello = bus.station.adapter.identity().unwrap();
     assert_eq!((hello.name.as_str(), hello.max_clock_hz), ("virtual adapter", 10_000_000));
     assert_eq!(bus.station.to_string(), "BiSS at 1000000 Hz");
 }

@@ -4,8 +4,10 @@
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
-use encoder_studio::devices::biss::procedures::procedure::{Activity, Failure, ProcedureStep, Run, steps_of};
-use encoder_studio::devices::biss::procedures::write::Interrupted;
+use encoder_studio::devices::biss::procedures::procedure::{
+    Activity, Failure, MotorRun, ProcedureStep, operation_steps,
+};
+use encoder_studio::devices::biss::procedures::write::InterruptedWrite;
 use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingSteps, PresetParts};
 use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
 use encoder_studio::link::{CancelToken, Direction};
@@ -35,7 +37,8 @@ const SCENES: [Scene; 5] = [
         name: "preset",
         change: || preset(0x18000, 2),
         is_done: |bench| {
-            let place = bench.encoder(|encoder, now| encoder.reading(now)).map(|own| (own.multiturn, own.singleturn));
+            let place =
+                bench.encoder(|encoder, now| encoder.position_at(now)).map(|own| (own.multiturn, own.singleturn));
             place == Some((2, 0x18000))
         },
     },
@@ -70,7 +73,7 @@ enum Ended {
     /// Before the first operation; nothing was written.
     Refused(Error),
     /// After the first operation.
-    Interrupted(Box<Interrupted>),
+    Interrupted(Box<InterruptedWrite>),
 }
 
 /// Carries the change out on a copy of the bench; `disturb` is called when the plan is complete.
@@ -94,7 +97,7 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
 fn assert_can_be_led_back(
     bench: &Bench,
     scene: &Scene,
-    told: &Interrupted,
+    told: &InterruptedWrite,
     steps: &mut Vec<ProcedureStep>,
     context: &str,
 ) {
@@ -116,7 +119,7 @@ fn assert_can_be_led_back(
 }
 
 /// Checks that the reported flash cycles are the real ones, or one more if the last is not known.
-fn assert_cycles(told: &Interrupted, spent: u32, context: &str) {
+fn assert_cycles(told: &InterruptedWrite, spent: u32, context: &str) {
     let told = told.done.write_cycles;
     assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
 }
@@ -161,7 +164,7 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
 
 /// Checks that the cuts have hit every step in which anything is sent.
 fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
-    let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(steps_of).collect();
+    let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(operation_steps).collect();
     if missed.contains(&ProcedureStep::Restart) && name != "lost" {
         // An encoder that restarts owes no answer: a missed command is detected when the encoder is searched for.
         missed.retain(|step| !matches!(step, ProcedureStep::Save | ProcedureStep::Fire));
@@ -225,7 +228,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
                     assert!(told.cause.is_lost(), "{context}: {told}");
                     assert_cycles(&told, spent, &context);
                     let lost = !bench.encoder(|encoder, _| encoder.flash().is_calibrated());
-                    let running = Activity::Running(Run::CalibrationClockwise);
+                    let running = Activity::Running(MotorRun::CalibrationClockwise);
                     let warned = told.end_state.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
                     // Power is back, and the encoder is in operation.

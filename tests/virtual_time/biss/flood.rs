@@ -63,7 +63,7 @@ fn a_flood_of_noise_takes_bounded_memory_and_time() {
             portion[511] = 0;
             let lasts = Duration::from_millis(lasts);
             let link = Flood { clock: clock.clone(), lasts, until: Moment::START, portion };
-            let mut session: Session<Biss> = Session::over(
+            let mut session: Session<Biss> = Session::from_connection(
                 Box::new(link),
                 clock.clone(),
                 Station::new(way, MARGIN),

@@ -7,9 +7,10 @@ use encoder_studio::devices::biss::jobs::{
     BissJob, BissOutput, Change, Commit, Committed, JobError, OperatorPresence, Prepared,
 };
 use encoder_studio::devices::biss::procedures::procedure::{
-    Answer, OperatorChannel, OperatorPrompt, ProcedureProgress, ProcedureStep, StepDetail, Task, UnattendedOperator,
+    OperatorAnswer, OperatorChannel, OperatorPrompt, OperatorTask, ProcedureProgress, ProcedureStep, StepDetail,
+    UnattendedOperator,
 };
-use encoder_studio::devices::biss::procedures::write::{EndState, Interrupted};
+use encoder_studio::devices::biss::procedures::write::{EndState, InterruptedWrite};
 use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingSteps, PresetParts, RestoreOptions};
 use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
 use encoder_studio::profile::Consent;
@@ -29,7 +30,7 @@ pub(crate) struct TestOperator {
     /// The last demand for each task, in the order in which they were made.
     pub(crate) demands: Vec<OperatorPrompt>,
     /// Answers other than Start.
-    pub(crate) instead: Vec<(Task, Answer)>,
+    pub(crate) instead: Vec<(OperatorTask, OperatorAnswer)>,
 }
 
 impl TestOperator {
@@ -64,17 +65,17 @@ impl TestOperator {
 
     fn follow(&mut self, demand: &OperatorPrompt) {
         let rpm = match demand.task {
-            Task::Turn(run) => {
+            OperatorTask::Turn(run) => {
                 let (calibration, wiegand) = self.rpm;
                 let speed = if run.is_calibration() { calibration } else { wiegand };
                 if run.is_clockwise() { speed } else { -speed }
             }
-            Task::Stand | Task::StandAtPlace => 0.0,
+            OperatorTask::Stand | OperatorTask::StandAtPlace => 0.0,
         };
         self.motor.set_rpm(rpm);
         if demand.is_ready() {
             let instead = self.instead.iter().find(|(task, _)| *task == demand.task);
-            self.seat.answer(demand.task, instead.map_or(Answer::Go, |(_, answer)| *answer));
+            self.seat.answer_task(demand.task, instead.map_or(OperatorAnswer::Go, |(_, answer)| *answer));
         }
         self.demands.retain(|other| other.task != demand.task);
         self.demands.push(demand.clone());
@@ -209,7 +210,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
 }
 
 /// Returns the interruption; fails for another error.
-pub(crate) fn interrupted(error: JobError) -> Interrupted {
+pub(crate) fn interrupted(error: JobError) -> InterruptedWrite {
     match error {
         JobError::Interrupted { interrupted, .. } => *interrupted,
         other => panic!("{other}"),

@@ -7,7 +7,7 @@ use encoder_studio::devices::biss::jobs::{
     Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep, RegisterValues, device_key, open,
 };
 use encoder_studio::devices::biss::procedures::{
-    self as device, Error, FrameSource, PositionReading, Sample, Status, Survey,
+    self as device, EncoderStatus, Error, FrameSource, PolledSample, PositionReading, Survey,
 };
 use encoder_studio::devices::biss::profile::BissProfile;
 use encoder_studio::devices::biss::protocol::{
@@ -26,7 +26,7 @@ fn survey(bench: &mut Bench) -> Survey {
     }
 }
 
-fn status(bench: &mut Bench) -> Status {
+fn status(bench: &mut Bench) -> EncoderStatus {
     match bench.run(BissJob::Status) {
         Ok(BissOutput::Status(status)) => *status,
         other => panic!("{other:?}"),
@@ -90,7 +90,7 @@ fn a_survey_over_both_interfaces_is_complete() {
         assert_eq!((survey.status.celsius, survey.status.filter), (Some(25.0), Some(PositionFilter::Dynamic)));
         let errors = survey.status.errors.unwrap();
         let names: Vec<_> = errors.set.iter().map(|(bit, name)| (*bit, name.as_ref().unwrap().english())).collect();
-        let expected: Vec<_> = ErrorRegister::new(0x12).set().collect();
+        let expected: Vec<_> = ErrorRegister::new(0x12).set_bits().collect();
         assert_eq!((errors.raw, names), (0x12, expected));
         assert_eq!(survey.status.warnings.map(|bits| bits.raw), Some(0));
         // The frame has an error bit, the word over the configuration pin has none.
@@ -115,7 +115,7 @@ fn features_missing_in_older_firmware_are_absent() {
     assert_eq!(survey.status.celsius, Some(30.0));
     assert_eq!(survey.status.position.unwrap().error, Some(true), "the frame tells all the same");
     let later = status(&mut bench);
-    assert_eq!(Status { position: survey.status.position, ..later }, survey.status);
+    assert_eq!(EncoderStatus { position: survey.status.position, ..later }, survey.status);
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn a_device_id_without_a_description_is_reported() {
     let (types, errors) = Descriptions::read([("other.ron", other.as_str()), ("unknown.ron", unknown)]);
     assert_eq!(errors, []);
     let mut pin = Pin::new("serial=1234567");
-    let survey = device::survey(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap();
+    let survey = device::read_all_registers(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap();
     assert_eq!(
         survey.identity.mismatch.as_ref().unwrap().to_string(),
         "the encoder says profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01; the description \"POSITAL \
@@ -285,7 +285,10 @@ fn a_device_id_without_a_description_is_reported() {
     assert_eq!((survey.status.mode, survey.status.celsius), (None, None));
     assert_eq!(survey.identity.serial_number, "1234567");
     assert_eq!(survey.identity.multiturn_bits(), Some(16), "the data sheet tells it");
-    assert_eq!(device::save(&mut pin.master(), &types, device::Unsaved::Marked, &mut |_, _, _| {}).unwrap().data, []);
+    assert_eq!(
+        device::save(&mut pin.master(), &types, device::UnsavedValues::Marked, &mut |_, _, _| {}).unwrap().data,
+        []
+    );
     let (none, _) = Descriptions::read([("other.ron", other.as_str())]);
     let error = device::identify(&mut pin.master(), &none).unwrap_err();
     assert!(matches!(error, Error::NoDescription(_)), "{error}");
@@ -295,23 +298,23 @@ fn a_device_id_without_a_description_is_reported() {
 fn samples_and_watched_registers_are_read_one_by_one() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=25&rpm=60");
-        let Ok(Sample::Position(first)) = bench.session.take_sample() else { panic!("no position") };
-        let Ok(Sample::Position(second)) = bench.session.take_sample() else { panic!("no position") };
+        let Ok(PolledSample::Position(first)) = bench.session.take_sample() else { panic!("no position") };
+        let Ok(PolledSample::Position(second)) = bench.session.take_sample() else { panic!("no position") };
         assert!(first.at < second.at && first.position() < second.position(), "{way:?}");
         let watched = bench.session.watch_value(&"0x66".parse().unwrap()).unwrap();
-        let WatchReply::Sample(Sample::Watched(reading)) = watched else { panic!("{watched:?}") };
+        let WatchReply::Sample(PolledSample::Watched(reading)) = watched else { panic!("{watched:?}") };
         assert_eq!((reading.range.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
-        assert!(matches!(refused, WatchReply::Refused(Sample::Watched(_))), "{refused:?}");
+        assert!(matches!(refused, WatchReply::Refused(PolledSample::Watched(_))), "{refused:?}");
         // Manual 6.5: data are not accessed while the shaft turns.
         let sent = bench.tap().sent.len();
         let refused = bench.session.watch_value(&"0x24:0x10".parse().unwrap()).unwrap();
-        let WatchReply::Refused(Sample::Watched(reading)) = refused else { panic!("{refused:?}") };
+        let WatchReply::Refused(PolledSample::Watched(reading)) = refused else { panic!("{refused:?}") };
         assert_eq!(
             (reading.value, bench.tap().sent.len()),
             (Err(Error::NotWatched { address: at("0x24:0x10") }), sent)
         );
-        assert!(matches!(bench.session.take_sample(), Ok(Sample::Position(_))));
+        assert!(matches!(bench.session.take_sample(), Ok(PolledSample::Position(_))));
     }
 }
 
@@ -322,7 +325,7 @@ fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let sample = |bench: &mut Bench| match bench.session.take_sample() {
-            Ok(Sample::Position(reading)) => (reading.error, reading.warning),
+            Ok(PolledSample::Position(reading)) => (reading.error, reading.warning),
             other => panic!("{other:?}"),
         };
         assert_eq!(sample(&mut bench), (Some(false), Some(false)), "{way:?}");
@@ -356,11 +359,11 @@ fn polling_survives_damaged_frames() {
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..100 {
         match bench.session.take_sample() {
-            Ok(Sample::Position(reading)) => {
+            Ok(PolledSample::Position(reading)) => {
                 right += 1;
                 wrong += reading.crc_errors;
             }
-            Ok(Sample::Missed { crc_errors, .. }) => wrong += crc_errors,
+            Ok(PolledSample::Missed { crc_errors, .. }) => wrong += crc_errors,
             other => panic!("{other:?}"),
         }
     }

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use encoder_studio::bits::ByteOrder;
-use encoder_studio::devices::biss::procedures::{Damage, Echo, Error};
+use encoder_studio::devices::biss::procedures::{Echo, Error, ReplyDamage};
 use encoder_studio::link::{CancelToken, Clock, Direction};
 
 use super::support::{Pin, at};
@@ -16,10 +16,10 @@ fn registers_and_position_are_read_with_the_published_frames() {
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
     let reading = pin.master().position().unwrap();
     assert_eq!(
-        (reading.turns, reading.steps, reading.raw().to_string(), reading.frame),
+        (reading.turns, reading.steps, reading.position_word().to_string(), reading.frame),
         (0x1234, 0x18000, "024698000".to_owned(), None)
     );
-    assert_eq!((reading.position(), reading.degrees()), (0x2469_8000, 270.0));
+    assert_eq!((reading.position(), reading.degrees_in_turn()), (0x2469_8000, 270.0));
     assert_eq!((reading.error, reading.warning, reading.crc_errors), (None, None, 0));
     assert_eq!(pin.master().read_consecutive(at("0x7E"), 2), Ok(b"Fr".to_vec()));
     let sent = ["80 01 01 02 00 01 00 7A", "80 01 01 02 00 26 00 55", "80 01 03 01 00 01 79"];
@@ -70,7 +70,7 @@ fn echo_is_detected_and_removed_with_any_setting() {
     let mut pin = Pin::new("echo=off");
     pin.station.line.echo = Echo::On;
     let error = pin.master().read(at("0x66")).unwrap_err();
-    assert!(matches!(error, Error::Damaged { cause: Damage::Echo, tries: 5, .. }), "{error}");
+    assert!(matches!(error, Error::Damaged { cause: ReplyDamage::Echo, tries: 5, .. }), "{error}");
 }
 
 #[test]

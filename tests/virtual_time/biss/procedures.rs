@@ -7,13 +7,14 @@ use encoder_studio::app::Text;
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{
-    Advice, Answer, Failure, Outcome, ProcedureStep, Run, StartBlocker, StepDetail, Task, WiegandReport, steps_of,
+    Failure, MotorRun, OperatorAdvice, OperatorAnswer, OperatorTask, Outcome, ProcedureStep, StartBlocker, StepDetail,
+    WiegandReport, operation_steps,
 };
 use encoder_studio::devices::biss::profile::{MotorSource, MountingSteps, PlanError, PresetParts};
 use encoder_studio::devices::biss::protocol::{
     CalibrationStatus, DeviceMode, PositionFilter, PresetValue, ProcedureKind, WiegandResult, WiegandStatus,
 };
-use encoder_studio::devices::biss::state::explain::job;
+use encoder_studio::devices::biss::state::explain::job_error_texts;
 
 use super::hands::{IN_OPERATION, TestOperator, calibration, data, filter, interrupted, preset, wiegand_test};
 use super::support::{Bench, Transport, at};
@@ -31,7 +32,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
         .ops
         .iter()
         .enumerate()
-        .flat_map(|(number, op)| steps_of(op).into_iter().map(move |step| (number, step)))
+        .flat_map(|(number, op)| operation_steps(op).into_iter().map(move |step| (number, step)))
         .collect();
     assert_eq!(hands.steps, listed);
     assert_eq!(bench.mode_and_password(), IN_OPERATION);
@@ -56,10 +57,16 @@ fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
             assert_eq!(report.celsius, Some(30));
             let (first, second) = (report.counterclockwise.unwrap(), report.clockwise.unwrap());
             assert!((first.rpm + 500.0).abs() < 0.5 && (second.rpm - 500.0).abs() < 0.5, "{report:?}");
-            let tasks: Vec<Task> = hands.demands.iter().map(|demand| demand.task).collect();
-            assert_eq!(tasks, [Task::Turn(Run::CalibrationCounterclockwise), Task::Turn(Run::CalibrationClockwise)]);
-            assert!(hands.demands[1].advice.contains(&Advice::TableAtRisk));
-            assert!(!hands.demands[0].advice.contains(&Advice::TableAtRisk));
+            let tasks: Vec<OperatorTask> = hands.demands.iter().map(|demand| demand.task).collect();
+            assert_eq!(
+                tasks,
+                [
+                    OperatorTask::Turn(MotorRun::CalibrationCounterclockwise),
+                    OperatorTask::Turn(MotorRun::CalibrationClockwise)
+                ]
+            );
+            assert!(hands.demands[1].advice.contains(&OperatorAdvice::TableAtRisk));
+            assert!(!hands.demands[0].advice.contains(&OperatorAdvice::TableAtRisk));
             assert_eq!(bench.mode_and_password(), IN_OPERATION, "{way:?} {silent}");
         }
     }
@@ -82,7 +89,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
             let [Outcome::Tested(report)] = written.outcomes.as_slice() else { panic!("{:?}", written.outcomes) };
             let WiegandReport { result, saved, .. } = report;
             assert_eq!((*result, *saved), (WiegandResult::parse([63, 58, 63, 58]), save));
-            assert!(result.passes());
+            assert!(result.is_passed());
             let took = bench.now() - from;
             assert!((2.0 * 30.9..75.0).contains(&took.as_secs_f64()), "{took:?}");
             assert_eq!(bench.mode_and_password(), IN_OPERATION);
@@ -96,7 +103,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), wiegand_test(false));
     let weak = Bench::new(Transport::ConfigPin, "pulses=6.3,5.3").change(wiegand_test(false)).unwrap().written;
     let [Outcome::Tested(report)] = weak.outcomes.as_slice() else { panic!() };
-    assert!(!report.result.passes(), "5.3 V is not above 5.3 V");
+    assert!(!report.result.is_passed(), "5.3 V is not above 5.3 V");
 }
 
 /// Manual 6.5.
@@ -193,31 +200,31 @@ fn a_mounting_is_one_run_with_a_report() {
         ]
     ));
     assert_eq!(bench.flash_bank(0x24), [7; 64]);
-    assert_eq!(bench.encoder(|encoder, now| encoder.reading(now).unwrap().singleturn), 0);
+    assert_eq!(bench.encoder(|encoder, now| encoder.position_at(now).unwrap().singleturn), 0);
     assert_eq!(bench.mode_and_password(), IN_OPERATION);
-    let tasks: Vec<Task> = hands.demands.iter().map(|demand| demand.task).collect();
+    let tasks: Vec<OperatorTask> = hands.demands.iter().map(|demand| demand.task).collect();
     let expected = [
-        Task::Turn(Run::CalibrationCounterclockwise),
-        Task::Turn(Run::CalibrationClockwise),
-        Task::Turn(Run::WiegandClockwise),
-        Task::Turn(Run::WiegandCounterclockwise),
-        Task::StandAtPlace,
-        Task::Stand,
+        OperatorTask::Turn(MotorRun::CalibrationCounterclockwise),
+        OperatorTask::Turn(MotorRun::CalibrationClockwise),
+        OperatorTask::Turn(MotorRun::WiegandClockwise),
+        OperatorTask::Turn(MotorRun::WiegandCounterclockwise),
+        OperatorTask::StandAtPlace,
+        OperatorTask::Stand,
     ];
     assert_eq!(tasks, expected);
 }
 
 #[test]
 fn a_part_of_a_run_can_be_skipped() {
-    let first = Run::CalibrationCounterclockwise;
-    for (task, after) in [(first, None), (Run::CalibrationClockwise, Some(first))] {
-        let task = Task::Turn(task);
+    let first = MotorRun::CalibrationCounterclockwise;
+    for (task, after) in [(first, None), (MotorRun::CalibrationClockwise, Some(first))] {
+        let task = OperatorTask::Turn(task);
         let mut bench = Bench::new(Transport::ConfigPin, "");
         let run = MountingSteps { calibrate: true, wiegand: Some(false), ..MountingSteps::default() };
         let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
         let before = bench.flash_cycles();
         let mut hands = TestOperator::on(&bench);
-        hands.instead.push((task, Answer::Skip));
+        hands.instead.push((task, OperatorAnswer::Skip));
         let written = bench.commit(&prepared, &mut hands).unwrap().written;
         assert_eq!(written.outcomes.first(), Some(&Outcome::Skipped { after }));
         assert!(matches!(written.outcomes.as_slice(), [_, Outcome::Tested(_)]), "{task:?}");
@@ -231,16 +238,16 @@ fn a_part_of_a_run_can_be_skipped() {
 #[test]
 fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
     for (change, task) in [
-        (calibration(), Task::Turn(Run::CalibrationCounterclockwise)),
-        (calibration(), Task::Turn(Run::CalibrationClockwise)),
-        (wiegand_test(true), Task::Turn(Run::WiegandCounterclockwise)),
-        (preset(1, 1), Task::StandAtPlace),
-        (data(), Task::Stand),
+        (calibration(), OperatorTask::Turn(MotorRun::CalibrationCounterclockwise)),
+        (calibration(), OperatorTask::Turn(MotorRun::CalibrationClockwise)),
+        (wiegand_test(true), OperatorTask::Turn(MotorRun::WiegandCounterclockwise)),
+        (preset(1, 1), OperatorTask::StandAtPlace),
+        (data(), OperatorTask::Stand),
     ] {
         let mut bench = Bench::new(Transport::ConfigPin, "");
         let prepared = bench.prepare(change).unwrap();
         let mut hands = TestOperator::on(&bench);
-        hands.instead.push((task, Answer::Cancel));
+        hands.instead.push((task, OperatorAnswer::Cancel));
         let told = interrupted(*bench.commit(&prepared, &mut hands).unwrap_err());
         assert_eq!(
             (told.cause, told.end_state.at, told.end_state.standing),
@@ -280,7 +287,7 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
-    assert_eq!(told.end_state.at, ProcedureStep::Await(Task::Turn(Run::WiegandCounterclockwise)));
+    assert_eq!(told.end_state.at, ProcedureStep::Await(OperatorTask::Turn(MotorRun::WiegandCounterclockwise)));
     assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
     // Outside the speeds: too slow for the test, too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
@@ -300,9 +307,9 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
 fn a_failed_calibration_reports_the_reason() {
     // Speed and direction change after the start of the run; waver and temperature are set from the beginning.
     let cases = [
-        (Run::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
-        (Run::CalibrationCounterclockwise, "", Some(-600.0), CalibrationStatus::Failed),
-        (Run::CalibrationClockwise, "", Some(600.0), CalibrationStatus::Failed),
+        (MotorRun::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
+        (MotorRun::CalibrationCounterclockwise, "", Some(-600.0), CalibrationStatus::Failed),
+        (MotorRun::CalibrationClockwise, "", Some(600.0), CalibrationStatus::Failed),
     ];
     for (run, query, disturbed, status) in cases {
         let mut bench = Bench::new(Transport::ConfigPin, &format!("{query}&calibration-silent=off"));
@@ -323,13 +330,13 @@ fn a_failed_calibration_reports_the_reason() {
                 }
             })
             .unwrap_err();
-        let words: Vec<&str> = job(&error).iter().map(Text::id).collect();
+        let words: Vec<&str> = job_error_texts(&error).iter().map(Text::id).collect();
         let told = interrupted(*error);
         assert_eq!(told.cause, Failure::Calibration { run, status });
         assert_eq!((told.end_state.at, told.end_state.standing), (ProcedureStep::Run(run), None));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
         // The state of the encoder's flash is not known: a lost table counts as a write.
-        let lost = run == Run::CalibrationClockwise;
+        let lost = run == MotorRun::CalibrationClockwise;
         assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, u64::from(lost)));
         assert_eq!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), !lost);
         // No backup contains the table.
@@ -357,21 +364,21 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
         let error = bench
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
-                if hands.steps.last() == Some(&(0, ProcedureStep::Run(Run::CalibrationCounterclockwise)))
+                if hands.steps.last() == Some(&(0, ProcedureStep::Run(MotorRun::CalibrationCounterclockwise)))
                     && matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::StepDetail::Begins)
                 {
                     encoder.with(spoil);
                 }
             })
             .unwrap_err();
-        let run = Run::CalibrationCounterclockwise;
+        let run = MotorRun::CalibrationCounterclockwise;
         assert_eq!(interrupted(*error).cause, Failure::Calibration { run, status });
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
     // A Wiegand sensor without pulses, and a motor that continues to turn.
     let mut dead = Bench::new(Transport::ConfigPin, "pulses=0,0");
     let told = interrupted(dead.change(wiegand_test(true)).unwrap_err());
-    let (run, status) = (Run::WiegandClockwise, WiegandStatus::Failed);
+    let (run, status) = (MotorRun::WiegandClockwise, WiegandStatus::Failed);
     assert_eq!(told.cause, Failure::Wiegand { run, status, code: 1 });
     assert_eq!(dead.mode_and_password(), IN_OPERATION);
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -381,12 +388,12 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
     let error = bench
         .run_watched(commit, &mut |news| {
             hands.hear(news);
-            if news.step == ProcedureStep::Run(Run::WiegandCounterclockwise) {
+            if news.step == ProcedureStep::Run(MotorRun::WiegandCounterclockwise) {
                 motor.set_rpm(1000.0);
             }
         })
         .unwrap_err();
-    let (run, status) = (Run::WiegandCounterclockwise, WiegandStatus::WrongDirection);
+    let (run, status) = (MotorRun::WiegandCounterclockwise, WiegandStatus::WrongDirection);
     assert_eq!(interrupted(*error).cause, Failure::Wiegand { run, status, code: 0 });
     assert_eq!(bench.mode_and_password(), IN_OPERATION);
 }
@@ -401,13 +408,13 @@ fn a_run_that_never_ends_times_out() {
     let error = bench
         .run_watched(commit, &mut |news| {
             hands.hear(news);
-            if news.step == ProcedureStep::Run(Run::WiegandClockwise) {
+            if news.step == ProcedureStep::Run(MotorRun::WiegandClockwise) {
                 motor.set_rpm(0.0);
             }
         })
         .unwrap_err();
     let told = interrupted(*error);
-    assert!(matches!(told.cause, Failure::TooLong { run: Run::WiegandClockwise, seconds: 71..=73 }), "{told}");
+    assert!(matches!(told.cause, Failure::TooLong { run: MotorRun::WiegandClockwise, seconds: 71..=73 }), "{told}");
     assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
 }
 
@@ -507,14 +514,16 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
     let mut asked = 0;
     let error = bench
         .run_watched(commit, &mut |news| match &news.detail {
-            StepDetail::Demand(demand) if news.op == 0 && demand.is_ready() => seat.answer(demand.task, Answer::Go),
+            StepDetail::Demand(demand) if news.op == 0 && demand.is_ready() => {
+                seat.answer_task(demand.task, OperatorAnswer::Go)
+            }
             StepDetail::Begins if (news.op, news.step) == (0, ProcedureStep::Save) => {
-                seat.answer(Task::Stand, Answer::Go)
+                seat.answer_task(OperatorTask::Stand, OperatorAnswer::Go)
             }
             StepDetail::Demand(demand) if news.op == 1 && demand.is_ready() => {
                 asked += 1;
                 if asked == 3 {
-                    seat.answer(demand.task, Answer::Cancel);
+                    seat.answer_task(demand.task, OperatorAnswer::Cancel);
                 }
             }
             _ => {}
@@ -537,8 +546,8 @@ fn the_status_of_an_earlier_run_is_ignored() {
         // It leaves "counterclockwise done", which is also the end of the first run.
         let prepared = bench.prepare(calibration()).unwrap();
         let mut hands = TestOperator::on(&bench);
-        hands.instead.push((Task::Turn(Run::CalibrationClockwise), Answer::Skip));
-        let skipped = Outcome::Skipped { after: Some(Run::CalibrationCounterclockwise) };
+        hands.instead.push((OperatorTask::Turn(MotorRun::CalibrationClockwise), OperatorAnswer::Skip));
+        let skipped = Outcome::Skipped { after: Some(MotorRun::CalibrationCounterclockwise) };
         assert_eq!(bench.commit(&prepared, &mut hands).unwrap().written.outcomes, [skipped]);
         assert_eq!(bench.encoder_reads(at("0x00:0x01")), Some(CalibrationStatus::CounterclockwiseDone.byte()));
         let from = bench.now();

@@ -8,7 +8,7 @@ use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, JobError};
-use encoder_studio::devices::biss::procedures::{ConsecutiveFrames, Error, Sample, Station, Supply};
+use encoder_studio::devices::biss::procedures::{ConsecutiveFrames, Error, PolledSample, Station, Supply};
 use encoder_studio::devices::biss::profile::RegisterRange;
 use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::{Clock, VirtualClock};
@@ -48,14 +48,14 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Transport::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
-    let session = Session::over(Box::new(link), clock.clone(), station, Store::at_root(folder.path()), None);
+    let session = Session::from_connection(Box::new(link), clock.clone(), station, Store::at_root(folder.path()), None);
     Stand { clock, adapter, tap, session, _folder: folder }
 }
 
 impl Stand {
     fn run(&mut self) -> ConsecutiveFrames {
         match self.session.take_sample().unwrap() {
-            Sample::Frames(run) => run,
+            PolledSample::Frames(run) => run,
             other => panic!("{other:?}"),
         }
     }
@@ -99,7 +99,7 @@ fn check(runs: &[ConsecutiveFrames]) {
         assert_eq!((run.first, run.lost, run.period_ns), (next, 0, 50_000));
         next = run.first + run.frames.len() as u64;
         for (moment, frame) in run.iter_with_times() {
-            let position = run.layout.steps(&frame.unwrap());
+            let position = run.layout.steps_of(&frame.unwrap());
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.duration_since(earlier), FAST);
                 assert!((327..=328).contains(&(position - from)), "{from} to {position}");
@@ -137,11 +137,11 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         assert!(runs[0].is_stream_start() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
         last = runs.last().and_then(|run| run.iter_with_times().last()).map(|(at, _)| at);
         stand.session.run_inline(BissJob::Status).unwrap();
-        let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
-        assert!(matches!(watched, WatchReply::Sample(Sample::Watched(_))));
+        let watched = stand.session.watch_value(&RegisterRange::single(at("0x66"))).unwrap();
+        assert!(matches!(watched, WatchReply::Sample(PolledSample::Watched(_))));
     }
     stand.session.set_sample_interval(Some(Duration::from_millis(5)));
-    assert!(matches!(stand.session.take_sample(), Ok(Sample::Position(_))), "slow enough to be asked");
+    assert!(matches!(stand.session.take_sample(), Ok(PolledSample::Position(_))), "slow enough to be asked");
     assert_eq!(stand.unsolicited_byte_count(), 0);
     stand.session.set_sample_interval(Some(FAST));
     stand.run();

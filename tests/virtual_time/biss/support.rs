@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use encoder_studio::buses::bridge::procedures::{StreamRequest, SupplyAfterSession, Tap as Stream};
+use encoder_studio::buses::bridge::procedures::{StreamRequest, StreamTap as Stream, SupplyAfterSession};
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, JobStep};
@@ -83,7 +83,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         let watched = entries.clone();
         trace.add_watcher(move |entry| watched.lock().unwrap().push(entry.clone()));
         let mut station = Station::new(way, MARGIN);
-        station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
+        station.description = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").cloned().map(Arc::new);
         Rig { device, clock, tap, entries, cancel: CancelToken::default(), station, link, trace }
     }
 
@@ -200,7 +200,7 @@ impl Bench {
                 (TestLink::new(adapter.clone(), clock.clone(), tap.clone()), motor)
             }
         };
-        let session = Session::over(Box::new(link), clock.clone(), station, store, Some(motor));
+        let session = Session::from_connection(Box::new(link), clock.clone(), station, store, Some(motor));
         Bench { clock, session, tap, end, folder }
     }
 
@@ -231,10 +231,10 @@ impl Bench {
         let (cancel, mut trace, mut tap) = (CancelToken::default(), Trace::default(), Stream::new(MARGIN));
         let clock = &*self.clock;
         let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
-        tap.begin(ctx, StreamRequest::Analog { sample_hz: 10_000 }, supply).unwrap();
+        tap.start(ctx, StreamRequest::Analog { sample_hz: 10_000 }, supply).unwrap();
         let has_power = self.encoder(|encoder, _| encoder.has_power());
         let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
-        tap.end(ctx).unwrap();
+        tap.stop(ctx).unwrap();
         has_power
     }
 
@@ -252,7 +252,7 @@ impl Bench {
     ) -> Self {
         let mut station = Station::new(Transport::Adapter, MARGIN);
         station.supply = Some(Supply { millivolt: 5_000, measured: None });
-        station.adapter.leave_supply(after);
+        station.adapter.set_supply_after_session(after);
         let store = Store::at_root(folder.path());
         Self::with_station(end, station, clock, store, folder)
     }
@@ -289,7 +289,7 @@ impl Bench {
             End::Bus(adapter) => FaultyLink::new(adapter.clone(), clock.clone(), schedule, cut_power),
         };
         let (station, motor) = (Station::new(self.session.station().transport, MARGIN), bench.motor());
-        bench.session = Session::over(Box::new(link), clock, station, bench.store(), Some(motor));
+        bench.session = Session::from_connection(Box::new(link), clock, station, bench.store(), Some(motor));
         bench
     }
 
@@ -364,6 +364,6 @@ impl Bench {
 
     /// Returns the number of writes of the encoder's flash.
     pub(crate) fn flash_cycles(&self) -> u32 {
-        self.encoder(|encoder, _| encoder.flash().cycles())
+        self.encoder(|encoder, _| encoder.flash().write_cycles())
     }
 }

@@ -43,7 +43,7 @@ impl Stranger {
     fn answer(&mut self, request: Request) -> Message {
         Message::Reply(match request {
             Request::Hello => Reply::Hello(Hello {
-                capabilities: Capabilities::BISS.and(Capabilities::BISS_REGISTERS),
+                capabilities: Capabilities::BISS.union(Capabilities::BISS_REGISTERS),
                 max_clock_hz: 1_000_000,
                 max_sample_hz: 0,
                 name: "test".to_owned(),
@@ -109,14 +109,18 @@ fn the_frame_of_a_turning_shaft_is_found() {
     assert_eq!((identity.mismatch, identity.data_sheet), (None, None));
     let reading = rig.master().position().unwrap();
     assert_eq!((reading.turns, reading.steps), (0, rig.device().place));
-    assert_eq!((reading.is_split_known, reading.angle()), (false, None), "raw, until somebody says what a turn is");
+    assert_eq!(
+        (reading.is_split_known, reading.angle_degrees()),
+        (false, None),
+        "raw, until somebody says what a turn is"
+    );
     assert_eq!((reading.error, reading.warning), (Some(false), Some(false)));
 }
 
 #[test]
 fn at_rest_no_frame_is_found_and_the_survey_still_works() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
-    let survey = device::survey(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
+    let survey = device::read_all_registers(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
     assert_eq!((survey.identity.source, survey.status.position), (FrameSource::Assumed, None));
     assert_eq!(survey.identity.kind.manufacturer, *b"Xy");
     let error = rig.master().position().unwrap_err();
@@ -132,7 +136,7 @@ fn a_given_frame_converts_positions_to_angles() {
     assert_eq!((identity.source, identity.layout.bits()), (FrameSource::Given, 22));
     assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(0), Some(14)));
     let reading = rig.master().position().unwrap();
-    assert_eq!((reading.steps, reading.angle()), (100, Some(100.0 * 360.0 / 16384.0)));
+    assert_eq!((reading.steps, reading.angle_degrees()), (100, Some(100.0 * 360.0 / 16384.0)));
     // A kit encoder reports its frame itself.
     let mut kit = Bus::new("");
     kit.station.given = Layout::new(0, 14, true, true, None).ok();

@@ -108,7 +108,7 @@ fn only_differences_are_restored() {
         assert_eq!(bench.flash_cycles() - before, 4);
         let now = bench.save();
         assert_eq!((&now.data, now.filter, &now.preset), (&wanted.data, wanted.filter, &wanted.preset));
-        let place = bench.encoder(|encoder, now| encoder.reading(now)).map(|own| (own.multiturn, own.singleturn));
+        let place = bench.encoder(|encoder, now| encoder.position_at(now)).map(|own| (own.multiturn, own.singleturn));
         assert_eq!(place, Some((1, 7)), "the preset was stored and not carried out");
         assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
         bench.change(restore_of(&saved)).unwrap();

@@ -136,7 +136,7 @@ impl Stand {
         let tap = self.tap();
         let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());
         let data = frames.filter(|frame| frame.command == Command::SEND_RR_DATA);
-        data.map(|frame| match frame.body().unwrap() {
+        data.map(|frame| match frame.parse_body().unwrap() {
             Body::Data { items, .. } => Request::parse(items.unconnected_data().unwrap()).unwrap(),
             other => panic!("{other:?}"),
         })
@@ -147,8 +147,8 @@ impl Stand {
     pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
         use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {
-            let class = request.path.number(LogicalKind::Class)?;
-            ParameterNumber::from_attribute(class, request.path.number(LogicalKind::Attribute)?)
+            let class = request.path.first_value(LogicalKind::Class)?;
+            ParameterNumber::from_attribute(class, request.path.first_value(LogicalKind::Attribute)?)
         };
         let requests = self.requests().into_iter().filter(|request| request.service != Service::GET);
         requests.filter_map(|request| Some((of_parameter(&request)?.get(), request.data))).collect()

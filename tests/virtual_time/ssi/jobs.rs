@@ -29,7 +29,7 @@ fn hello_reports_the_adapter_and_the_word_settings() {
     let mut stand = Stand::new("voltage=12&clock=700000", "supply=switched");
     let identity = hello(&mut stand);
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
-    assert!(identity.hello.capabilities.has(Capabilities::SSI));
+    assert!(identity.hello.capabilities.contains(Capabilities::SSI));
     assert_eq!(identity.asking, ClockSettings { clocks: 25, clock_hz: 700_000, pause_us: 200 });
     // 60 MHz divided by 86 is the nearest clock below.
     assert_eq!(identity.clock_hz, 697_674);

@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use crate::buses::bridge::procedures::{AdapterStreamError, Chunk, StreamRequest, Streaming, Tap};
+use crate::buses::bridge::procedures::{AdapterStreamError, Chunk, StreamRequest, StreamTap, StreamingAdapter};
 use crate::buses::bridge::protocol::StreamData;
 use crate::link::{ByteLink, CancelToken, Clock, Ctx, Trace};
 use crate::units::SupplyVoltage;
@@ -18,13 +18,13 @@ pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
 /// The configuration of a stream and the interpretation of its packets.
-pub trait Stretch: Send + 'static {
+pub trait StreamFormat: Send + 'static {
     type Samples: SampleCount;
 
-    fn wanted(&self) -> StreamRequest;
+    fn stream_request(&self) -> StreamRequest;
 
     /// Returns the samples of a packet, or `None` if the packet does not belong to this stream.
-    fn read(&self, data: StreamData, streaming: &Streaming) -> Option<Self::Samples>;
+    fn read(&self, data: StreamData, streaming: &StreamingAdapter) -> Option<Self::Samples>;
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ pub struct SineCosine {
 
 /// Sine and cosine signals in volts. Both have the same number of samples.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pair {
+pub struct SineCosineSamples {
     pub sine_v: Vec<f64>,
     pub cosine_v: Vec<f64>,
 }
@@ -49,42 +49,42 @@ pub enum BridgeError {
 }
 
 /// A function that opens the connection to an adapter.
-pub type Open = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>;
+pub type OpenAdapterFn = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>;
 
 pub struct Bridge<S> {
     stretch: S,
     supply: Option<SupplyVoltage>,
-    open: Option<Open>,
+    open: Option<OpenAdapterFn>,
     wire: Option<Box<dyn ByteLink>>,
-    tap: Tap,
-    streaming: Arc<OnceLock<Streaming>>,
+    tap: StreamTap,
+    streaming: Arc<OnceLock<StreamingAdapter>>,
 }
 
-impl<S: Stretch> Bridge<S> {
+impl<S: StreamFormat> Bridge<S> {
     /// Creates a producer for an adapter. `open` opens its connection. A reply may be late by `margin`. The supply of
     /// the encoder is only switched on if `supply` is given.
-    pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: Open) -> Self {
-        Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
+    pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: OpenAdapterFn) -> Self {
+        Bridge { stretch, supply, open: Some(open), wire: None, tap: StreamTap::new(margin), streaming: Arc::default() }
     }
 
     /// Returns the adapter and its actual settings. They are available while or after it has streamed.
-    pub fn streaming(&self) -> Arc<OnceLock<Streaming>> {
+    pub fn streaming_adapter(&self) -> Arc<OnceLock<StreamingAdapter>> {
         self.streaming.clone()
     }
 
-    fn begin(&mut self, clock: &dyn Clock) -> Result<(), BridgeError> {
+    fn begin_stream(&mut self, clock: &dyn Clock) -> Result<(), BridgeError> {
         let Some(open) = self.open.take() else { return Ok(()) };
         let wire = self.wire.insert(open()?);
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
-        let streaming = self.tap.begin(ctx, self.stretch.wanted(), self.supply)?;
+        let streaming = self.tap.start(ctx, self.stretch.stream_request(), self.supply)?;
         // The value is only set once, since the stream begins once.
         let _ = self.streaming.set(streaming);
         Ok(())
     }
 }
 
-impl<S: Stretch> Producer for Bridge<S> {
+impl<S: StreamFormat> Producer for Bridge<S> {
     type Request = Infallible;
     type Samples = S::Samples;
     type Error = BridgeError;
@@ -94,7 +94,7 @@ impl<S: Stretch> Producer for Bridge<S> {
     }
 
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<S::Samples>>, BridgeError> {
-        self.begin(clock)?;
+        self.begin_stream(clock)?;
         let (Some(wire), Some(streaming)) = (&mut self.wire, self.streaming.get()) else { return Ok(None) };
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
@@ -108,30 +108,30 @@ impl<S: Stretch> Producer for Bridge<S> {
         let Some(wire) = &mut self.wire else { return };
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
-        if let Err(error) = self.tap.end(ctx) {
+        if let Err(error) = self.tap.stop(ctx) {
             // The stream ends with the next HELLO.
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }
     }
 }
 
-impl Stretch for SineCosine {
-    type Samples = Pair;
+impl StreamFormat for SineCosine {
+    type Samples = SineCosineSamples;
 
-    fn wanted(&self) -> StreamRequest {
+    fn stream_request(&self) -> StreamRequest {
         StreamRequest::Analog { sample_hz: self.sample_hz }
     }
 
-    fn read(&self, data: StreamData, streaming: &Streaming) -> Option<Pair> {
+    fn read(&self, data: StreamData, streaming: &StreamingAdapter) -> Option<SineCosineSamples> {
         let StreamData::Analog(data) = data else { return None };
         let unit_v = f64::from(streaming.full_scale_microvolt) * 1e-6 / f64::from(i16::MAX);
         let (sine_v, cosine_v) =
             data.samples.iter().map(|(sine, cosine)| (f64::from(*sine) * unit_v, f64::from(*cosine) * unit_v)).unzip();
-        Some(Pair { sine_v, cosine_v })
+        Some(SineCosineSamples { sine_v, cosine_v })
     }
 }
 
-impl SampleCount for Pair {
+impl SampleCount for SineCosineSamples {
     fn count(&self) -> usize {
         self.sine_v.len()
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::Open;
+use super::OpenAdapterFn;
 use crate::buses::bridge::sim::{Adapter, AttachableKind};
 use crate::link::line::MARGIN;
 use crate::link::{Clock, LinkScheme, LinkUrl, UrlError};
@@ -35,7 +35,7 @@ pub fn open_adapter(
     url: &LinkUrl,
     clock: Arc<dyn Clock>,
     devices: &[&dyn AttachableKind],
-) -> Result<(Duration, Open), OpenError> {
+) -> Result<(Duration, OpenAdapterFn), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Bridge) {
         return Err(wrong_target_error(url.scheme, "sim: and bridge:"));
     }

@@ -18,13 +18,13 @@ use crate::worker::stream::{MAX_WAIT, Stream};
 const MARGIN: Duration = Duration::from_millis(20);
 
 /// A virtual adapter with its clock and the producer of its stream.
-pub(crate) struct Bench<S: Stretch> {
+pub(crate) struct Bench<S: StreamFormat> {
     pub(crate) clock: Arc<VirtualClock>,
     adapter: Arc<Mutex<dyn ByteDevice>>,
     pub(crate) bridge: Bridge<S>,
 }
 
-pub(crate) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
+pub(crate) fn bench<S: StreamFormat>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
     let clock = Arc::new(VirtualClock::default());
     clock.sleep_until(Moment::from_elapsed(Duration::from_secs(3)));
     let adapter: Arc<Mutex<dyn ByteDevice>> = Arc::new(Mutex::new(device));
@@ -41,21 +41,21 @@ pub(crate) fn virtual_adapter(query: &str) -> Adapter {
 /// Position frames as they come.
 pub(crate) struct RawFrames;
 
-impl Stretch for RawFrames {
+impl StreamFormat for RawFrames {
     type Samples = Vec<u64>;
 
     /// 20 000 frames per second; a frame of 43 clocks takes 21.5 µs at 2 MHz, and 27 µs of waiting.
-    fn wanted(&self) -> StreamRequest {
+    fn stream_request(&self) -> StreamRequest {
         StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }
 
-    fn read(&self, data: StreamData, _: &Streaming) -> Option<Vec<u64>> {
+    fn read(&self, data: StreamData, _: &StreamingAdapter) -> Option<Vec<u64>> {
         let StreamData::Biss(data) = data else { return None };
         Some(data.values.iter().map(|(_, raw)| *raw).collect())
     }
 }
 
-impl<S: Stretch> Bench<S> {
+impl<S: StreamFormat> Bench<S> {
     fn next(&mut self) -> Result<Option<Batch<S::Samples>>, BridgeError> {
         self.bridge.next(&*self.clock, MAX_WAIT)
     }
@@ -164,7 +164,7 @@ struct Puppet {
 }
 
 fn puppet(data: Vec<Message>) -> Puppet {
-    let capabilities = Capabilities::BISS.and(Capabilities::ANALOG);
+    let capabilities = Capabilities::BISS.union(Capabilities::ANALOG);
     Puppet {
         capabilities,
         too_high: 0,
@@ -283,7 +283,7 @@ fn full_scale_values_become_volts_and_gaps_are_kept() {
 fn a_requested_supply_is_switched_on_within_its_limit() {
     for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
         let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
-        device.capabilities = Capabilities::ANALOG.and(Capabilities::SUPPLY);
+        device.capabilities = Capabilities::ANALOG.union(Capabilities::SUPPLY);
         device.too_high = too_high;
         let heard = device.heard.clone();
         let mut bench = bench(SINE_COSINE, device);
@@ -294,7 +294,7 @@ fn a_requested_supply_is_switched_on_within_its_limit() {
                 let begun = bench.clock.now();
                 assert_eq!(bench.take(Duration::from_millis(1_100)).len(), 1);
                 assert!(bench.clock.now().duration_since(begun) >= Duration::from_secs(1), "it has to start");
-                assert_eq!(bench.bridge.streaming().get().unwrap().supplied, Some(supplied));
+                assert_eq!(bench.bridge.streaming_adapter().get().unwrap().supplied, Some(supplied));
                 requested.extend([Request::AnalogConfig { sample_hz: 50_000 }, Request::AnalogStream { on: true }]);
             }
             Err((given, measured, greatest)) => {
@@ -393,7 +393,7 @@ fn a_lost_or_missing_wire_is_reported() {
     for portions in [0, 1, 2, 3, 10] {
         let clock = Arc::new(VirtualClock::default());
         let link = SimLink::connect(Arc::new(Mutex::new(virtual_adapter("rpm=60"))), clock.clone());
-        let open: Open = Box::new(move || Ok(Box::new(UnpluggingLink(link, portions))));
+        let open: OpenAdapterFn = Box::new(move || Ok(Box::new(UnpluggingLink(link, portions))));
         let stream =
             Stream::spawn(Bridge::new(SINE_COSINE, None, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
         assert!(stream.end_signal().wait_for_end(Duration::from_secs(20)));
@@ -404,7 +404,7 @@ fn a_lost_or_missing_wire_is_reported() {
         );
     }
     let lost = LinkError::new("/dev/nowhere", LinkErrorKind::NotFound);
-    let open: Open = Box::new(move || Err(lost.into()));
+    let open: OpenAdapterFn = Box::new(move || Err(lost.into()));
     let stream = Stream::spawn(
         Bridge::new(SINE_COSINE, None, MARGIN, open),
         1,

@@ -22,7 +22,7 @@ const STRETCH_NS: i128 = 10_000_000_000;
 const SLACK_NS: i128 = 2_000_000;
 /// Reciprocal of the maximum rate of correction. The rate exceeds the difference between oscillators but is too slow to
 /// affect a speed. During a packet, the correction is less than one of its 255 samples.
-const SLOWNESS: i128 = 4000;
+const CORRECTION_DIVISOR: i128 = 4000;
 /// Change of the offset in nanoseconds above which it is not drift. A clock was then stopped or set.
 const JUMP_NS: i128 = 1_000_000_000;
 
@@ -37,7 +37,7 @@ impl ClockDrift {
             Some(ahead) if (lead - ahead).abs() <= JUMP_NS => {
                 let wrong = lead - ahead;
                 let beyond = wrong - wrong.clamp(-SLACK_NS, SLACK_NS);
-                ahead + beyond.clamp(-elapsed / SLOWNESS, elapsed / SLOWNESS)
+                ahead + beyond.clamp(-elapsed / CORRECTION_DIVISOR, elapsed / CORRECTION_DIVISOR)
             }
             _ => lead,
         };

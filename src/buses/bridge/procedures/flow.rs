@@ -12,7 +12,7 @@ use crate::units::Moment;
 
 /// The stream to start. Its clock or sampling must already be configured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Streamed {
+pub(crate) enum StreamKind {
     /// SSI words at an interval in microseconds.
     Ssi { period_us: u32 },
     /// BiSS frames at an interval in microseconds.
@@ -37,7 +37,7 @@ pub struct Chunk {
 
 #[derive(Clone, Debug)]
 pub(crate) struct SampleStream {
-    streamed: Streamed,
+    streamed: StreamKind,
     period_ns: i64,
     continuity: Continuity,
     next: u64,
@@ -51,32 +51,32 @@ pub(crate) struct SampleStream {
 }
 
 /// Silence after which the stream counts as ended. A slow stream has more time.
-const SILENT: Duration = Duration::from_secs(2);
+const SILENCE_TIMEOUT: Duration = Duration::from_secs(2);
 const SILENT_SAMPLES: u32 = 256;
 
-impl Streamed {
+impl StreamKind {
     fn start(self) -> Request {
         match self {
-            Streamed::Ssi { period_us } => Request::SsiStream { period_us },
-            Streamed::Biss { period_us } => Request::BissStream { period_us },
-            Streamed::Analog { .. } => Request::AnalogStream { on: true },
+            StreamKind::Ssi { period_us } => Request::SsiStream { period_us },
+            StreamKind::Biss { period_us } => Request::BissStream { period_us },
+            StreamKind::Analog { .. } => Request::AnalogStream { on: true },
         }
     }
 
     fn stop(self) -> Request {
         match self {
-            Streamed::Ssi { .. } => Request::SsiStream { period_us: 0 },
-            Streamed::Biss { .. } => Request::BissStream { period_us: 0 },
-            Streamed::Analog { .. } => Request::AnalogStream { on: false },
+            StreamKind::Ssi { .. } => Request::SsiStream { period_us: 0 },
+            StreamKind::Biss { .. } => Request::BissStream { period_us: 0 },
+            StreamKind::Analog { .. } => Request::AnalogStream { on: false },
         }
     }
 
     const fn matches_stream(self, data: &StreamData) -> bool {
         matches!(
             (self, data),
-            (Streamed::Ssi { .. }, StreamData::Ssi(_))
-                | (Streamed::Biss { .. }, StreamData::Biss(_))
-                | (Streamed::Analog { .. }, StreamData::Analog(_))
+            (StreamKind::Ssi { .. }, StreamData::Ssi(_))
+                | (StreamKind::Biss { .. }, StreamData::Biss(_))
+                | (StreamKind::Analog { .. }, StreamData::Analog(_))
         )
     }
 }
@@ -86,9 +86,9 @@ impl SampleStream {
     ///
     /// # Errors
     /// Returns a [`Failure`]. If the adapter refuses the request as busy, the stream is already running.
-    pub(crate) fn begin(
+    pub(crate) fn start(
         adapter: &mut Adapter<'_, '_>,
-        streamed: Streamed,
+        streamed: StreamKind,
         after: Option<SampleTime>,
     ) -> Result<Self, Failure> {
         let request = streamed.start();
@@ -97,15 +97,15 @@ impl SampleStream {
             Some(answered) => answered,
             // The stream may be running although the reply is lost. A second request would then be refused as busy.
             None => {
-                adapter.ask(&streamed.stop())?;
-                adapter.ask(&request)?
+                adapter.send_request(&streamed.stop())?;
+                adapter.send_request(&request)?
             }
         };
         let period_ns = match (streamed, &answered.reply) {
-            (Streamed::Ssi { .. }, Reply::SsiStream { period_us })
-            | (Streamed::Biss { .. }, Reply::BissStream { period_us }) => i64::from(*period_us) * 1000,
-            (Streamed::Analog { period_ns }, Reply::AnalogStream { on: true }) => period_ns,
-            _ => return Err(AdapterError::other(request.operation(), &answered.reply).into()),
+            (StreamKind::Ssi { .. }, Reply::SsiStream { period_us })
+            | (StreamKind::Biss { .. }, Reply::BissStream { period_us }) => i64::from(*period_us) * 1000,
+            (StreamKind::Analog { period_ns }, Reply::AnalogStream { on: true }) => period_ns,
+            _ => return Err(AdapterError::unexpected_reply(request.operation(), &answered.reply).into()),
         };
         Ok(SampleStream {
             streamed,
@@ -120,7 +120,7 @@ impl SampleStream {
         })
     }
 
-    pub(crate) const fn streamed(&self) -> Streamed {
+    pub(crate) const fn stream_kind(&self) -> StreamKind {
         self.streamed
     }
 
@@ -146,7 +146,7 @@ impl SampleStream {
             adapter.state.damaged += adapter.adapter.receiver.dropped_count() - broken;
             let now = adapter.line.now();
             if let Some(packet) = packet {
-                if let Some(portion) = self.take(&packet, now)? {
+                if let Some(portion) = self.samples_in(&packet, now)? {
                     return Ok(Some(portion));
                 }
                 continue;
@@ -168,13 +168,13 @@ impl SampleStream {
     ///
     /// # Errors
     /// Returns an error if the adapter does not confirm the end of the stream.
-    pub(crate) fn end(&self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
-        adapter.ask(&self.streamed.stop()).map(drop)
+    pub(crate) fn stop(&self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
+        adapter.send_request(&self.streamed.stop()).map(drop)
     }
 
-    /// Evaluates the result of [`end`](Self::end). Returns `false` if the adapter has refused, which means that it was
+    /// Evaluates the result of [`stop`](Self::stop). Returns `false` if the adapter has refused, which means that it was
     /// reset and must be configured again. Other errors are returned, and the caller must retry.
-    pub(crate) fn ended(ended: Result<(), Failure>) -> Result<bool, Failure> {
+    pub(crate) fn is_stopped(ended: Result<(), Failure>) -> Result<bool, Failure> {
         match ended {
             Ok(()) => Ok(true),
             Err(Failure::Adapter(AdapterError::Refused { .. })) => Ok(false),
@@ -184,11 +184,11 @@ impl SampleStream {
 
     fn max_wait(&self) -> Duration {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
-        SILENT + period.saturating_mul(SILENT_SAMPLES)
+        SILENCE_TIMEOUT + period.saturating_mul(SILENT_SAMPLES)
     }
 
     /// Returns the samples of a packet, or `None` if the packet contains no samples of this stream.
-    fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Chunk>, AdapterError> {
+    fn samples_in(&mut self, packet: &Packet, now: Moment) -> Result<Option<Chunk>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.matches_stream(&data) => data,
             // The packet is a late reply or the end of an earlier stream.
@@ -196,12 +196,12 @@ impl SampleStream {
             Err(cause) => return Err(AdapterError::Data { cause }),
         };
         self.heard_at = now;
-        match self.continuity.follow(&data) {
+        match self.continuity.gap_before(&data) {
             PacketGap::None => {}
             PacketGap::Missing(count) => self.missing += u64::from(count),
             PacketGap::Backwards => return Err(AdapterError::Restarted),
         }
-        let (_, count, _) = data.extent();
+        let (_, count, _) = data.sample_range();
         if count == 0 {
             return Ok(None);
         }

@@ -9,7 +9,7 @@ mod tap;
 
 use std::time::Duration;
 
-use power::Power;
+use power::SupplyState;
 
 use crate::bits::MaskedBytes;
 use crate::buses::bridge::protocol::{
@@ -23,7 +23,7 @@ use crate::units::{Moment, SupplyVoltage};
 pub use flow::Chunk;
 pub use power::SupplyAfterSession;
 pub(crate) use power::log_supply_failure;
-pub use tap::{AdapterStreamError, StreamRequest, Streaming, Tap};
+pub use tap::{AdapterStreamError, StreamRequest, StreamTap, StreamingAdapter};
 
 /// BiSS time-out in microseconds. An encoder needs 18 µs to notice the end of a frame. See manual, table 3.
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
@@ -33,7 +33,7 @@ pub(crate) const CLOCK: WholeNumbers<u32> = WholeNumbers(Quantity::Hertz, 80_000
 
 /// Time after the deadline of a reply for which an adapter may still send other data before the reply counts as
 /// missing.
-const ENDLESS: Duration = Duration::from_secs(1);
+const OTHER_DATA_TIME: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
 pub struct AdapterState {
@@ -41,8 +41,8 @@ pub struct AdapterState {
     next_seq: u8,
     hello: Option<Hello>,
     has_spoken: bool,
-    clocks: Clocks,
-    power: Power,
+    clocks: ClockOffsetBounds,
+    power: SupplyState,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -94,7 +94,7 @@ pub(crate) enum Failure {
 
 impl AdapterError {
     /// Creates the error for a reply to an operation that was not requested.
-    pub fn other(requested: Operation, reply: &Reply) -> Self {
+    pub fn unexpected_reply(requested: Operation, reply: &Reply) -> Self {
         AdapterError::Other { requested, got: reply.operation() }
     }
 }
@@ -120,18 +120,18 @@ pub(crate) struct TimedReply {
 
 impl AdapterState {
     /// Returns the identity of the adapter, or `None` if it was not read yet.
-    pub const fn hello(&self) -> Option<&Hello> {
+    pub const fn identity(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
 
     /// Sets the state of the encoder supply after the session.
-    pub fn leave_supply(&mut self, after: SupplyAfterSession) {
+    pub fn set_supply_after_session(&mut self, after: SupplyAfterSession) {
         self.power.after = after;
     }
 
     /// Discards the identity, which is read again before the next use. The state of the encoder supply is kept, since
     /// HELLO does not change it.
-    pub(crate) fn forget(&mut self) {
+    pub(crate) fn forget_identity(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
 
@@ -174,15 +174,15 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// Returns [`AdapterError::Version`] if the adapter uses another version of the protocol, or another [`Failure`].
-    pub(crate) fn hello(&mut self) -> Result<(), Failure> {
+    pub(crate) fn read_identity(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
             // The empty packet completes a packet that the adapter may have received partly from another host.
-            let answered = self.repeat(&Request::Hello, &[0])?;
+            let answered = self.send_with_retry(&Request::Hello, &[0])?;
             let Reply::Hello(hello) = answered.reply else {
-                return Err(AdapterError::other(Operation::Hello, &answered.reply).into());
+                return Err(AdapterError::unexpected_reply(Operation::Hello, &answered.reply).into());
             };
             // Adapters that do not report the state of the supply leave this bit clear.
-            if self.adapter.power.found.is_none() && hello.capabilities.has(Capabilities::SUPPLIED) {
+            if self.adapter.power.found.is_none() && hello.capabilities.contains(Capabilities::SUPPLY_ON) {
                 self.adapter.power.found = Some(true);
             }
             self.adapter.hello = Some(hello);
@@ -195,16 +195,17 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// Returns [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] or another [`Failure`].
-    pub(crate) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
-        if let Some(hello) = self.adapter.hello().filter(|hello| !hello.capabilities.has(Capabilities::SUPPLY)) {
+    pub(crate) fn switch_supply_on(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
+        if let Some(hello) = self.adapter.identity().filter(|hello| !hello.capabilities.contains(Capabilities::SUPPLY))
+        {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
         }
         let SupplyVoltage { given, greatest, .. } = voltage;
         // The supply may be on even if the reply is lost.
         self.adapter.power.given = true;
-        let answered = self.ask(&Request::Supply { on: true, millivolt: given })?;
+        let answered = self.send_request(&Request::Supply { on: true, millivolt: given })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
-            return Err(AdapterError::other(Operation::Supply, &answered.reply).into());
+            return Err(AdapterError::unexpected_reply(Operation::Supply, &answered.reply).into());
         };
         if measured > greatest {
             self.switch_off()?;
@@ -217,12 +218,12 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// Returns an error if the adapter does not switch the supply off.
-    pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
+    pub(crate) fn switch_off_after_session(&mut self) -> Result<(), Failure> {
         if self.adapter.must_switch_supply_off() { self.switch_off() } else { Ok(()) }
     }
 
     fn switch_off(&mut self) -> Result<(), Failure> {
-        self.ask(&Request::Supply { on: false, millivolt: 0 })?;
+        self.send_request(&Request::Supply { on: false, millivolt: 0 })?;
         (self.adapter.power.given, self.adapter.power.found) = (false, Some(false));
         Ok(())
     }
@@ -232,11 +233,11 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// Returns an error if there is no reply, or not the expected one.
-    pub(crate) fn ask(&mut self, request: &Request) -> Result<TimedReply, Failure> {
-        self.repeat(request, &[])
+    pub(crate) fn send_request(&mut self, request: &Request) -> Result<TimedReply, Failure> {
+        self.send_with_retry(request, &[])
     }
 
-    fn repeat(&mut self, request: &Request, before: &[u8]) -> Result<TimedReply, Failure> {
+    fn send_with_retry(&mut self, request: &Request, before: &[u8]) -> Result<TimedReply, Failure> {
         for _ in 0..2 {
             if let Some(answered) = self.exchange(request, before)? {
                 return Ok(answered);
@@ -266,7 +267,7 @@ impl Adapter<'_, '_> {
         loop {
             let broken = self.adapter.receiver.dropped_count();
             while let Some(packet) = self.adapter.receiver.next_packet() {
-                if let Some(reply) = self.judge(request, seq, &packet)? {
+                if let Some(reply) = self.match_reply(request, seq, &packet)? {
                     self.state.mark_replied();
                     self.state.record_answer_start(self.line.now());
                     return Ok(Some(TimedReply { reply, sent_at, received_at: self.line.now() }));
@@ -288,7 +289,7 @@ impl Adapter<'_, '_> {
             }
             self.adapter.has_spoken = true;
             self.adapter.receiver.push(&portion);
-            if self.line.now() >= deadline + ENDLESS {
+            if self.line.now() >= deadline + OTHER_DATA_TIME {
                 self.state.damaged += 1;
                 return Ok(None);
             }
@@ -297,7 +298,7 @@ impl Adapter<'_, '_> {
 
     /// Returns the reply in a packet, or `None` if the packet does not answer the request. Late replies have another
     /// sequence number.
-    fn judge(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
+    fn match_reply(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
         let operation = request.operation();
         let parsed = Message::parse(packet);
         if packet.seq != seq || matches!(parsed, Ok(Message::Data(_))) {
@@ -307,7 +308,7 @@ impl Adapter<'_, '_> {
         self.line.show(now, MaskedBytes::clear(&packet.emit()));
         match parsed {
             Ok(Message::Reply(reply)) if reply.operation() == operation => Ok(Some(reply)),
-            Ok(Message::Reply(reply)) => Err(AdapterError::other(operation, &reply)),
+            Ok(Message::Reply(reply)) => Err(AdapterError::unexpected_reply(operation, &reply)),
             Ok(Message::Error { code, text, .. }) => Err(AdapterError::Refused { operation, code, text }),
             Ok(Message::Data(_)) => Ok(None),
             Err(BodyError::Version { expected, got }) => Err(AdapterError::Version { expected, got }),
@@ -319,11 +320,11 @@ impl Adapter<'_, '_> {
 /// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They follow from the fact that
 /// an adapter samples between a request and its reply.
 #[derive(Clone, Copy, Debug, Default)]
-struct Clocks {
+struct ClockOffsetBounds {
     bounds: Option<(i128, i128)>,
 }
 
-impl Clocks {
+impl ClockOffsetBounds {
     fn local_time_of(&mut self, t_us: u64, sent_at: Moment, received_at: Moment) -> Moment {
         let nanoseconds = |moment: Moment| i128::try_from(moment.since_start().as_nanos()).unwrap_or(i128::MAX);
         let own = i128::from(t_us) * 1000;
@@ -349,7 +350,7 @@ mod tests {
 
     #[test]
     fn the_adapters_clock_is_estimated_and_resynchronized() {
-        let mut clocks = Clocks::default();
+        let mut clocks = ClockOffsetBounds::default();
         // The local clock is 1000 µs ahead. Request at 2000, sampled at 1100 of the adapter's, reply at 2400.
         assert_eq!(clocks.local_time_of(1100, at(2000), at(2400)), at(2200));
         // 900…1300 so far; now 995…1395: 995…1300.

@@ -14,8 +14,8 @@ pub enum SupplyAfterSession {
 
 impl SupplyAfterSession {
     /// Link parameter and value that leave the supply on after the session.
-    pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
-    pub const WORDS: Keywords<SupplyAfterSession> = Keywords(&[
+    pub const LEAVE_SUPPLY_ON: (&str, &str) = ("leave-supply", "on");
+    pub const KEYWORDS: Keywords<SupplyAfterSession> = Keywords(&[
         ("as-found", SupplyAfterSession::AsFound),
         ("on", SupplyAfterSession::On),
         ("off", SupplyAfterSession::Off),
@@ -23,14 +23,14 @@ impl SupplyAfterSession {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Power {
+pub(super) struct SupplyState {
     pub(super) after: SupplyAfterSession,
     /// Whether the encoder had power before the session, or `None` if unknown.
     pub(super) found: Option<bool>,
     pub(super) given: bool,
 }
 
-impl Power {
+impl SupplyState {
     /// Returns whether the end of the session must switch the supply off.
     pub(super) fn must_switch_off(self) -> bool {
         let found = self.found == Some(true);
@@ -70,10 +70,10 @@ mod tests {
             (Off, None, false, false),
         ];
         for (after, found, given, off) in cases {
-            assert_eq!(Power { after, found, given }.must_switch_off(), off, "{after:?} {found:?} {given}");
+            assert_eq!(SupplyState { after, found, given }.must_switch_off(), off, "{after:?} {found:?} {given}");
         }
         for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
-            assert_eq!(SupplyAfterSession::WORDS.read(word), after);
+            assert_eq!(SupplyAfterSession::KEYWORDS.read(word), after);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::flow::{Chunk, SampleStream, Streamed};
+use super::flow::{Chunk, SampleStream, StreamKind};
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
 use crate::link::line::{LineError, LineState, SerialLine};
@@ -31,7 +31,7 @@ const POWER_UP: Duration = Duration::from_secs(1);
 
 /// A streaming adapter and its actual settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Streaming {
+pub struct StreamingAdapter {
     pub hello: Hello,
     pub period_ns: i64,
     /// Full scale of sine and cosine, which is the voltage in microvolts at the value 32 767. Other streams have 0.
@@ -52,7 +52,7 @@ pub enum AdapterStreamError {
 
 /// Host side of an adapter that is only used for a stream.
 #[derive(Clone, Debug)]
-pub struct Tap {
+pub struct StreamTap {
     line: LineState,
     adapter: AdapterState,
     flow: Option<SampleStream>,
@@ -70,10 +70,10 @@ impl From<Failure> for AdapterStreamError {
     }
 }
 
-impl Tap {
+impl StreamTap {
     /// Creates a tap for an adapter that was not identified yet. Its replies may be late by `margin`.
     pub fn new(margin: Duration) -> Self {
-        Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
+        StreamTap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }
 
     /// Identifies and configures the adapter and starts the stream. The encoder supply is switched on if `supply` is
@@ -83,50 +83,50 @@ impl Tap {
     /// Returns [`AdapterError::Version`], [`NoBiss`](AdapterError::NoBiss), [`NoAnalog`](AdapterError::NoAnalog) or
     /// [`NoSupply`](AdapterError::NoSupply) if the adapter is not suitable. Other errors are a refusal or come from the
     /// connection.
-    pub fn begin(
+    pub fn start(
         &mut self,
         ctx: Ctx<'_>,
         wanted: StreamRequest,
         supply: Option<SupplyVoltage>,
-    ) -> Result<Streaming, AdapterStreamError> {
+    ) -> Result<StreamingAdapter, AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
-        adapter.hello()?;
-        let Some(hello) = adapter.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
+        adapter.read_identity()?;
+        let Some(hello) = adapter.adapter.identity().cloned() else { return Err(AdapterError::Silent.into()) };
         let name = || hello.name.clone();
         let (capability, lacks): (_, fn(String) -> AdapterError) = match wanted {
             StreamRequest::Biss { .. } => (Capabilities::BISS, |name| AdapterError::NoBiss { name }),
             StreamRequest::Analog { .. } => (Capabilities::ANALOG, |name| AdapterError::NoAnalog { name }),
         };
-        if !hello.capabilities.has(capability) {
+        if !hello.capabilities.contains(capability) {
             return Err(lacks(name()).into());
         }
         let supplied = match supply {
             Some(voltage) => {
-                let supplied = adapter.supply(voltage)?;
+                let supplied = adapter.switch_supply_on(voltage)?;
                 adapter.line.wait(POWER_UP).map_err(Failure::Line)?;
                 Some(supplied)
             }
             None => None,
         };
-        let request = wanted.configure(&hello);
-        let answered = adapter.ask(&request)?;
+        let request = wanted.configuration_request(&hello);
+        let answered = adapter.send_request(&request)?;
         let (streamed, full_scale_microvolt) = match (wanted, &answered.reply) {
-            (StreamRequest::Biss { period_us, .. }, Reply::BissConfig { .. }) => (Streamed::Biss { period_us }, 0),
+            (StreamRequest::Biss { period_us, .. }, Reply::BissConfig { .. }) => (StreamKind::Biss { period_us }, 0),
             (StreamRequest::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
-                (Streamed::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
+                (StreamKind::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
             }
             _ => {
-                return Err(AdapterStreamError::from(Failure::from(AdapterError::other(
+                return Err(AdapterStreamError::from(Failure::from(AdapterError::unexpected_reply(
                     request.operation(),
                     &answered.reply,
                 ))));
             }
         };
-        let flow = SampleStream::begin(&mut adapter, streamed, None)?;
+        let flow = SampleStream::start(&mut adapter, streamed, None)?;
         let period_ns = flow.period_ns();
         self.flow = Some(flow);
-        Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
+        Ok(StreamingAdapter { hello, period_ns, full_scale_microvolt, supplied })
     }
 
     /// Returns the next samples, or `None` if no samples have arrived by `until` or no stream is running.
@@ -144,19 +144,19 @@ impl Tap {
     ///
     /// # Errors
     /// Returns an error of the adapter or the connection.
-    pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), AdapterStreamError> {
+    pub fn stop(&mut self, ctx: Ctx<'_>) -> Result<(), AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
         line.ignore_cancellation(true);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
-        let ended = self.flow.take().map_or(Ok(()), |flow| flow.end(&mut adapter));
-        let left = adapter.leave_supply();
+        let ended = self.flow.take().map_or(Ok(()), |flow| flow.stop(&mut adapter));
+        let left = adapter.switch_off_after_session();
         Ok(ended.and(left)?)
     }
 }
 
 impl StreamRequest {
     /// Returns the request that configures the adapter. Its speed is limited to what the adapter supports.
-    fn configure(self, hello: &Hello) -> Request {
+    fn configuration_request(self, hello: &Hello) -> Request {
         match self {
             StreamRequest::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {
                 clock_hz: clock_hz.min(hello.max_clock_hz),

@@ -26,8 +26,8 @@ impl Continuity {
     }
 
     /// Returns the gap before a packet. The end of the packet becomes the next expected position.
-    pub fn follow(&mut self, data: &StreamData) -> PacketGap {
-        let (first, count, lost) = data.extent();
+    pub fn gap_before(&mut self, data: &StreamData) -> PacketGap {
+        let (first, count, lost) = data.sample_range();
         let ahead = first.wrapping_sub(self.next);
         // A packet has at most 255 samples.
         self.next = first.wrapping_add(u32::try_from(count).unwrap_or(0));
@@ -65,8 +65,12 @@ mod tests {
             (data(2, 1, 0), PacketGap::None),
         ];
         for (data, gap) in cases {
-            assert_eq!(stream.follow(&data), gap, "{:?}", data.extent());
+            assert_eq!(stream.gap_before(&data), gap, "{:?}", data.sample_range());
         }
-        assert_eq!(Continuity::at_start().follow(&data(7, 1, 0)), PacketGap::Missing(7), "the first packet was lost");
+        assert_eq!(
+            Continuity::at_start().gap_before(&data(7, 1, 0)),
+            PacketGap::Missing(7),
+            "the first packet was lost"
+        );
     }
 }

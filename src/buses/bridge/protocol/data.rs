@@ -1,6 +1,6 @@
 //! Stream packets, which an adapter sends without a request (reference 3).
 
-use super::fields::{BodyError, Fields};
+use super::fields::{BodyError, FieldReader};
 use super::packet::Packet;
 use super::reply::BissStatus;
 
@@ -68,7 +68,7 @@ impl StreamData {
     const ANALOG: u8 = 0xB2;
 
     /// Returns the number of the first sample, the number of samples, and the number of lost samples before the first.
-    pub const fn extent(&self) -> (u32, usize, u16) {
+    pub const fn sample_range(&self) -> (u32, usize, u16) {
         match self {
             StreamData::Ssi(data) => (data.first_index, data.values.len(), data.lost),
             StreamData::Biss(data) => (data.first_index, data.values.len(), data.lost),
@@ -78,39 +78,40 @@ impl StreamData {
 
     /// Parses a packet, or returns `None` if it is not part of a stream.
     pub(super) fn parse(packet: &Packet) -> Result<Option<Self>, BodyError> {
-        let mut fields = Fields::new(packet.op, &packet.body);
+        let mut fields = FieldReader::new(packet.op, &packet.body);
         let data = match packet.op {
             Self::SSI => {
                 let (first_index, t0_us, period_us, lost) =
                     (fields.u32()?, fields.u64()?, fields.u32()?, fields.u16()?);
                 let (width, count) = (width(&mut fields, packet.op)?, fields.u8()?);
-                let values = (0..count).map(|_| fields.wide(width)).collect::<Result<_, _>>()?;
+                let values = (0..count).map(|_| fields.take_uint(width)).collect::<Result<_, _>>()?;
                 StreamData::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
             }
             Self::BISS => {
                 let (first_index, t0_us, period_us, lost) =
                     (fields.u32()?, fields.u64()?, fields.u32()?, fields.u16()?);
                 let (width, count) = (width(&mut fields, packet.op)?, fields.u8()?);
-                let value = |fields: &mut Fields<'_>| Ok((BissStatus::new(fields.u8()?), fields.wide(width)?));
+                let value =
+                    |fields: &mut FieldReader<'_>| Ok((BissStatus::new(fields.u8()?), fields.take_uint(width)?));
                 let values = (0..count).map(|_| value(&mut fields)).collect::<Result<_, _>>()?;
                 StreamData::Biss(BissData { first_index, t0_us, period_us, lost, width, values })
             }
             Self::ANALOG => {
                 let (first_index, t0_us, lost, count) = (fields.u32()?, fields.u64()?, fields.u16()?, fields.u8()?);
-                let sample = |fields: &mut Fields<'_>| Ok((fields.i16()?, fields.i16()?));
+                let sample = |fields: &mut FieldReader<'_>| Ok((fields.i16()?, fields.i16()?));
                 let samples = (0..count).map(|_| sample(&mut fields)).collect::<Result<_, _>>()?;
                 StreamData::Analog(AnalogData { first_index, t0_us, lost, samples })
             }
             _ => return Ok(None),
         };
-        fields.end(Some(data))
+        fields.finish(Some(data))
     }
 
     pub(super) fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         let op = match self {
             StreamData::Ssi(data) => {
-                head(&mut body, data.first_index, data.t0_us);
+                push_header(&mut body, data.first_index, data.t0_us);
                 body.extend(data.period_us.to_le_bytes());
                 body.extend(data.lost.to_le_bytes());
                 body.extend([data.width, count(data.values.len())]);
@@ -118,7 +119,7 @@ impl StreamData {
                 Self::SSI
             }
             StreamData::Biss(data) => {
-                head(&mut body, data.first_index, data.t0_us);
+                push_header(&mut body, data.first_index, data.t0_us);
                 body.extend(data.period_us.to_le_bytes());
                 body.extend(data.lost.to_le_bytes());
                 body.extend([data.width, count(data.values.len())]);
@@ -129,7 +130,7 @@ impl StreamData {
                 Self::BISS
             }
             StreamData::Analog(data) => {
-                head(&mut body, data.first_index, data.t0_us);
+                push_header(&mut body, data.first_index, data.t0_us);
                 body.extend(data.lost.to_le_bytes());
                 body.push(count(data.samples.len()));
                 for (sine, cosine) in &data.samples {
@@ -143,14 +144,14 @@ impl StreamData {
     }
 }
 
-fn width(fields: &mut Fields<'_>, op: u8) -> Result<u8, BodyError> {
+fn width(fields: &mut FieldReader<'_>, op: u8) -> Result<u8, BodyError> {
     match fields.u8()? {
         width @ 1..=8 => Ok(width),
         got => Err(BodyError::Value { op, field: "width", got }),
     }
 }
 
-fn head(body: &mut Vec<u8>, first_index: u32, t0_us: u64) {
+fn push_header(body: &mut Vec<u8>, first_index: u32, t0_us: u64) {
     body.extend(first_index.to_le_bytes());
     body.extend(t0_us.to_le_bytes());
 }

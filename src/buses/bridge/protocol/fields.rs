@@ -41,39 +41,39 @@ pub enum BodyError {
 }
 
 /// The bytes of a body that have not been parsed yet.
-pub(super) struct Fields<'a> {
+pub(super) struct FieldReader<'a> {
     op: u8,
     whole: usize,
     rest: &'a [u8],
 }
 
-impl<'a> Fields<'a> {
+impl<'a> FieldReader<'a> {
     pub(super) fn new(op: u8, body: &'a [u8]) -> Self {
-        Fields { op, whole: body.len(), rest: body }
+        FieldReader { op, whole: body.len(), rest: body }
     }
 
     pub(super) fn u8(&mut self) -> Result<u8, BodyError> {
-        self.array().map(|[byte]| byte)
+        self.take_array().map(|[byte]| byte)
     }
 
     pub(super) fn u16(&mut self) -> Result<u16, BodyError> {
-        self.array().map(u16::from_le_bytes)
+        self.take_array().map(u16::from_le_bytes)
     }
 
     pub(super) fn i16(&mut self) -> Result<i16, BodyError> {
-        self.array().map(i16::from_le_bytes)
+        self.take_array().map(i16::from_le_bytes)
     }
 
     pub(super) fn u32(&mut self) -> Result<u32, BodyError> {
-        self.array().map(u32::from_le_bytes)
+        self.take_array().map(u32::from_le_bytes)
     }
 
     pub(super) fn u64(&mut self) -> Result<u64, BodyError> {
-        self.array().map(u64::from_le_bytes)
+        self.take_array().map(u64::from_le_bytes)
     }
 
     /// Parses a switch, which is 0 or 1.
-    pub(super) fn switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
+    pub(super) fn take_switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),
             1 => Ok(true),
@@ -82,7 +82,7 @@ impl<'a> Fields<'a> {
     }
 
     /// Parses a number of `width` bytes. The width is at most 8.
-    pub(super) fn wide(&mut self, width: u8) -> Result<u64, BodyError> {
+    pub(super) fn take_uint(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
     }
@@ -99,23 +99,23 @@ impl<'a> Fields<'a> {
     }
 
     /// Returns `value` if all bytes have been parsed.
-    pub(super) fn end<T>(self, value: T) -> Result<T, BodyError> {
-        if self.rest.is_empty() { Ok(value) } else { Err(self.length()) }
+    pub(super) fn finish<T>(self, value: T) -> Result<T, BodyError> {
+        if self.rest.is_empty() { Ok(value) } else { Err(self.length_error()) }
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], BodyError> {
-        let (array, rest) = self.rest.split_first_chunk::<N>().ok_or_else(|| self.length())?;
+    fn take_array<const N: usize>(&mut self) -> Result<[u8; N], BodyError> {
+        let (array, rest) = self.rest.split_first_chunk::<N>().ok_or_else(|| self.length_error())?;
         self.rest = rest;
         Ok(*array)
     }
 
     fn bytes(&mut self, count: usize) -> Result<&'a [u8], BodyError> {
-        let (bytes, rest) = self.rest.split_at_checked(count).ok_or_else(|| self.length())?;
+        let (bytes, rest) = self.rest.split_at_checked(count).ok_or_else(|| self.length_error())?;
         self.rest = rest;
         Ok(bytes)
     }
 
-    fn length(&self) -> BodyError {
+    fn length_error(&self) -> BodyError {
         BodyError::Length { op: self.op, got: self.whole }
     }
 }

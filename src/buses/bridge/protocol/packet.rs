@@ -88,10 +88,10 @@ pub fn crc16(bytes: &[u8]) -> u16 {
 }
 
 /// CRC remainders of all values that the upper eight bits of the register may have.
-const TABLE: [u16; 256] = table();
+const TABLE: [u16; 256] = crc_table();
 
 #[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]
-const fn table() -> [u16; 256] {
+const fn crc_table() -> [u16; 256] {
     let mut table = [0; 256];
     let mut index = 0;
     while index < 256 {

@@ -2,7 +2,7 @@
 
 use super::VERSION;
 use super::data::StreamData;
-use super::fields::{BodyError, Fields, push_text};
+use super::fields::{BodyError, FieldReader, push_text};
 use super::packet::Packet;
 use super::request::Operation;
 
@@ -156,7 +156,7 @@ impl Capabilities {
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
     /// The encoder supply is on. This bit is a state and not a capability. Adapters that do not report the state leave
     /// it clear.
-    pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
+    pub const SUPPLY_ON: Capabilities = Capabilities(1 << 6);
 
     /// Creates capabilities from their bits. Every value is valid.
     pub const fn new(word: u32) -> Self {
@@ -164,18 +164,18 @@ impl Capabilities {
     }
 
     /// Returns the capabilities as bits.
-    pub const fn word(self) -> u32 {
+    pub const fn to_bits(self) -> u32 {
         self.0
     }
 
     /// Returns whether this set contains all of `others`.
-    pub const fn has(self, others: Capabilities) -> bool {
+    pub const fn contains(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
 
     /// Returns the union of two sets.
     #[must_use]
-    pub const fn and(self, others: Capabilities) -> Self {
+    pub const fn union(self, others: Capabilities) -> Self {
         Capabilities(self.0 | others.0)
     }
 }
@@ -237,9 +237,9 @@ impl Message {
     /// Otherwise, returns a [`BodyError`] if the operation is unknown or its body is invalid.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
-            let mut fields = Fields::new(packet.op, &packet.body);
+            let mut fields = FieldReader::new(packet.op, &packet.body);
             let error = Message::Error { op: fields.u8()?, code: ErrorCode(fields.u8()?), text: fields.text()? };
-            return fields.end(error);
+            return fields.finish(error);
         }
         if let Some(data) = StreamData::parse(packet)? {
             return Ok(Message::Data(data));
@@ -332,7 +332,7 @@ impl Reply {
         let operation = Operation::from_byte(packet.op & !Operation::REPLY_BIT)
             .filter(|_| packet.op & Operation::REPLY_BIT != 0)
             .ok_or(BodyError::Operation(packet.op))?;
-        let mut fields = Fields::new(packet.op, &packet.body);
+        let mut fields = FieldReader::new(packet.op, &packet.body);
         let reply = match operation {
             Operation::Hello => {
                 let got = fields.u8()?;
@@ -349,7 +349,7 @@ impl Reply {
                 })
             }
             Operation::Supply => {
-                Reply::Supply { on: fields.switch("on")?, millivolt: fields.u16()?, milliampere: fields.u16()? }
+                Reply::Supply { on: fields.take_switch("on")?, millivolt: fields.u16()?, milliampere: fields.u16()? }
             }
             Operation::SsiConfig => Reply::SsiConfig { clock_hz: fields.u32()? },
             Operation::SsiRead => Reply::SsiRead { t_us: fields.u64()?, raw: fields.u64()? },
@@ -366,10 +366,10 @@ impl Reply {
                 full_scale_microvolt: fields.u32()?,
                 bits: fields.u8()?,
             },
-            Operation::AnalogStream => Reply::AnalogStream { on: fields.switch("on")? },
+            Operation::AnalogStream => Reply::AnalogStream { on: fields.take_switch("on")? },
             Operation::UartConfig => Reply::UartConfig { baud: fields.u32()? },
             Operation::UartTransfer => Reply::UartTransfer { t_us: fields.u64()?, rx: fields.take_rest().to_vec() },
         };
-        fields.end(reply)
+        fields.finish(reply)
     }
 }

@@ -1,6 +1,6 @@
 //! Requests of a host to an adapter (reference 2).
 
-use super::fields::{BodyError, Fields};
+use super::fields::{BodyError, FieldReader};
 use super::packet::Packet;
 
 /// An operation of the protocol. Its value is the code in a request.
@@ -256,10 +256,10 @@ impl Request {
     /// Returns a [`BodyError`] if the operation is unknown or its body is invalid.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         let operation = Operation::from_byte(packet.op).ok_or(BodyError::Operation(packet.op))?;
-        let mut fields = Fields::new(packet.op, &packet.body);
+        let mut fields = FieldReader::new(packet.op, &packet.body);
         let request = match operation {
             Operation::Hello => Request::Hello,
-            Operation::Supply => Request::Supply { on: fields.switch("on")?, millivolt: fields.u16()? },
+            Operation::Supply => Request::Supply { on: fields.take_switch("on")?, millivolt: fields.u16()? },
             Operation::SsiConfig => Request::SsiConfig {
                 clocks: fields.u8()?,
                 clock_hz: fields.u32()?,
@@ -281,7 +281,7 @@ impl Request {
             }
             Operation::BissStream => Request::BissStream { period_us: fields.u32()? },
             Operation::AnalogConfig => Request::AnalogConfig { sample_hz: fields.u32()? },
-            Operation::AnalogStream => Request::AnalogStream { on: fields.switch("on")? },
+            Operation::AnalogStream => Request::AnalogStream { on: fields.take_switch("on")? },
             Operation::UartConfig => {
                 Request::UartConfig { baud: fields.u32()?, parity: fields.u8()?, turnaround_us: fields.u16()? }
             }
@@ -291,6 +291,6 @@ impl Request {
                 tx: fields.take_rest().to_vec(),
             },
         };
-        fields.end(request)
+        fields.finish(request)
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::bits::{hex, parse_hex};
 
-fn requests() -> Vec<(u8, Request, &'static str)> {
+fn request_vectors() -> Vec<(u8, Request, &'static str)> {
     vec![
         (1, Request::Hello, "05 01 01 1F 3E 00"),
         (2, Request::Supply { on: true, millivolt: 8000 }, "08 02 02 01 40 1F C5 61 00"),
@@ -41,15 +41,15 @@ fn requests() -> Vec<(u8, Request, &'static str)> {
     ]
 }
 
-fn messages() -> Vec<(u8, Message, &'static str)> {
+fn message_vectors() -> Vec<(u8, Message, &'static str)> {
     vec![
         (
             1,
             Message::Reply(Reply::Hello(Hello {
                 capabilities: Capabilities::SSI
-                    .and(Capabilities::BISS)
-                    .and(Capabilities::BISS_REGISTERS)
-                    .and(Capabilities::ANALOG),
+                    .union(Capabilities::BISS)
+                    .union(Capabilities::BISS_REGISTERS)
+                    .union(Capabilities::ANALOG),
                 max_clock_hz: 10_000_000,
                 max_sample_hz: 1_000_000,
                 name: "Bench".to_owned(),
@@ -134,34 +134,37 @@ fn messages() -> Vec<(u8, Message, &'static str)> {
 }
 
 /// Returns the packet in bytes that end with 00.
-fn packet(bytes: &[u8]) -> Result<Packet, PacketError> {
+fn parse_packet(bytes: &[u8]) -> Result<Packet, PacketError> {
     assert_eq!(bytes.last(), Some(&0));
     Packet::parse(&bytes[..bytes.len() - 1])
 }
 
 #[test]
 fn every_request_round_trips() {
-    let requests = requests();
+    let requests = request_vectors();
     assert_eq!(requests.iter().map(|(_, request, _)| request.operation()).collect::<Vec<_>>(), Operation::ALL);
     for (seq, request, text) in requests {
         assert_eq!(hex(&request.emit(seq).emit()), text);
-        let packet = packet(&parse_hex(text).unwrap()).unwrap();
+        let packet = parse_packet(&parse_hex(text).unwrap()).unwrap();
         assert_eq!((packet.seq, Request::parse(&packet)), (seq, Ok(request)), "{text}");
     }
 }
 
 #[test]
 fn every_message_round_trips() {
-    for (seq, message, text) in messages() {
+    for (seq, message, text) in message_vectors() {
         assert_eq!(hex(&message.emit(seq).emit()), text);
-        let packet = packet(&parse_hex(text).unwrap()).unwrap();
+        let packet = parse_packet(&parse_hex(text).unwrap()).unwrap();
         assert_eq!((packet.seq, Message::parse(&packet)), (seq, Ok(message)), "{text}");
     }
 }
 
 #[test]
 fn every_flipped_bit_is_detected() {
-    let texts = requests().into_iter().map(|(.., text)| text).chain(messages().into_iter().map(|(.., text)| text));
+    let texts = request_vectors()
+        .into_iter()
+        .map(|(.., text)| text)
+        .chain(message_vectors().into_iter().map(|(.., text)| text));
     for text in texts {
         let bytes = parse_hex(text).unwrap();
         let stuffed = &bytes[..bytes.len() - 1];
@@ -179,7 +182,7 @@ fn every_flipped_bit_is_detected() {
 /// A body that lost its end, or got another byte, is refused, unless the rest is data of any length.
 #[test]
 fn every_truncated_body_is_refused() {
-    for (seq, request, _) in requests() {
+    for (seq, request, _) in request_vectors() {
         let whole = request.emit(seq);
         let open_end = request.operation() == Operation::UartTransfer;
         for cut in 0..whole.body.len() {
@@ -189,7 +192,7 @@ fn every_truncated_body_is_refused() {
         let longer = Packet { body: [whole.body.as_slice(), &[0]].concat(), ..whole };
         assert_eq!(Request::parse(&longer).is_ok(), open_end, "{request:?}");
     }
-    for (seq, message, _) in messages() {
+    for (seq, message, _) in message_vectors() {
         let whole = message.emit(seq);
         let open_end = matches!(message, Message::Reply(Reply::UartTransfer { .. }));
         for cut in 0..whole.body.len() {
@@ -226,7 +229,9 @@ fn unknown_codes_are_reported_or_kept() {
     let cut = Message::Error { op: 0x77, code: ErrorCode::new(99), text: "ü".repeat(127) };
     assert_eq!(back, cut, "a long text is cut between two characters");
     let all = Capabilities::new(u32::MAX);
-    assert!(all.has(Capabilities::SUPPLY.and(Capabilities::UART)) && !Capabilities::SSI.has(Capabilities::BISS));
+    assert!(
+        all.contains(Capabilities::SUPPLY.union(Capabilities::UART)) && !Capabilities::SSI.contains(Capabilities::BISS)
+    );
 }
 
 proptest! {

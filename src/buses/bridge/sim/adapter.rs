@@ -47,20 +47,20 @@ pub struct Adapter {
 }
 
 /// Error code and message of a refused request.
-type Refusal = (ErrorCode, &'static str);
+type ErrorReply = (ErrorCode, &'static str);
 
-const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
-const OUT_OF_RANGE: Refusal = (ErrorCode::BAD_ARGUMENT, "out of range");
-const STREAMING: Refusal = (ErrorCode::BUSY, "a stream is running");
-const SILENT: Refusal = (ErrorCode::NO_ANSWER, "the encoder does not answer");
-const NOT_THERE: Refusal = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
+const NOT_CONFIGURED: ErrorReply = (ErrorCode::BAD_ARGUMENT, "not configured yet");
+const OUT_OF_RANGE: ErrorReply = (ErrorCode::BAD_ARGUMENT, "out of range");
+const STREAMING: ErrorReply = (ErrorCode::BUSY, "a stream is running");
+const ENCODER_SILENT: ErrorReply = (ErrorCode::NO_ANSWER, "the encoder does not answer");
+const NOT_THERE: ErrorReply = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
 
 impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
     const CONTROL_CYCLES: u32 = 47;
     /// Maximum number of pending replies, which is the memory of a small controller. Further requests are lost.
-    const WAITING: usize = 16;
+    const MAX_PENDING_REPLIES: usize = 16;
     /// Range of the encoder's supply voltage in millivolts. See manual, chapter 2.
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
@@ -122,7 +122,7 @@ impl Adapter {
 
     /// Changes the speed of the shaft from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        self.advance(now);
+        self.advance_to(now);
         self.bus.set_rpm(self.now, rpm);
         self.follow_motor();
     }
@@ -138,7 +138,7 @@ impl Adapter {
             uart.set_rpm(self.now, rpm);
         }
         if let (Some(stream), Ok(settings)) = (&mut self.sampled, self.analog.clone().validate()) {
-            stream.change(self.now, settings);
+            stream.change_settings(self.now, settings);
         }
     }
 
@@ -150,7 +150,7 @@ impl Adapter {
         }
     }
 
-    fn advance(&mut self, to: Moment) {
+    fn advance_to(&mut self, to: Moment) {
         self.now = self.now.max(to);
         let mut packets = Vec::new();
         if let Some(stream) = &mut self.clocked {
@@ -158,8 +158,8 @@ impl Adapter {
             let biss_bits = self.biss.map_or(0, |setting| setting.bits);
             let ssi_bits = self.ssi.map_or(0, |setting| setting.clocks);
             packets.extend(stream.run(self.now, |at| match kind {
-                Kind::Biss => bus.frame(at, biss_bits),
-                Kind::Ssi => (BissStatus::OK, bus.word(at, ssi_bits)),
+                Kind::Biss => bus.frame_at(at, biss_bits),
+                Kind::Ssi => (BissStatus::OK, bus.word_at(at, ssi_bits)),
             }));
         }
         if let Some(stream) = &mut self.sampled {
@@ -182,8 +182,8 @@ impl Adapter {
         self.to_host.insert(at, bytes);
     }
 
-    fn take(&mut self, packet: &Packet) {
-        if self.to_host.len() >= Self::WAITING {
+    fn handle_packet(&mut self, packet: &Packet) {
+        if self.to_host.len() >= Self::MAX_PENDING_REPLIES {
             return;
         }
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
@@ -193,7 +193,7 @@ impl Adapter {
             (self.clocked, self.sampled) = (None, None);
             return;
         }
-        let refused = |(code, text): Refusal| Message::Error { op: packet.op, code, text: text.to_owned() };
+        let refused = |(code, text): ErrorReply| Message::Error { op: packet.op, code, text: text.to_owned() };
         let (message, time) = match Request::parse(packet) {
             Err(BodyError::Operation(_)) => (refused(NOT_THERE), Duration::ZERO),
             Err(_) => (refused(OUT_OF_RANGE), Duration::ZERO),
@@ -212,7 +212,7 @@ impl Adapter {
 
     /// Returns the time for which the adapter processes a request. Transmission is not included.
     fn time(&self, request: &Request) -> Duration {
-        let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
+        let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame_duration());
         match request.operation() {
             Operation::SsiRead => self.ssi.map_or(Duration::ZERO, SsiSetting::burst_duration),
             Operation::BissRead => frame,
@@ -221,8 +221,8 @@ impl Adapter {
         }
     }
 
-    fn execute(&mut self, request: Request) -> Result<Reply, Refusal> {
-        let t_us = microseconds(self.now);
+    fn execute(&mut self, request: Request) -> Result<Reply, ErrorReply> {
+        let t_us = adapter_microseconds(self.now);
         let operation = request.operation();
         let stops = matches!(request, Request::SsiStream { period_us: 0 } | Request::BissStream { period_us: 0 });
         let clocked = (Operation::SsiConfig.byte()..=Operation::BissStream.byte()).contains(&operation.byte());
@@ -231,8 +231,8 @@ impl Adapter {
             return Err(STREAMING);
         }
         match request {
-            Request::Hello => Ok(Reply::Hello(self.hello())),
-            Request::Supply { on, millivolt } => self.supply(on, millivolt),
+            Request::Hello => Ok(Reply::Hello(self.identify())),
+            Request::Supply { on, millivolt } => self.switch_supply(on, millivolt),
             Request::SsiConfig { clocks, clock_hz, pause_us, .. } => {
                 let actual =
                     nearest_available_clock(clock_hz).filter(|_| (1..=64).contains(&clocks)).ok_or(OUT_OF_RANGE)?;
@@ -241,11 +241,11 @@ impl Adapter {
             }
             Request::SsiRead => {
                 let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
-                Ok(Reply::SsiRead { t_us, raw: self.bus.word(self.now, setting.clocks) })
+                Ok(Reply::SsiRead { t_us, raw: self.bus.word_at(self.now, setting.clocks) })
             }
             Request::SsiStream { period_us } => {
                 let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
-                let period_us = self.stream(Kind::Ssi, period_us, setting.min_period_us(), setting.clocks);
+                let period_us = self.start_stream(Kind::Ssi, period_us, setting.min_period_us(), setting.clocks);
                 Ok(Reply::SsiStream { period_us })
             }
             Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {
@@ -256,7 +256,7 @@ impl Adapter {
             }
             Request::BissRead => {
                 let setting = self.biss.ok_or(NOT_CONFIGURED)?;
-                let (status, raw) = self.bus.frame(self.now, setting.bits);
+                let (status, raw) = self.bus.frame_at(self.now, setting.bits);
                 Ok(Reply::BissRead { t_us, status, raw })
             }
             Request::BissRegisterRead { slave, address } => {
@@ -269,8 +269,8 @@ impl Adapter {
             }
             Request::BissStream { period_us } => {
                 let setting = self.biss.ok_or(NOT_CONFIGURED)?;
-                let least = u32::try_from(setting.frame().as_micros()).unwrap_or(u32::MAX);
-                let period_us = self.stream(Kind::Biss, period_us, least, setting.bits);
+                let least = u32::try_from(setting.frame_duration().as_micros()).unwrap_or(u32::MAX);
+                let period_us = self.start_stream(Kind::Biss, period_us, least, setting.bits);
                 Ok(Reply::BissStream { period_us })
             }
             Request::AnalogConfig { sample_hz } => {
@@ -300,21 +300,21 @@ impl Adapter {
                 let transfer = self.uart.as_mut().ok_or(NOT_THERE)?.transfer(self.now, timeout, idle, &tx);
                 let transfer = transfer.ok_or(NOT_CONFIGURED)?;
                 self.replied = self.replied.max(transfer.end);
-                Ok(Reply::UartTransfer { t_us: microseconds(transfer.start), rx: transfer.rx })
+                Ok(Reply::UartTransfer { t_us: adapter_microseconds(transfer.start), rx: transfer.rx })
             }
         }
     }
 
-    fn hello(&mut self) -> Hello {
+    fn identify(&mut self) -> Hello {
         (self.clocked, self.sampled) = (None, None);
         let is_supplied = self.switched_supply && self.bus.is_supplied;
         let can = Capabilities::SSI
-            .and(Capabilities::BISS)
-            .and(Capabilities::BISS_REGISTERS)
-            .and(Capabilities::ANALOG)
-            .and(if self.switched_supply { Capabilities::SUPPLY } else { Capabilities::new(0) })
-            .and(if is_supplied { Capabilities::SUPPLIED } else { Capabilities::new(0) })
-            .and(if self.uart.is_some() { Capabilities::UART } else { Capabilities::new(0) });
+            .union(Capabilities::BISS)
+            .union(Capabilities::BISS_REGISTERS)
+            .union(Capabilities::ANALOG)
+            .union(if self.switched_supply { Capabilities::SUPPLY } else { Capabilities::new(0) })
+            .union(if is_supplied { Capabilities::SUPPLY_ON } else { Capabilities::new(0) })
+            .union(if self.uart.is_some() { Capabilities::UART } else { Capabilities::new(0) });
         Hello {
             capabilities: can,
             max_clock_hz: MAX_CLOCK_HZ,
@@ -334,7 +334,7 @@ impl Adapter {
         }
     }
 
-    fn supply(&mut self, on: bool, millivolt: u16) -> Result<Reply, Refusal> {
+    fn switch_supply(&mut self, on: bool, millivolt: u16) -> Result<Reply, ErrorReply> {
         if !self.switched_supply {
             return Err(NOT_THERE);
         }
@@ -354,20 +354,20 @@ impl Adapter {
     }
 
     /// Reads a register. If a value is given, it is written first.
-    fn register(&mut self, slave: u8, address: u8, value: Option<u8>) -> Result<u8, Refusal> {
+    fn register(&mut self, slave: u8, address: u8, value: Option<u8>) -> Result<u8, ErrorReply> {
         self.biss.ok_or(NOT_CONFIGURED)?;
         let has_address = self.bus.biss.as_ref().is_none_or(|device| device.has_address(address));
         if !has_address || slave >= 8 {
             return Err(OUT_OF_RANGE);
         }
         let now = self.now;
-        let device = self.bus.readable_device(now).filter(|_| slave == 0).ok_or(SILENT)?;
+        let device = self.bus.readable_device(now).filter(|_| slave == 0).ok_or(ENCODER_SILENT)?;
         if let Some(value) = value {
             let accepted = device.write_register(now, address, value);
             if !device.has_power() {
-                return Err(SILENT);
+                return Err(ENCODER_SILENT);
             }
-            if accepted && !device.answers(now) {
+            if accepted && !device.can_access_registers(now) {
                 // The encoder returned the value before it restarted or began to calibrate.
                 return Ok(value);
             }
@@ -376,7 +376,7 @@ impl Adapter {
     }
 
     /// Starts or ends a stream. Returns the actual period in microseconds.
-    fn stream(&mut self, kind: Kind, period_us: u32, least_us: u32, bits: u8) -> u32 {
+    fn start_stream(&mut self, kind: Kind, period_us: u32, least_us: u32, bits: u8) -> u32 {
         if period_us == 0 {
             self.clocked = self.clocked.take().filter(|stream| stream.kind != kind);
             return 0;
@@ -389,7 +389,7 @@ impl Adapter {
 }
 
 /// Returns a time in microseconds of the adapter's clock.
-fn microseconds(at: Moment) -> u64 {
+fn adapter_microseconds(at: Moment) -> u64 {
     u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }
 
@@ -402,16 +402,16 @@ fn add_noise(faults: &SimulatedFaults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
 
 impl ByteDevice for Adapter {
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
-        self.advance(now);
+        self.advance_to(now);
         let received = add_noise(&self.faults, &mut self.rng, bytes);
         self.receiver.push(&received);
         while let Some(packet) = self.receiver.next_packet() {
-            self.take(&packet);
+            self.handle_packet(&packet);
         }
     }
 
     fn poll(&mut self, now: Moment) -> Vec<u8> {
-        self.advance(now);
+        self.advance_to(now);
         std::mem::take(&mut self.inbox)
     }
 
@@ -419,18 +419,18 @@ impl ByteDevice for Adapter {
         if !self.inbox.is_empty() {
             return Some(self.now);
         }
-        let clocked = self.clocked.as_ref().map(ClockedStream::due);
-        let sampled = self.sampled.as_ref().map(SampledStream::due);
+        let clocked = self.clocked.as_ref().map(ClockedStream::next_packet_time);
+        let sampled = self.sampled.as_ref().map(SampledStream::next_packet_time);
         [self.to_host.next_due(), clocked, sampled].into_iter().flatten().min()
     }
 
     /// Ignores the format, since a serial port over USB has no baud rate.
     fn set_host_format(&mut self, now: Moment, _format: CharacterFormat) {
-        self.advance(now);
+        self.advance_to(now);
     }
 
     fn connect(&mut self, now: Moment) {
-        self.advance(now);
+        self.advance_to(now);
         self.inbox.clear();
         if !self.switched_supply
             && let Some(device) = &mut self.bus.biss

@@ -10,14 +10,14 @@ use crate::units::Moment;
 /// also determines whether they have power.
 pub trait BissDevice: Any + Send {
     /// Creates a copy of the device with separate state.
-    fn duplicate(&self) -> Box<dyn BissDevice>;
+    fn clone_device(&self) -> Box<dyn BissDevice>;
 
     /// Returns the bits after the control bit of the frame that is latched at `at`, and their number. The result is
     /// `None` while the device does not acknowledge.
-    fn frame(&mut self, at: Moment) -> Option<(u64, u8)>;
+    fn frame_at(&mut self, at: Moment) -> Option<(u64, u8)>;
 
     /// Returns the shaft position in steps and the number of steps per revolution, or `None` if the power is off.
-    fn place(&mut self, at: Moment) -> Option<(u64, u64)>;
+    fn shaft_position(&mut self, at: Moment) -> Option<(u64, u64)>;
 
     fn motor(&self) -> Motor;
 
@@ -34,7 +34,7 @@ pub trait BissDevice: Any + Send {
     fn has_power(&self) -> bool;
 
     /// Returns whether the registers can be read at `now`.
-    fn answers(&mut self, now: Moment) -> bool;
+    fn can_access_registers(&mut self, now: Moment) -> bool;
 
     /// Returns whether the device has a register with this address.
     fn has_address(&self, address: u8) -> bool;
@@ -49,36 +49,36 @@ pub trait BissDevice: Any + Send {
 /// An encoder whose position word is clocked out.
 pub trait SsiDevice: Send {
     /// Creates another device with the same settings.
-    fn duplicate(&self) -> Box<dyn SsiDevice>;
+    fn clone_device(&self) -> Box<dyn SsiDevice>;
 
     /// Returns the word that is latched at `at`, and its number of bits. `place` contains the shaft position in steps
     /// and the number of steps per revolution.
-    fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8);
+    fn word_at(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8);
 }
 
 /// The device on the serial line.
 pub trait SerialDevice: ByteDevice {
     /// Creates another device with the same settings.
-    fn duplicate(&self) -> Box<dyn SerialDevice>;
+    fn clone_device(&self) -> Box<dyn SerialDevice>;
 
-    fn turn(&mut self, now: Moment, rpm: f64);
+    fn turn_shaft(&mut self, now: Moment, rpm: f64);
 }
 
 impl Clone for Box<dyn BissDevice> {
     fn clone(&self) -> Self {
-        (**self).duplicate()
+        (**self).clone_device()
     }
 }
 
 impl Clone for Box<dyn SsiDevice> {
     fn clone(&self) -> Self {
-        (**self).duplicate()
+        (**self).clone_device()
     }
 }
 
 impl Clone for Box<dyn SerialDevice> {
     fn clone(&self) -> Self {
-        (**self).duplicate()
+        (**self).clone_device()
     }
 }
 
@@ -92,7 +92,7 @@ pub enum AttachedDevice {
 /// A kind of device that can be attached to an adapter.
 pub trait AttachableKind: Sync {
     /// Returns the names of the device's settings in a `sim:` link.
-    fn keys(&self) -> &'static [&'static str];
+    fn setting_names(&self) -> &'static [&'static str];
 
     /// Creates the device from its settings. Returns `None` if the settings do not select a device.
     ///

@@ -27,7 +27,7 @@ impl Bus {
         Bus {
             biss: None,
             ssi: None,
-            shaft: Shaft::turning(shaft.rpm),
+            shaft: Shaft::with_speed(shaft.rpm),
             is_supplied: true,
             line: config.line,
             noise: config.noise,
@@ -51,27 +51,27 @@ impl Bus {
     /// Changes the speed of the adapter's shaft to that of its motor from `now` on. An attached device does this at its
     /// next access.
     pub(super) fn follow_motor(&mut self, now: Moment) {
-        self.shaft.follow(now);
+        self.shaft.follow_motor(now);
     }
 
     /// Returns the shaft position in steps and the number of steps per revolution, or `None` if the power is off.
-    fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
+    fn shaft_position(&mut self, at: Moment) -> Option<(u64, u64)> {
         match &mut self.biss {
-            Some(device) => device.place(at),
-            None => self.is_supplied.then(|| self.shaft.place(at)),
+            Some(device) => device.shaft_position(at),
+            None => self.is_supplied.then(|| self.shaft.position_at(at)),
         }
     }
 
     /// Returns the device if its registers can be read at `now`.
     pub(super) fn readable_device(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
         let is_good = self.line == EncoderWiring::Good;
-        self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
+        self.biss.as_mut().filter(|_| is_good)?.can_access_registers(now).then_some(())?;
         self.biss.as_mut()
     }
 
     /// Returns the given number of bits after the control bit of the BiSS frame that is latched at `at`.
-    pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
-        match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
+    pub(super) fn frame_at(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
+        match (self.line, self.biss.as_mut().and_then(|device| device.frame_at(at))) {
             (EncoderWiring::Low, _) => (BissStatus::STUCK_LOW, 0),
             (EncoderWiring::High, _) => (BissStatus::STUCK_HIGH, low_bits_mask(bits)),
             (EncoderWiring::Open, _) | (EncoderWiring::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
@@ -82,13 +82,13 @@ impl Bus {
     }
 
     /// Returns the given number of bits of the SSI word that is latched at `at`.
-    pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
+    pub(super) fn word_at(&mut self, at: Moment, bits: u8) -> u64 {
         // Without power, neither of the encoders sends.
-        let place = self.place(at);
+        let place = self.shaft_position(at);
         match (self.line, place, &mut self.ssi) {
             (EncoderWiring::Low, _, _) => 0,
             (EncoderWiring::Good, Some(place), Some(ssi)) => {
-                let (word, own) = ssi.word(at, place);
+                let (word, own) = ssi.word_at(at, place);
                 self.corrupt_frame(first_bits_on_line(word, own, bits), bits)
             }
             _ => low_bits_mask(bits),

@@ -18,7 +18,7 @@ pub(super) struct BissSetting {
 
 impl BissSetting {
     /// Returns the duration of a frame with acknowledgement, start bit, control bit and time-out.
-    pub(super) fn frame(self) -> Duration {
+    pub(super) fn frame_duration(self) -> Duration {
         let clocks = u64::from(self.bits) + 2;
         let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
         let fixed = ACKNOWLEDGE_US + u32::from(self.timeout_us);

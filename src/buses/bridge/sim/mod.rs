@@ -28,4 +28,4 @@ mod uart;
 
 pub use adapter::Adapter;
 pub use attached::{AttachableKind, AttachedDevice, BissDevice, SerialDevice, SsiDevice};
-pub use settings::{entries, keys};
+pub use settings::{all_setting_names, entries};

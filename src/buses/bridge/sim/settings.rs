@@ -8,14 +8,14 @@ use crate::sim::{ConfigError, VirtualDevice};
 
 /// Returns the names of all settings. The settings of the adapter and of devices with few settings come first in
 /// alphabetical order. Those of the last device follow.
-pub fn keys(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
+pub fn all_setting_names(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
     keys.extend(Shaft::KEYS.iter().filter(|_| owns_shaft(devices)));
-    keys.extend(others.iter().flat_map(|device| device.keys()));
+    keys.extend(others.iter().flat_map(|device| device.setting_names()));
     keys.sort_unstable();
     keys.extend(Shared::KEYS);
-    let last = last.into_iter().flat_map(|device| device.keys());
+    let last = last.into_iter().flat_map(|device| device.setting_names());
     keys.extend(last.filter(|key| !Shared::KEYS.contains(key)));
     keys
 }
@@ -28,7 +28,7 @@ pub fn entries() -> Vec<Entry> {
 
 /// Returns whether the adapter owns the shaft. This is the case if no attached device has a setting for the speed.
 fn owns_shaft(devices: &[&dyn AttachableKind]) -> bool {
-    devices.iter().all(|device| Shaft::KEYS.iter().all(|key| !device.keys().contains(key)))
+    devices.iter().all(|device| Shaft::KEYS.iter().all(|key| !device.setting_names().contains(key)))
 }
 
 impl Adapter {
@@ -38,7 +38,7 @@ impl Adapter {
     /// # Errors
     /// Returns an error with the key and the allowed values if a setting is invalid.
     pub fn from_pairs(pairs: &[(String, String)], devices: &[&dyn AttachableKind]) -> Result<Self, ConfigError> {
-        let known = keys(devices);
+        let known = all_setting_names(devices);
         if let Some((key, _)) = pairs.iter().find(|(key, _)| !known.contains(&key.as_str())) {
             return Err(ConfigError::unknown_setting(VirtualDevice::Adapter, key, &known));
         }
@@ -46,7 +46,7 @@ impl Adapter {
         let shaft = if owns_shaft(devices) { Shaft::read(pairs)? } else { Shaft::default() };
         let mut attached: Vec<AttachedDevice> = Vec::new();
         for device in devices {
-            let own = pairs.iter().filter(|(key, _)| device.keys().contains(&key.as_str())).cloned();
+            let own = pairs.iter().filter(|(key, _)| device.setting_names().contains(&key.as_str())).cloned();
             attached.extend(device.attach_device(&own.collect::<Vec<_>>())?);
         }
         Ok(Adapter::new(&config, &shared, &shaft, attached))

@@ -13,7 +13,7 @@ pub(super) struct Uart {
     format: Option<CharacterFormat>,
 }
 
-pub(super) struct Transfer {
+pub(super) struct UartTransfer {
     /// Time of the first start bit. Without a reply, this is the end of the wait.
     pub(super) start: Moment,
     pub(super) rx: Vec<u8>,
@@ -30,7 +30,7 @@ impl Uart {
     }
 
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        self.line.turn(now, rpm);
+        self.line.turn_shaft(now, rpm);
     }
 
     /// Sets the baud rate and the parity. Returns `false` if they are not supported.
@@ -50,7 +50,13 @@ impl Uart {
 
     /// Sends and receives bytes. Returns `None` if the line is not configured. The simulation of the line runs ahead of
     /// the adapter until the reply is complete.
-    pub(super) fn transfer(&mut self, now: Moment, timeout: Duration, idle: Duration, tx: &[u8]) -> Option<Transfer> {
+    pub(super) fn transfer(
+        &mut self,
+        now: Moment,
+        timeout: Duration,
+        idle: Duration,
+        tx: &[u8],
+    ) -> Option<UartTransfer> {
         let character = self.format?.character_time();
         self.line.poll(now);
         self.line.on_bytes(now, tx);
@@ -67,6 +73,6 @@ impl Uart {
             rx.extend(bytes);
             end = at + idle;
         }
-        Some(Transfer { start, rx, end })
+        Some(UartTransfer { start, rx, end })
     }
 }

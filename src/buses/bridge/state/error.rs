@@ -5,7 +5,7 @@ use crate::buses::bridge::procedures::AdapterError;
 use crate::buses::bridge::protocol::{BodyError, ErrorCode, Operation};
 use crate::buses::bridge::state::TEXTS;
 
-pub fn adapter(error: &AdapterError) -> Text {
+pub fn adapter_error_text(error: &AdapterError) -> Text {
     match error {
         AdapterError::Silent => TEXTS.text("adapter.silent"),
         AdapterError::Version { expected, got } => {
@@ -22,17 +22,18 @@ pub fn adapter(error: &AdapterError) -> Text {
             .with_number("greatest", volts(*greatest), 2),
         AdapterError::Mute => TEXTS.text("adapter.mute"),
         AdapterError::Restarted => TEXTS.text("adapter.restarted"),
-        AdapterError::Data { cause } => TEXTS.text("adapter.data").with_text("why", body(cause)),
+        AdapterError::Data { cause } => TEXTS.text("adapter.data").with_text("why", body_error_text(cause)),
         AdapterError::Refused { operation, code, text } => TEXTS
             .text("adapter.refused")
-            .with("operation", number(*operation))
+            .with("operation", operation_number(*operation))
             .with_text("why", reason(*code))
             .with("text", text),
-        AdapterError::Reply { operation, cause } => {
-            TEXTS.text("adapter.reply").with("operation", number(*operation)).with_text("why", body(cause))
-        }
+        AdapterError::Reply { operation, cause } => TEXTS
+            .text("adapter.reply")
+            .with("operation", operation_number(*operation))
+            .with_text("why", body_error_text(cause)),
         AdapterError::Other { requested, got } => {
-            TEXTS.text("adapter.other").with("asked", number(*requested)).with("got", number(*got))
+            TEXTS.text("adapter.other").with("asked", operation_number(*requested)).with("got", operation_number(*got))
         }
     }
 }
@@ -49,7 +50,7 @@ fn reason(code: ErrorCode) -> Text {
     }
 }
 
-fn body(error: &BodyError) -> Text {
+fn body_error_text(error: &BodyError) -> Text {
     let of = |id, op: u8| TEXTS.text(id).with("operation", format!("0x{op:02X}"));
     match *error {
         BodyError::Length { op, got } => of("adapter.body_length", op).with("got", got),
@@ -66,7 +67,7 @@ fn volts(millivolt: u16) -> f64 {
     f64::from(millivolt) / 1000.0
 }
 
-fn number(operation: Operation) -> String {
+fn operation_number(operation: Operation) -> String {
     format!("0x{:02X}", operation.byte())
 }
 
@@ -84,7 +85,8 @@ mod tests {
         let words = |code: u8, language| {
             let text = "streaming".to_owned();
             let code = ErrorCode::new(code);
-            adapter(&AdapterError::Refused { operation: Operation::BissConfig, code, text }).to_string_in(language)
+            adapter_error_text(&AdapterError::Refused { operation: Operation::BissConfig, code, text })
+                .to_string_in(language)
         };
         let mut said: Vec<String> = (0..=7).map(|code| words(code, English)).collect();
         assert!(said.iter().all(|words| words.contains("0x20") && words.contains("streaming")), "{said:?}");
@@ -112,7 +114,8 @@ mod tests {
             (AdapterError::Other { requested: Operation::Hello, got: Operation::Supply }, "0x02"),
         ];
         for (error, fact) in cases {
-            let (english, german) = (adapter(&error).to_string_in(English), adapter(&error).to_string_in(German));
+            let (english, german) =
+                (adapter_error_text(&error).to_string_in(English), adapter_error_text(&error).to_string_in(German));
             assert!(english.contains(fact) && german.contains(fact), "{english} {german}");
             assert_ne!(english, german);
         }
@@ -128,7 +131,7 @@ mod tests {
             BodyError::Version { expected: 1, got: 2 },
         ];
         for error in errors {
-            assert_in_both_languages(&body(&error), &error);
+            assert_in_both_languages(&body_error_text(&error), &error);
         }
     }
 

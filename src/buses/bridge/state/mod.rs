@@ -6,4 +6,4 @@ pub mod traced;
 
 pub use texts::TEXTS;
 
-pub use error::adapter;
+pub use error::adapter_error_text;

@@ -6,14 +6,16 @@ use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
 /// Parses the first packet in transmitted bytes, or returns `None` if they contain no packet.
-pub fn packet(bytes: &[u8]) -> Option<Packet> {
+pub fn parse_packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
 }
 
 /// Explains a received packet if it is damaged or a refusal. For other packets, the result is `None`.
-pub fn received(bytes: &[u8]) -> Option<FrameExplanation> {
-    let Some(packet) = packet(bytes) else { return Some(FrameExplanation::from_error(TEXTS.text("trace.no_packet"))) };
+pub fn explain_received(bytes: &[u8]) -> Option<FrameExplanation> {
+    let Some(packet) = parse_packet(bytes) else {
+        return Some(FrameExplanation::from_error(TEXTS.text("trace.no_packet")));
+    };
     match Message::parse(&packet) {
         Ok(Message::Error { .. }) => {
             let meaning: Vec<Text> = message_text(&packet).into_iter().collect();

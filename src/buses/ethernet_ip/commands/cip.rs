@@ -3,9 +3,9 @@
 use super::Device;
 use crate::bits::hex;
 use crate::buses::ethernet_ip::protocol::{
-    AddressSource, ConfigurationControl, EPath, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
-    ForwardOpenSuccess, GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Reply, Request, Segment,
-    Service, class_name, find_extended_status,
+    AddressSource, ConfigurationControl, ConnectionOwner, EPath, ForwardClose, ForwardCloseSuccess, ForwardErrorReply,
+    ForwardOpen, ForwardOpenSuccess, GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Reply, Request,
+    Segment, Service, class_name, find_extended_status,
 };
 use crate::cli::output::count;
 
@@ -25,13 +25,13 @@ pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec
 fn is_request(request: &Request, device: Device) -> bool {
     let class_first = matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }));
     let whole = !request.path.0.iter().any(|segment| matches!(segment, Segment::Unknown(_)));
-    let known = matches!(device, Device::Any) || request.service.name(request.class()).is_some();
-    class_first && request.path.number(LogicalKind::Instance).is_some() && whole && known
+    let known = matches!(device, Device::Any) || request.service.name(request.class_id()).is_some();
+    class_first && request.path.first_value(LogicalKind::Instance).is_some() && whole && known
 }
 
 fn request_lines(request: &Request, device: Device) -> Vec<String> {
-    let class = request.class();
-    let mut lines = vec![format!("CIP request: {} of {}", service(request.service, class), path(&request.path))];
+    let class = request.class_id();
+    let mut lines = vec![format!("CIP request: {} of {}", service_name(request.service, class), path(&request.path))];
     match (request.service, class) {
         (Service::FORWARD_OPEN, Some(Request::CONNECTION_MANAGER)) => match ForwardOpen::parse(&request.data) {
             Ok(asked) => lines.extend(forward_open_lines(&asked)),
@@ -48,7 +48,7 @@ fn request_lines(request: &Request, device: Device) -> Vec<String> {
 
 fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
     let data = &request.data;
-    let place = request.class().zip(request.path.number(LogicalKind::Attribute));
+    let place = request.class_id().zip(request.path.first_value(LogicalKind::Attribute));
     let explained = match (place, device) {
         (Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)), _) => {
             let source = ConfigurationControl::parse(data).map(|control| address_source_text(control.source()));
@@ -67,7 +67,7 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
 }
 
 fn reply_lines(reply: &Reply) -> Vec<String> {
-    let mut lines = vec![format!("CIP reply: {}, status {}", service(reply.service, None), reply.status)];
+    let mut lines = vec![format!("CIP reply: {}, status {}", service_name(reply.service, None), reply.status)];
     for code in &reply.extended {
         let meaning = find_extended_status(reply.service, reply.status, *code)
             .map_or_else(|| "unknown".to_owned(), |row| format!("{}; {}", row.meaning, row.remedy));
@@ -118,7 +118,7 @@ fn forward_open_lines(asked: &ForwardOpen) -> Vec<String> {
         format!(
             "to the {to} as 0x{id:08X} every {}: {size}, {kind} (0x{:04X})",
             interval_text(interval_us),
-            parameters.word()
+            parameters.to_bits()
         )
     };
     vec![
@@ -130,7 +130,7 @@ fn forward_open_lines(asked: &ForwardOpen) -> Vec<String> {
             count(usize::try_from(asked.connection_timeout.interval_multiplier()).unwrap_or(usize::MAX), "interval"),
             asked.to_target_timeout().as_millis(),
             asked.transport.byte(),
-            asked.transport.class(),
+            asked.transport.transport_class(),
             asked.timeout.duration().as_millis(),
             path(&asked.path)
         ),
@@ -146,7 +146,7 @@ fn address_source_text(source: AddressSource) -> String {
     }
 }
 
-fn service(service: Service, class: Option<u16>) -> String {
+fn service_name(service: Service, class: Option<u16>) -> String {
     service.name(class).map_or_else(|| format!("service 0x{:02X}", service.code()), str::to_owned)
 }
 
@@ -170,8 +170,8 @@ fn path(path: &EPath) -> String {
     words.join(", ")
 }
 
-fn owner_name(owner: Owner) -> String {
-    let Owner { connection_serial, vendor, serial_number } = owner;
+fn owner_name(owner: ConnectionOwner) -> String {
+    let ConnectionOwner { connection_serial, vendor, serial_number } = owner;
     format!("connection {connection_serial} of vendor {vendor}, serial number {serial_number}")
 }
 

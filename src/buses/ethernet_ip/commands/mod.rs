@@ -32,7 +32,7 @@ pub(crate) enum Device {
     Known(AttributeDecoder),
 }
 
-const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
+const NO_KNOWN_PACKET: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
 
 pub(crate) struct EthernetIpDecoder;
 
@@ -56,7 +56,7 @@ impl ProtocolDecoder for EthernetIpDecoder {
 
 fn decode(output: &Output, words: &[String]) -> Result {
     let explain = |bytes: &Vec<u8>| {
-        let explained = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
+        let explained = explain_packet(bytes, Device::Any).unwrap_or_else(|| Err(NO_KNOWN_PACKET.to_owned()));
         let (meaning, more) = match explained {
             Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
             Err(why) => (Err(why), Map::new()),
@@ -68,41 +68,41 @@ fn decode(output: &Output, words: &[String]) -> Result {
 }
 
 /// Decodes a packet. Returns `None` if the bytes do not begin like a packet.
-pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
-    if let Some(explained) = cyclic(bytes) {
+pub(crate) fn explain_packet(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
+    if let Some(explained) = explain_cyclic(bytes) {
         return Some(Ok(explained));
     }
-    if let Some(explained) = stream(bytes, device) {
+    if let Some(explained) = explain_stream(bytes, device) {
         return Some(explained);
     }
     let (kind, lines) = cip::message(bytes, device)?;
-    Some(Ok(DecodedBytes { lines, more: packet(kind), data: None }))
+    Some(Ok(DecodedBytes { lines, more: packet_map(kind), data: None }))
 }
 
-fn packet(kind: &str) -> Map<String, Json> {
+fn packet_map(kind: &str) -> Map<String, Json> {
     Map::from_iter([("packet".to_owned(), json!(kind))])
 }
 
 /// Describes a cyclic packet. The header is detected by its value and by the length of the data.
-fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
+fn explain_cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     let plain = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok()?;
     let with = IoPacket::parse(bytes, RealTimeFormat::Header).ok().filter(|packet| {
-        let known = packet.header.is_some_and(|header| header.word() <= 1);
+        let known = packet.header.is_some_and(|header| header.to_bits() <= 1);
         known && (packet.data.len() % 8 == 0 || plain.data.len() % 8 != 0)
     });
     let to_target = with.is_some();
     let IoPacket { connection, sequence, count: number, header, data } = with.unwrap_or(plain);
-    let header_words = header.map_or("no run/idle header", |header| if header.runs() { "run" } else { "idle" });
+    let header_words = header.map_or("no run/idle header", |header| if header.is_running() { "run" } else { "idle" });
     let lines = vec![
         format!("cyclic packet {sequence} of connection 0x{connection:08X}: count {number}, {header_words}"),
         format!("{} of process data: {}", count(data.len(), "byte"), hex(&data)),
     ];
-    let mut more = packet("cyclic");
+    let mut more = packet_map("cyclic");
     more.extend([
         ("connection".to_owned(), json!(connection)),
         ("sequence".to_owned(), json!(sequence)),
         ("count".to_owned(), json!(number)),
-        ("run".to_owned(), json!(header.map(|header| header.runs()))),
+        ("run".to_owned(), json!(header.map(|header| header.is_running()))),
     ]);
     Some(DecodedBytes { lines, more, data: Some((data, to_target)) })
 }
@@ -111,7 +111,7 @@ fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
 ///
 /// For a known device, NOP also yields `None`. Captures do not contain NOP, but process data of idle drives look like
 /// it.
-fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
+fn explain_stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     let [low, high, ..] = bytes else { return None };
     let command = Command::new(u16::from_le_bytes([*low, *high]));
     let is_idle = command == Command::NOP && matches!(device, Device::Known(_));
@@ -121,7 +121,7 @@ fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedByt
     let mut rest = bytes;
     let mut lines = Vec::new();
     while !rest.is_empty() {
-        let whole = match Frame::length(rest) {
+        let whole = match Frame::total_length(rest) {
             Ok(Some(length)) => rest.split_at_checked(length),
             Ok(None) => None,
             Err(why) => return Some(Err(why.to_string())),
@@ -135,18 +135,18 @@ fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedByt
         }
         rest = behind;
     }
-    Some(Ok(DecodedBytes { lines, more: packet("frame"), data: None }))
+    Some(Ok(DecodedBytes { lines, more: packet_map("frame"), data: None }))
 }
 
 fn frame_lines(frame: &Frame, device: Device) -> std::result::Result<Vec<String>, String> {
-    let name = frame.command.name().map_or_else(|| format!("command 0x{:04X}", frame.command.number()), str::to_owned);
+    let name = frame.command.name().map_or_else(|| format!("command 0x{:04X}", frame.command.code()), str::to_owned);
     let session = if frame.session == 0 { String::new() } else { format!(", session 0x{:08X}", frame.session) };
     let mut lines = vec![format!("{name}{session}: {}", count(frame.data.len(), "byte"))];
     if frame.status != EncapsulationStatus::OK {
         let remedy = frame.status.row().map_or(String::new(), |row| format!("; {}", row.remedy));
         lines.push(format!("status {}{remedy}", frame.status));
     }
-    match frame.body().map_err(|why| why.to_string())? {
+    match frame.parse_body().map_err(|why| why.to_string())? {
         Body::Empty => {}
         Body::Register { version, .. } => lines.push(format!("version {version} of the protocol")),
         Body::List(items) | Body::Data { items, .. } => item_list_lines(&items, device, &mut lines),

@@ -23,7 +23,7 @@ pub enum PacketVerdict {
 impl PacketTracker {
     /// Classifies a packet by its sequence number. Numbers wrap around: a newer packet is ahead by less than half their
     /// range.
-    pub fn take(&mut self, sequence: u32) -> PacketVerdict {
+    pub fn classify(&mut self, sequence: u32) -> PacketVerdict {
         let ahead = match self.newest {
             None => 1,
             Some(newest) => sequence.wrapping_sub(newest),
@@ -39,7 +39,7 @@ impl PacketTracker {
     }
 
     /// Returns the number of packets that did not arrive or arrived too late.
-    pub const fn lost(&self) -> u64 {
+    pub const fn lost_count(&self) -> u64 {
         self.lost
     }
 
@@ -68,9 +68,9 @@ mod tests {
             (2, PacketVerdict::Stale),
             (5, NEXT),
         ] {
-            assert_eq!(arrivals.take(sequence), expected, "{sequence}");
+            assert_eq!(arrivals.classify(sequence), expected, "{sequence}");
         }
-        assert_eq!((arrivals.lost(), arrivals.stale_count()), (3, 3));
+        assert_eq!((arrivals.lost_count(), arrivals.stale_count()), (3, 3));
     }
 
     proptest! {
@@ -80,7 +80,7 @@ mod tests {
             let mut arrivals = PacketTracker::default();
             let mut counted: Vec<u32> = Vec::new();
             for at in &order {
-                if matches!(arrivals.take(start.wrapping_add(*at)), PacketVerdict::New { .. }) {
+                if matches!(arrivals.classify(start.wrapping_add(*at)), PacketVerdict::New { .. }) {
                     counted.push(*at);
                 }
             }

@@ -69,7 +69,7 @@ const SIZE: u16 = 0x01FF;
 
 impl NetworkParameters {
     /// Maximum connection size in bytes.
-    pub const MOST: u16 = SIZE;
+    pub const MAX_SIZE: u16 = SIZE;
 
     /// Creates the parameters of an exclusive-owner connection with a fixed size. The size includes the sequence count
     /// and the run/idle header. Returns `None` for a size above 511 bytes.
@@ -95,7 +95,7 @@ impl NetworkParameters {
     }
 
     /// Returns the encoded word.
-    pub const fn word(self) -> u16 {
+    pub const fn to_bits(self) -> u16 {
         self.0
     }
 
@@ -151,7 +151,7 @@ impl Transport {
 
     /// Returns the transport class. Class 1 carries data with a sequence count and without a reply. Class 3 carries
     /// messages.
-    pub const fn class(self) -> u8 {
+    pub const fn transport_class(self) -> u8 {
         self.0 & 0x0F
     }
 
@@ -166,22 +166,22 @@ impl Transport {
     }
 
     /// Returns whether the target is the server.
-    pub const fn server(self) -> bool {
+    pub const fn is_server(self) -> bool {
         self.0 & 0x80 != 0
     }
 }
 
 impl ConnectionTimeout {
     /// Maximum exponent, for 512 intervals.
-    const MOST: u8 = 7;
+    const MAX_EXPONENT: u8 = 7;
 
     /// Creates the multiplier with the given exponent. Returns `None` for an exponent above 7.
     pub const fn new(number: u8) -> Option<Self> {
-        if number <= ConnectionTimeout::MOST { Some(ConnectionTimeout(number)) } else { None }
+        if number <= ConnectionTimeout::MAX_EXPONENT { Some(ConnectionTimeout(number)) } else { None }
     }
 
     /// Returns the exponent.
-    pub const fn number(self) -> u8 {
+    pub const fn exponent(self) -> u8 {
         self.0
     }
 
@@ -191,7 +191,7 @@ impl ConnectionTimeout {
     }
 
     /// Returns the time-out of a connection with the given interval.
-    pub const fn after(self, interval: Duration) -> Duration {
+    pub const fn for_interval(self, interval: Duration) -> Duration {
         interval.saturating_mul(self.interval_multiplier())
     }
 }

@@ -1,6 +1,6 @@
 //! The encapsulation frame around every explicit message: command, session, status and context. See reference 7.
 
-use super::fields::{Fields, PacketError, PacketField, Structure};
+use super::fields::{FieldReader, PacketError, PacketField, Structure};
 use super::items::{Item, ItemList};
 use super::status::EncapsulationStatus;
 
@@ -87,7 +87,7 @@ impl Command {
     }
 
     /// Returns the command code.
-    pub const fn number(self) -> u16 {
+    pub const fn code(self) -> u16 {
         self.0
     }
 
@@ -121,12 +121,12 @@ impl Frame {
     }
 
     /// Creates the frame that closes a session. There is no reply.
-    pub fn unregister(session: u32) -> Self {
+    pub fn unregister_session(session: u32) -> Self {
         Frame { session, ..Frame::request(Command::UNREGISTER_SESSION, [0; 8], &Body::Empty) }
     }
 
     /// Creates a frame with an unconnected CIP message.
-    pub fn unconnected(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
+    pub fn unconnected_message(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
         let items = ItemList(vec![Item::Null, Item::UnconnectedData(message)]);
         Frame {
             session,
@@ -140,13 +140,13 @@ impl Frame {
     }
 
     /// Creates a reply that refuses this request.
-    pub fn refusal(&self, status: EncapsulationStatus) -> Self {
+    pub fn error_reply(&self, status: EncapsulationStatus) -> Self {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
 
     /// Returns whether this frame is the reply to `request`. Command and context must be equal. In a session, the
     /// session handles must also be equal.
-    pub fn answers(&self, request: &Frame) -> bool {
+    pub fn is_reply_to(&self, request: &Frame) -> bool {
         let session = request.session == 0 || request.session == self.session;
         self.command == request.command && self.context == request.context && session
     }
@@ -155,13 +155,13 @@ impl Frame {
     ///
     /// # Errors
     /// Returns [`PacketError::Value`] if the length exceeds the maximum.
-    pub fn length(bytes: &[u8]) -> Result<Option<usize>, PacketError> {
+    pub fn total_length(bytes: &[u8]) -> Result<Option<usize>, PacketError> {
         let Some(header) = bytes.first_chunk::<{ Frame::HEADER }>() else { return Ok(None) };
         let [_, _, low, high, ..] = header;
         let length = u16::from_le_bytes([*low, *high]);
         match usize::from(length) {
             data if data <= Frame::MAX_DATA => Ok(Some(Frame::HEADER + data)),
-            _ => Err(PacketError::Value { what: WHAT, field: PacketField::Length, got: length.into() }),
+            _ => Err(PacketError::Value { what: STRUCTURE, field: PacketField::Length, got: length.into() }),
         }
     }
 
@@ -170,16 +170,16 @@ impl Frame {
     /// # Errors
     /// Returns a [`PacketError`] if the bytes are not exactly one frame.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        Frame::length(bytes)?;
-        let mut fields = Fields::new(WHAT, bytes);
+        Frame::total_length(bytes)?;
+        let mut fields = FieldReader::new(STRUCTURE, bytes);
         let command = Command(fields.u16()?);
         let length = fields.u16()?;
         let session = fields.u32()?;
         let status = EncapsulationStatus::new(fields.u32()?);
-        let context = fields.array()?;
+        let context = fields.take_array()?;
         let options = fields.u32()?;
         let data = fields.bytes(length.into())?.to_vec();
-        fields.end(Frame { command, session, status, context, options, data })
+        fields.finish(Frame { command, session, status, context, options, data })
     }
 
     /// Returns the encoded frame.
@@ -201,21 +201,21 @@ impl Frame {
     ///
     /// # Errors
     /// Returns a [`PacketError`] if the data do not match the command.
-    pub fn body(&self) -> Result<Body, PacketError> {
+    pub fn parse_body(&self) -> Result<Body, PacketError> {
         if self.data.is_empty() {
             return Ok(Body::Empty);
         }
         match self.command {
             Command::REGISTER_SESSION => {
-                let mut fields = Fields::new(Structure::RegisterSession, &self.data);
+                let mut fields = FieldReader::new(Structure::RegisterSession, &self.data);
                 let body = Body::Register { version: fields.u16()?, options: fields.u16()? };
-                fields.end(body)
+                fields.finish(body)
             }
             Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => {
                 Ok(Body::List(ItemList::parse(&self.data)?))
             }
             Command::SEND_RR_DATA | Command::SEND_UNIT_DATA => {
-                let mut fields = Fields::new(Structure::SendRRData, &self.data);
+                let mut fields = FieldReader::new(Structure::SendRRData, &self.data);
                 let (interface, timeout_s) = (fields.u32()?, fields.u16()?);
                 Ok(Body::Data { interface, timeout_s, items: ItemList::parse(fields.take_rest())? })
             }
@@ -224,7 +224,7 @@ impl Frame {
     }
 }
 
-const WHAT: Structure = Structure::Encapsulation;
+const STRUCTURE: Structure = Structure::Encapsulation;
 
 impl Body {
     /// Returns the encoded data.

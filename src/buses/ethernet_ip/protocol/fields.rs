@@ -97,37 +97,37 @@ pub enum PacketError {
 
 /// A cursor over the bytes that remain to be parsed.
 #[derive(Clone)]
-pub(super) struct Fields<'a> {
+pub(super) struct FieldReader<'a> {
     what: Structure,
     whole: usize,
     rest: &'a [u8],
 }
 
-impl<'a> Fields<'a> {
+impl<'a> FieldReader<'a> {
     pub(super) fn new(what: Structure, bytes: &'a [u8]) -> Self {
-        Fields { what, whole: bytes.len(), rest: bytes }
+        FieldReader { what, whole: bytes.len(), rest: bytes }
     }
 
     pub(super) fn u8(&mut self) -> Result<u8, PacketError> {
-        self.array().map(|[byte]| byte)
+        self.take_array().map(|[byte]| byte)
     }
 
     pub(super) fn u16(&mut self) -> Result<u16, PacketError> {
-        self.array().map(u16::from_le_bytes)
+        self.take_array().map(u16::from_le_bytes)
     }
 
     pub(super) fn u32(&mut self) -> Result<u32, PacketError> {
-        self.array().map(u32::from_le_bytes)
+        self.take_array().map(u32::from_le_bytes)
     }
 
-    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], PacketError> {
-        let (array, rest) = self.rest.split_first_chunk::<N>().ok_or(self.short())?;
+    pub(super) fn take_array<const N: usize>(&mut self) -> Result<[u8; N], PacketError> {
+        let (array, rest) = self.rest.split_first_chunk::<N>().ok_or(self.truncated())?;
         self.rest = rest;
         Ok(*array)
     }
 
     pub(super) fn bytes(&mut self, count: usize) -> Result<&'a [u8], PacketError> {
-        let (bytes, rest) = self.rest.split_at_checked(count).ok_or(self.short())?;
+        let (bytes, rest) = self.rest.split_at_checked(count).ok_or(self.truncated())?;
         self.rest = rest;
         Ok(bytes)
     }
@@ -141,7 +141,7 @@ impl<'a> Fields<'a> {
     }
 
     /// Returns `value` if no bytes remain, or an error otherwise.
-    pub(super) fn end<T>(self, value: T) -> Result<T, PacketError> {
+    pub(super) fn finish<T>(self, value: T) -> Result<T, PacketError> {
         match self.rest.len() {
             0 => Ok(value),
             left => Err(PacketError::Long { what: self.what, left }),
@@ -152,7 +152,7 @@ impl<'a> Fields<'a> {
         PacketError::Value { what: self.what, field, got: got.into() }
     }
 
-    const fn short(&self) -> PacketError {
+    const fn truncated(&self) -> PacketError {
         PacketError::Short { what: self.what, got: self.whole }
     }
 }

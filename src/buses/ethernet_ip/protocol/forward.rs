@@ -4,13 +4,13 @@
 use std::time::Duration;
 
 use super::connection::{ConnectionTimeout, NetworkParameters, RequestTimeout, Transport};
-use super::fields::{Fields, PacketError, PacketField, Structure};
+use super::fields::{FieldReader, PacketError, PacketField, Structure};
 use super::message::{Reply, Request, Service};
 use super::path::EPath;
 
 /// Identification of a connection and its originator. Every message about the connection repeats it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Owner {
+pub struct ConnectionOwner {
     /// Connection serial number. The originator chooses a different one for each connection.
     pub connection_serial: u16,
     /// Vendor ID of the originator.
@@ -29,7 +29,7 @@ pub struct ForwardOpen {
     /// Connection ID of packets to the originator.
     pub to_originator_id: u32,
     /// Identification of the originator and the connection.
-    pub owner: Owner,
+    pub owner: ConnectionOwner,
     /// Time without data after which the connection ends.
     pub connection_timeout: ConnectionTimeout,
     /// Requested interval of packets to the target, in microseconds.
@@ -54,7 +54,7 @@ pub struct ForwardOpenSuccess {
     /// Connection ID of packets to the originator.
     pub to_originator_id: u32,
     /// Owner of the connection.
-    pub owner: Owner,
+    pub owner: ConnectionOwner,
     /// Actual interval of packets to the target, in microseconds.
     pub to_target_interval_us: u32,
     /// Actual interval of packets to the originator, in microseconds.
@@ -67,7 +67,7 @@ pub struct ForwardOpenSuccess {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForwardErrorReply {
     /// Owner of the connection.
-    pub owner: Owner,
+    pub owner: ConnectionOwner,
     /// Number of path words that were not processed because of the error.
     pub remaining_path_words: u8,
 }
@@ -78,7 +78,7 @@ pub struct ForwardClose {
     /// Time-out of the request.
     pub timeout: RequestTimeout,
     /// Owner of the connection.
-    pub owner: Owner,
+    pub owner: ConnectionOwner,
     /// Path to the assemblies.
     pub path: EPath,
 }
@@ -87,14 +87,14 @@ pub struct ForwardClose {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardCloseSuccess {
     /// Owner of the connection.
-    pub owner: Owner,
+    pub owner: ConnectionOwner,
     /// Application data.
     pub application: Vec<u16>,
 }
 
-impl Owner {
-    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
-        Ok(Owner { connection_serial: fields.u16()?, vendor: fields.u16()?, serial_number: fields.u32()? })
+impl ConnectionOwner {
+    fn take_from(fields: &mut FieldReader<'_>) -> Result<Self, PacketError> {
+        Ok(ConnectionOwner { connection_serial: fields.u16()?, vendor: fields.u16()?, serial_number: fields.u32()? })
     }
 
     fn push_to(self, bytes: &mut Vec<u8>) {
@@ -104,7 +104,7 @@ impl Owner {
 }
 
 impl RequestTimeout {
-    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+    fn take_from(fields: &mut FieldReader<'_>) -> Result<Self, PacketError> {
         Ok(RequestTimeout { priority_and_tick: fields.u8()?, ticks: fields.u8()? })
     }
 }
@@ -112,7 +112,7 @@ impl RequestTimeout {
 impl ForwardOpen {
     /// Returns the time without data after which the target ends the connection.
     pub fn to_target_timeout(&self) -> Duration {
-        self.connection_timeout.after(Duration::from_micros(self.to_target_interval_us.into()))
+        self.connection_timeout.for_interval(Duration::from_micros(self.to_target_interval_us.into()))
     }
 
     /// Parses the service data of the request.
@@ -120,22 +120,22 @@ impl ForwardOpen {
     /// # Errors
     /// Returns a [`PacketError`] if the data are incomplete, are too long, or contain an invalid time-out number.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::ForwardOpen, data);
-        let timeout = RequestTimeout::take(&mut fields)?;
+        let mut fields = FieldReader::new(Structure::ForwardOpen, data);
+        let timeout = RequestTimeout::take_from(&mut fields)?;
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
-        let owner = Owner::take(&mut fields)?;
+        let owner = ConnectionOwner::take_from(&mut fields)?;
         let multiplier = fields.u8()?;
         let connection_timeout =
             ConnectionTimeout::new(multiplier).ok_or(fields.value(PacketField::TimeoutMultiplier, multiplier))?;
         // Three bytes are reserved.
-        fields.array::<3>()?;
+        fields.take_array::<3>()?;
         let to_target_interval_us = fields.u32()?;
         let to_target = NetworkParameters::from_word(fields.u16()?);
         let to_originator_interval_us = fields.u32()?;
         let to_originator = NetworkParameters::from_word(fields.u16()?);
         let transport = Transport::from_byte(fields.u8()?);
-        let path = EPath::take(&mut fields)?;
-        fields.end(ForwardOpen {
+        let path = EPath::take_from(&mut fields)?;
+        fields.finish(ForwardOpen {
             timeout,
             to_target_id,
             to_originator_id,
@@ -155,11 +155,11 @@ impl ForwardOpen {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         data.extend([self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes));
         self.owner.push_to(&mut data);
-        data.extend([self.connection_timeout.number(), 0, 0, 0]);
+        data.extend([self.connection_timeout.exponent(), 0, 0, 0]);
         data.extend(self.to_target_interval_us.to_le_bytes());
-        data.extend(self.to_target.word().to_le_bytes());
+        data.extend(self.to_target.to_bits().to_le_bytes());
         data.extend(self.to_originator_interval_us.to_le_bytes());
-        data.extend(self.to_originator.word().to_le_bytes());
+        data.extend(self.to_originator.to_bits().to_le_bytes());
         data.push(self.transport.byte());
         self.path.push_to(&mut data);
         Request::for_connection_manager(Service::FORWARD_OPEN, data)
@@ -172,12 +172,12 @@ impl ForwardOpenSuccess {
     /// # Errors
     /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::ForwardOpenReply, data);
+        let mut fields = FieldReader::new(Structure::ForwardOpenReply, data);
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
-        let owner = Owner::take(&mut fields)?;
+        let owner = ConnectionOwner::take_from(&mut fields)?;
         let (to_target_interval_us, to_originator_interval_us) = (fields.u32()?, fields.u32()?);
         let application = parse_application_data(&mut fields)?;
-        fields.end(ForwardOpenSuccess {
+        fields.finish(ForwardOpenSuccess {
             to_target_id,
             to_originator_id,
             owner,
@@ -206,12 +206,12 @@ impl ForwardErrorReply {
     /// # Errors
     /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::Refusal, data);
-        let owner = Owner::take(&mut fields)?;
+        let mut fields = FieldReader::new(Structure::Refusal, data);
+        let owner = ConnectionOwner::take_from(&mut fields)?;
         let remaining_path_words = fields.u8()?;
         // One byte is reserved.
         fields.u8()?;
-        fields.end(ForwardErrorReply { owner, remaining_path_words })
+        fields.finish(ForwardErrorReply { owner, remaining_path_words })
     }
 
     /// Returns the data of the reply.
@@ -227,7 +227,7 @@ impl ForwardErrorReply {
         Reply {
             extended: vec![extended],
             data: self.emit(),
-            ..request.refused(super::status::GeneralStatus::CONNECTION)
+            ..request.error_reply(super::status::GeneralStatus::CONNECTION)
         }
     }
 }
@@ -238,14 +238,14 @@ impl ForwardClose {
     /// # Errors
     /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::ForwardClose, data);
-        let timeout = RequestTimeout::take(&mut fields)?;
-        let owner = Owner::take(&mut fields)?;
+        let mut fields = FieldReader::new(Structure::ForwardClose, data);
+        let timeout = RequestTimeout::take_from(&mut fields)?;
+        let owner = ConnectionOwner::take_from(&mut fields)?;
         let words = fields.u8()?;
         // One byte is reserved.
         fields.u8()?;
         let path = EPath::parse(fields.bytes(usize::from(words) * 2)?)?;
-        fields.end(ForwardClose { timeout, owner, path })
+        fields.finish(ForwardClose { timeout, owner, path })
     }
 
     /// Builds the CIP request.
@@ -267,10 +267,10 @@ impl ForwardCloseSuccess {
     /// # Errors
     /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::ForwardCloseReply, data);
-        let owner = Owner::take(&mut fields)?;
+        let mut fields = FieldReader::new(Structure::ForwardCloseReply, data);
+        let owner = ConnectionOwner::take_from(&mut fields)?;
         let application = parse_application_data(&mut fields)?;
-        fields.end(ForwardCloseSuccess { owner, application })
+        fields.finish(ForwardCloseSuccess { owner, application })
     }
 
     /// Returns the data of the reply.
@@ -283,7 +283,7 @@ impl ForwardCloseSuccess {
 }
 
 /// Parses application data: a length in words, a reserved byte, and the words.
-fn parse_application_data(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
+fn parse_application_data(fields: &mut FieldReader<'_>) -> Result<Vec<u16>, PacketError> {
     let words = fields.u8()?;
     fields.u8()?;
     (0..words).map(|_| fields.u16()).collect()

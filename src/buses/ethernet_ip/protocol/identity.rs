@@ -1,6 +1,6 @@
 //! Device identity: the identity object (class 1) and the item of the ListIdentity reply (`P ODVA`).
 
-use super::fields::{Fields, PacketError, Structure, push_short_text, text};
+use super::fields::{FieldReader, PacketError, Structure, push_short_text, text};
 use super::items::SocketAddress;
 
 /// Attributes 1 to 7 of the identity object.
@@ -53,16 +53,16 @@ impl Identity {
     /// # Errors
     /// Returns a [`PacketError`] if the attributes are incomplete.
     pub fn parse_all(bytes: &[u8]) -> Result<Self, PacketError> {
-        Identity::take(&mut Fields::new(Structure::IdentityObject, bytes))
+        Identity::take_from(&mut FieldReader::new(Structure::IdentityObject, bytes))
     }
 
     /// Returns attributes 1 to 7 in the format of Get_Attributes_All.
     pub fn emit_all(&self) -> Vec<u8> {
-        (1..=7).filter_map(|attribute| self.attribute(attribute)).flatten().collect()
+        (1..=7).filter_map(|attribute| self.attribute_bytes(attribute)).flatten().collect()
     }
 
     /// Returns an attribute in the format of Get_Attribute_Single, or `None` if the attribute does not exist.
-    pub fn attribute(&self, number: u16) -> Option<Vec<u8>> {
+    pub fn attribute_bytes(&self, number: u16) -> Option<Vec<u8>> {
         let bytes = match number {
             1 => self.vendor.to_le_bytes().to_vec(),
             2 => self.device_type.to_le_bytes().to_vec(),
@@ -80,7 +80,7 @@ impl Identity {
         Some(bytes)
     }
 
-    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+    fn take_from(fields: &mut FieldReader<'_>) -> Result<Self, PacketError> {
         Ok(Identity {
             vendor: fields.u16()?,
             device_type: fields.u16()?,
@@ -98,12 +98,12 @@ impl Identity {
 
 impl IdentityItem {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::IdentityItem, bytes);
+        let mut fields = FieldReader::new(Structure::IdentityItem, bytes);
         let version = fields.u16()?;
         let socket = SocketAddress::parse(fields.bytes(SocketAddress::LENGTH)?)?;
-        let identity = Identity::take(&mut fields)?;
+        let identity = Identity::take_from(&mut fields)?;
         let state = fields.u8()?;
-        fields.end(IdentityItem { version, socket, identity, state })
+        fields.finish(IdentityItem { version, socket, identity, state })
     }
 
     pub(super) fn emit(&self) -> Vec<u8> {

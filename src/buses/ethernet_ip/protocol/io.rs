@@ -1,6 +1,6 @@
 //! Cyclic packets of a class 1 connection over UDP (reference 7).
 
-use super::fields::{Fields, PacketError, PacketField, Structure};
+use super::fields::{FieldReader, PacketError, PacketField, Structure};
 use super::items::{Item, ItemList};
 
 /// A cyclic packet.
@@ -44,12 +44,12 @@ impl RunIdleHeader {
     }
 
     /// Returns the encoded word.
-    pub const fn word(self) -> u32 {
+    pub const fn to_bits(self) -> u32 {
         self.0
     }
 
     /// Returns whether the data are valid.
-    pub const fn runs(self) -> bool {
+    pub const fn is_running(self) -> bool {
         self.0 & 1 == 1
     }
 }
@@ -69,16 +69,18 @@ impl IoPacket {
     /// Returns a [`PacketError`] if the packet is incomplete or does not consist of a sequenced address and connected
     /// data.
     pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
-        const WHAT: Structure = Structure::CyclicPacket;
+        const STRUCTURE: Structure = Structure::CyclicPacket;
         let items = ItemList::parse(bytes)?;
         let (connection, sequence, data) = match items.0.as_slice() {
             [Item::SequencedAddress { connection, sequence }, Item::ConnectedData(data), ..] => {
                 (*connection, *sequence, data)
             }
             // A UDP packet contains few enough items for this cast.
-            other => return Err(PacketError::Value { what: WHAT, field: PacketField::Items, got: other.len() as u32 }),
+            other => {
+                return Err(PacketError::Value { what: STRUCTURE, field: PacketField::Items, got: other.len() as u32 });
+            }
         };
-        let mut fields = Fields::new(WHAT, data);
+        let mut fields = FieldReader::new(STRUCTURE, data);
         let count = fields.u16()?;
         let header = match format {
             RealTimeFormat::Header => Some(RunIdleHeader(fields.u32()?)),

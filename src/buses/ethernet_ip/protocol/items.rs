@@ -2,7 +2,7 @@
 
 use core::net::Ipv4Addr;
 
-use super::fields::{Fields, PacketError, Structure};
+use super::fields::{FieldReader, PacketError, Structure};
 use super::identity::IdentityItem;
 
 /// A list of items. Each address precedes its data.
@@ -68,14 +68,14 @@ impl ItemList {
     /// # Errors
     /// Returns a [`PacketError`] if an item is incomplete or has the wrong length for its type, or if bytes remain.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::Items, bytes);
+        let mut fields = FieldReader::new(Structure::Items, bytes);
         let count = fields.u16()?;
         let mut items = Vec::new();
         for _ in 0..count {
             let (kind, length) = (fields.u16()?, fields.u16()?);
             items.push(Item::parse(kind, fields.bytes(length.into())?)?);
         }
-        fields.end(ItemList(items))
+        fields.finish(ItemList(items))
     }
 
     /// Returns the encoded list. Items longer than 65535 bytes are truncated.
@@ -129,21 +129,21 @@ impl ItemList {
 impl Item {
     fn parse(kind: u16, data: &[u8]) -> Result<Self, PacketError> {
         let item = match kind {
-            NULL => Fields::new(Structure::NullAddress, data).end(Item::Null)?,
+            NULL => FieldReader::new(Structure::NullAddress, data).finish(Item::Null)?,
             IDENTITY => Item::Identity(IdentityItem::parse(data)?),
             CONNECTED_ADDRESS => {
-                let mut fields = Fields::new(Structure::ConnectedAddress, data);
+                let mut fields = FieldReader::new(Structure::ConnectedAddress, data);
                 let connection = fields.u32()?;
-                fields.end(Item::ConnectedAddress(connection))?
+                fields.finish(Item::ConnectedAddress(connection))?
             }
             CONNECTED_DATA => Item::ConnectedData(data.to_vec()),
             UNCONNECTED_DATA => Item::UnconnectedData(data.to_vec()),
             SOCKET_TO_TARGET => Item::SocketToTarget(SocketAddress::parse(data)?),
             SOCKET_TO_ORIGINATOR => Item::SocketToOriginator(SocketAddress::parse(data)?),
             SEQUENCED_ADDRESS => {
-                let mut fields = Fields::new(Structure::SequencedAddress, data);
+                let mut fields = FieldReader::new(Structure::SequencedAddress, data);
                 let item = Item::SequencedAddress { connection: fields.u32()?, sequence: fields.u32()? };
-                fields.end(item)?
+                fields.finish(item)?
             }
             _ => Item::Unknown { kind, data: data.to_vec() },
         };
@@ -179,12 +179,12 @@ impl SocketAddress {
 
     /// Parses 16 bytes. The last eight are ignored.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::SocketAddress, bytes);
-        let family = u16::from_be_bytes(fields.array()?);
-        let port = u16::from_be_bytes(fields.array()?);
-        let address = Ipv4Addr::from(fields.array::<4>()?);
-        fields.array::<8>()?;
-        fields.end(SocketAddress { family, port, address })
+        let mut fields = FieldReader::new(Structure::SocketAddress, bytes);
+        let family = u16::from_be_bytes(fields.take_array()?);
+        let port = u16::from_be_bytes(fields.take_array()?);
+        let address = Ipv4Addr::from(fields.take_array::<4>()?);
+        fields.take_array::<8>()?;
+        fields.finish(SocketAddress { family, port, address })
     }
 
     pub(super) fn emit(&self) -> [u8; SocketAddress::LENGTH] {

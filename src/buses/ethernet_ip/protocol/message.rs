@@ -1,6 +1,6 @@
 //! CIP requests and replies (reference 7).
 
-use super::fields::{Fields, PacketError, PacketField, Structure};
+use super::fields::{FieldReader, PacketError, PacketField, Structure};
 use super::path::{EPath, LogicalKind};
 use super::status::GeneralStatus;
 
@@ -104,26 +104,26 @@ impl Request {
 
     /// Creates a request to read an attribute.
     pub fn get(class: u16, instance: u16, attribute: u16) -> Self {
-        Request { service: Service::GET, path: EPath::attribute(class, instance, attribute), data: Vec::new() }
+        Request { service: Service::GET, path: EPath::to_attribute(class, instance, attribute), data: Vec::new() }
     }
 
     /// Creates a request to set an attribute.
-    pub fn set(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
-        Request { service: Service::SET, path: EPath::attribute(class, instance, attribute), data }
+    pub fn set_attribute(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
+        Request { service: Service::SET, path: EPath::to_attribute(class, instance, attribute), data }
     }
 
     /// Creates a request to read all attributes of an object.
     pub fn get_all(class: u16, instance: u16) -> Self {
-        Request { service: Service::GET_ALL, path: EPath::instance(class, instance), data: Vec::new() }
+        Request { service: Service::GET_ALL, path: EPath::to_instance(class, instance), data: Vec::new() }
     }
 
     pub(super) fn for_connection_manager(service: Service, data: Vec<u8>) -> Self {
-        Request { service, path: EPath::instance(Request::CONNECTION_MANAGER, 1), data }
+        Request { service, path: EPath::to_instance(Request::CONNECTION_MANAGER, 1), data }
     }
 
     /// Returns the class to which the request is addressed.
-    pub fn class(&self) -> Option<u16> {
-        self.path.number(LogicalKind::Class)
+    pub fn class_id(&self) -> Option<u16> {
+        self.path.first_value(LogicalKind::Class)
     }
 
     /// Parses a request.
@@ -131,10 +131,10 @@ impl Request {
     /// # Errors
     /// Returns a [`PacketError`] if the bytes are a reply or the path is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::CipRequest, bytes);
+        let mut fields = FieldReader::new(Structure::CipRequest, bytes);
         let code = fields.u8()?;
         let service = Service::new(code).ok_or(fields.value(PacketField::Service, code))?;
-        let path = EPath::take(&mut fields)?;
+        let path = EPath::take_from(&mut fields)?;
         Ok(Request { service, path, data: fields.take_rest().to_vec() })
     }
 
@@ -147,12 +147,12 @@ impl Request {
     }
 
     /// Creates a successful reply.
-    pub fn done(&self, data: Vec<u8>) -> Reply {
+    pub fn success_reply(&self, data: Vec<u8>) -> Reply {
         Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
     }
 
     /// Creates a reply that refuses this request.
-    pub fn refused(&self, status: GeneralStatus) -> Reply {
+    pub fn error_reply(&self, status: GeneralStatus) -> Reply {
         Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
     }
 }
@@ -163,7 +163,7 @@ impl Reply {
     /// # Errors
     /// Returns a [`PacketError`] if the bytes are a request or are incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::CipReply, bytes);
+        let mut fields = FieldReader::new(Structure::CipReply, bytes);
         let code = fields.u8()?;
         let service = code.checked_sub(Service::REPLY_BIT).ok_or(fields.value(PacketField::Service, code))?;
         // The second byte is reserved.

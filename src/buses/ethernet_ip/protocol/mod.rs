@@ -33,7 +33,9 @@ pub use connection::{
 };
 pub use encapsulation::{Body, Command, Frame};
 pub use fields::{PacketError, PacketField, Structure};
-pub use forward::{ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen, ForwardOpenSuccess, Owner};
+pub use forward::{
+    ConnectionOwner, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen, ForwardOpenSuccess,
+};
 pub use identity::{Identity, IdentityItem, Revision};
 pub use io::{IoPacket, RealTimeFormat, RunIdleHeader};
 pub use items::{Item, ItemList, SocketAddress};

@@ -1,6 +1,6 @@
 //! Path of a CIP request: segments for class, instance, attribute and connection point, of 8 or 16 bits (reference 7).
 
-use super::fields::{Fields, PacketError, PacketField, Structure};
+use super::fields::{FieldReader, PacketError, PacketField, Structure};
 
 /// A path of segments, padded to whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -72,37 +72,37 @@ const KINDS: [(u8, LogicalKind); 4] = [
 /// First bytes of an electronic key: the segment type and the key format.
 const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
-const WHAT: Structure = Structure::Path;
+const STRUCTURE: Structure = Structure::Path;
 
 impl EPath {
     /// Creates the path to an object instance.
-    pub fn instance(class: u16, instance: u16) -> Self {
+    pub fn to_instance(class: u16, instance: u16) -> Self {
         EPath(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
     }
 
     /// Creates the path to an attribute of an object instance.
-    pub fn attribute(class: u16, instance: u16, attribute: u16) -> Self {
-        let EPath(mut segments) = EPath::instance(class, instance);
+    pub fn to_attribute(class: u16, instance: u16, attribute: u16) -> Self {
+        let EPath(mut segments) = EPath::to_instance(class, instance);
         segments.push(Segment::new(LogicalKind::Attribute, attribute));
         EPath(segments)
     }
 
     /// Creates the path to the assemblies of a cyclic connection. Their order is configuration, originator to target,
     /// and target to originator.
-    pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
+    pub fn to_assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
         const ASSEMBLY: u16 = 0x04;
-        let EPath(mut segments) = EPath::instance(ASSEMBLY, configuration);
+        let EPath(mut segments) = EPath::to_instance(ASSEMBLY, configuration);
         segments.extend([to_target, to_originator].map(|point| Segment::new(LogicalKind::ConnectionPoint, point)));
         EPath(segments)
     }
 
     /// Returns the first logical value of the given kind.
-    pub fn number(&self, wanted: LogicalKind) -> Option<u16> {
-        self.numbers(wanted).next()
+    pub fn first_value(&self, wanted: LogicalKind) -> Option<u16> {
+        self.values_of(wanted).next()
     }
 
     /// Returns all logical values of the given kind.
-    pub fn numbers(&self, wanted: LogicalKind) -> impl Iterator<Item = u16> {
+    pub fn values_of(&self, wanted: LogicalKind) -> impl Iterator<Item = u16> {
         self.0.iter().filter_map(move |segment| match segment {
             Segment::Logical { kind, number, .. } if *kind == wanted => Some(*number),
             _ => None,
@@ -114,10 +114,10 @@ impl EPath {
     /// # Errors
     /// Returns a [`PacketError`] if a segment is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(WHAT, bytes);
+        let mut fields = FieldReader::new(STRUCTURE, bytes);
         let mut segments = Vec::new();
         while !fields.is_empty() {
-            segments.push(Segment::take(&mut fields)?);
+            segments.push(Segment::take_from(&mut fields)?);
         }
         Ok(EPath(segments))
     }
@@ -127,7 +127,7 @@ impl EPath {
         self.0.iter().flat_map(Segment::emit).collect()
     }
 
-    pub(super) fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+    pub(super) fn take_from(fields: &mut FieldReader<'_>) -> Result<Self, PacketError> {
         let words = fields.u8()?;
         EPath::parse(fields.bytes(usize::from(words) * 2)?)
     }
@@ -151,7 +151,7 @@ impl Segment {
         Segment::Logical { kind, number, width }
     }
 
-    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+    fn take_from(fields: &mut FieldReader<'_>) -> Result<Self, PacketError> {
         let whole = fields.clone();
         let first = fields.u8()?;
         let wide = first & 1 == 1;

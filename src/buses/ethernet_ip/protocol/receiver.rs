@@ -29,7 +29,7 @@ impl Receiver {
         if let Some(why) = self.broken {
             return Err(why);
         }
-        self.take().inspect_err(|why| {
+        self.take_frame().inspect_err(|why| {
             self.broken = Some(*why);
             self.rest = std::mem::take(&mut self.bytes);
         })
@@ -42,12 +42,12 @@ impl Receiver {
 
     /// Returns the number of bytes that do not yet form a complete frame. If any remain when the connection ends, the
     /// last frame was truncated.
-    pub const fn pending(&self) -> usize {
+    pub const fn pending_len(&self) -> usize {
         self.bytes.len()
     }
 
-    fn take(&mut self) -> Result<Option<Frame>, PacketError> {
-        let Some(whole) = Frame::length(&self.bytes)?.and_then(|length| self.bytes.get(..length)) else {
+    fn take_frame(&mut self) -> Result<Option<Frame>, PacketError> {
+        let Some(whole) = Frame::total_length(&self.bytes)?.and_then(|length| self.bytes.get(..length)) else {
             return Ok(None);
         };
         let (frame, length) = (Frame::parse(whole)?, whole.len());
@@ -85,7 +85,7 @@ mod tests {
                 found.extend(std::iter::from_fn(|| receiver.next_frame().unwrap()));
             }
             assert_eq!(found, sent, "portions of {size}");
-            assert_eq!(receiver.pending(), 0);
+            assert_eq!(receiver.pending_len(), 0);
         }
     }
 
@@ -99,7 +99,7 @@ mod tests {
         let broken = PacketError::Value { what: Structure::Encapsulation, field: PacketField::Length, got: 65512 };
         assert_eq!(receiver.next_frame(), Err(broken));
         receiver.push(&frame(2, 0).emit());
-        assert_eq!((receiver.next_frame(), receiver.pending()), (Err(broken), 0));
+        assert_eq!((receiver.next_frame(), receiver.pending_len()), (Err(broken), 0));
     }
 
     proptest! {

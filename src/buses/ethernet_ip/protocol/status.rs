@@ -41,17 +41,17 @@ const fn row<C>(code: C, meaning: &'static str, remedy: &'static str) -> StatusT
     StatusTableRow { code, meaning, remedy }
 }
 
-const AGAIN: &str = "try again; if the error returns, restart the device";
-const DEFECT: &str = "a defect of this program: report it with a trace";
+const RETRY_REMEDY: &str = "try again; if the error returns, restart the device";
+const DEFECT_REMEDY: &str = "a defect of this program: report it with a trace";
 
 /// Known encapsulation status codes.
 pub const ENCAPSULATION_STATUS: [StatusTableRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::OK, "success", "nothing"),
     row(EncapsulationStatus(0x01), "command not supported", "use another command"),
-    row(EncapsulationStatus(0x02), "not enough memory for the command", AGAIN),
-    row(EncapsulationStatus(0x03), "malformed data", DEFECT),
+    row(EncapsulationStatus(0x02), "not enough memory for the command", RETRY_REMEDY),
+    row(EncapsulationStatus(0x03), "malformed data", DEFECT_REMEDY),
     row(EncapsulationStatus::NO_SESSION, "no such session", "connect again: the device has closed the session"),
-    row(EncapsulationStatus(0x65), "wrong length", DEFECT),
+    row(EncapsulationStatus(0x65), "wrong length", DEFECT_REMEDY),
     row(EncapsulationStatus::VERSION, "version not supported", "the device uses another version of EtherNet/IP"),
 ];
 
@@ -60,8 +60,8 @@ pub const GENERAL_STATUS: [StatusTableRow<GeneralStatus>; 31] = [
     row(GeneralStatus::OK, "success", "nothing"),
     row(GeneralStatus::CONNECTION, "connection failure", "see the words that follow"),
     row(GeneralStatus(0x02), "resources unavailable", "close another connection to the device, or restart it"),
-    row(GeneralStatus(0x03), "invalid service parameter", DEFECT),
-    row(GeneralStatus(0x04), "path segment error", DEFECT),
+    row(GeneralStatus(0x03), "invalid service parameter", DEFECT_REMEDY),
+    row(GeneralStatus(0x04), "path segment error", DEFECT_REMEDY),
     row(GeneralStatus(0x05), "path unknown", "use an object that the device has; a hub has only those of its drives"),
     row(GeneralStatus(0x06), "partial transfer", "request less data at a time"),
     row(GeneralStatus(0x07), "connection lost", "connect again"),
@@ -75,52 +75,52 @@ pub const GENERAL_STATUS: [StatusTableRow<GeneralStatus>; 31] = [
     row(GeneralStatus(0x0F), "no permission", "check the access rights"),
     row(GeneralStatus(0x10), "device state conflict", "stop the drive, or leave the state, then try again"),
     row(GeneralStatus(0x11), "reply too long", "request less data at a time"),
-    row(GeneralStatus(0x12), "value would be fragmented", DEFECT),
+    row(GeneralStatus(0x12), "value would be fragmented", DEFECT_REMEDY),
     row(GeneralStatus(0x13), "not enough data", "give a value of the attribute's length"),
     row(GeneralStatus(0x14), "attribute not supported", "use another attribute"),
     row(GeneralStatus(0x15), "too much data", "give a value of the attribute's length"),
     row(GeneralStatus(0x16), "object does not exist", "use an object that the device has"),
     row(GeneralStatus(0x18), "no stored attribute data", "save the attributes first"),
-    row(GeneralStatus(0x19), "attributes could not be stored", AGAIN),
-    row(GeneralStatus(0x1C), "attributes missing in a list", DEFECT),
+    row(GeneralStatus(0x19), "attributes could not be stored", RETRY_REMEDY),
+    row(GeneralStatus(0x1C), "attributes missing in a list", DEFECT_REMEDY),
     row(GeneralStatus(0x1E), "embedded service failed", "see the words that follow"),
     row(GeneralStatus(0x1F), "vendor-specific error", "see the words that follow, and the device's manual"),
     row(GeneralStatus(0x20), "invalid parameter", "give a value within its range"),
-    row(GeneralStatus(0x26), "invalid path length", DEFECT),
+    row(GeneralStatus(0x26), "invalid path length", DEFECT_REMEDY),
     row(GeneralStatus(0x2C), "attribute cannot be read", "it can only be set"),
 ];
 
-const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> ExtendedStatusTableRow {
+const fn connection_row(code: u16, meaning: &'static str, remedy: &'static str) -> ExtendedStatusTableRow {
     ExtendedStatusTableRow { general: GeneralStatus::CONNECTION, code, meaning, remedy }
 }
 
 const OTHER_MASTER: &str = "close the connection of the other master first";
-const SIZE: &str = "set parameter words and number of drives as in the device";
+const SIZE_REMEDY: &str = "set parameter words and number of drives as in the device";
 
 /// Known reasons for a failure to open or close a connection.
 pub const EXTENDED_STATUS: [ExtendedStatusTableRow; 18] = [
-    connection(0x0100, "connection already in use", "wait for its time-out, then connect again"),
-    connection(0x0103, "transport class and trigger not supported", DEFECT),
-    connection(0x0106, "another master owns the outputs", OTHER_MASTER),
-    connection(0x0107, "connection does not exist", "no action needed: it has already ended"),
-    connection(0x0108, "connection type not supported", "request a multicast connection from the target"),
-    connection(0x0109, "connection size not supported", SIZE),
-    connection(0x0111, "interval not supported", "request a longer interval"),
-    connection(0x0113, "no connection available", OTHER_MASTER),
-    connection(
+    connection_row(0x0100, "connection already in use", "wait for its time-out, then connect again"),
+    connection_row(0x0103, "transport class and trigger not supported", DEFECT_REMEDY),
+    connection_row(0x0106, "another master owns the outputs", OTHER_MASTER),
+    connection_row(0x0107, "connection does not exist", "no action needed: it has already ended"),
+    connection_row(0x0108, "connection type not supported", "request a multicast connection from the target"),
+    connection_row(0x0109, "connection size not supported", SIZE_REMEDY),
+    connection_row(0x0111, "interval not supported", "request a longer interval"),
+    connection_row(0x0113, "no connection available", OTHER_MASTER),
+    connection_row(
         0x0114,
         "vendor or product does not match the key",
         "open it without a key, or check which device it is",
     ),
-    connection(0x0115, "device type does not match the key", "open it without a key, or check which device it is"),
-    connection(0x0116, "revision does not match the key", "open it without a key, or check which device it is"),
-    connection(0x0117, "assemblies do not exist", "use the assemblies of the device: 104, 100, 101"),
-    connection(0x0127, "size from originator to target not supported", SIZE),
-    connection(0x0128, "size from target to originator not supported", SIZE),
-    connection(0x0203, "connection timed out", "check cables and switches, or request a longer interval"),
-    connection(0x0204, "request timed out", AGAIN),
-    connection(0x0312, "link address does not exist", "omit routes: the device is addressed directly"),
-    connection(0x0315, "path segment not supported", DEFECT),
+    connection_row(0x0115, "device type does not match the key", "open it without a key, or check which device it is"),
+    connection_row(0x0116, "revision does not match the key", "open it without a key, or check which device it is"),
+    connection_row(0x0117, "assemblies do not exist", "use the assemblies of the device: 104, 100, 101"),
+    connection_row(0x0127, "size from originator to target not supported", SIZE_REMEDY),
+    connection_row(0x0128, "size from target to originator not supported", SIZE_REMEDY),
+    connection_row(0x0203, "connection timed out", "check cables and switches, or request a longer interval"),
+    connection_row(0x0204, "request timed out", RETRY_REMEDY),
+    connection_row(0x0312, "link address does not exist", "omit routes: the device is addressed directly"),
+    connection_row(0x0315, "path segment not supported", DEFECT_REMEDY),
 ];
 
 impl EncapsulationStatus {

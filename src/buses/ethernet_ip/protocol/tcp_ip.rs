@@ -2,7 +2,7 @@
 
 use core::net::Ipv4Addr;
 
-use super::fields::{Fields, PacketError, Structure, ascii, text};
+use super::fields::{FieldReader, PacketError, Structure, ascii, text};
 
 /// Configuration control, attribute 3. The default 0 selects the stored address. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -85,9 +85,9 @@ impl ConfigurationControl {
     /// # Errors
     /// Returns a [`PacketError`] if the length is not four.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::ConfigurationControl, data);
+        let mut fields = FieldReader::new(Structure::ConfigurationControl, data);
         let word = fields.u32()?;
-        fields.end(ConfigurationControl(word))
+        fields.finish(ConfigurationControl(word))
     }
 
     /// Returns the attribute as bytes.
@@ -106,7 +106,7 @@ impl ConfigurationControl {
     }
 
     /// Returns a copy with the given source of the IP address.
-    pub const fn with(self, source: AddressSource) -> Self {
+    pub const fn with_source(self, source: AddressSource) -> Self {
         let number = match source {
             AddressSource::Stored => 0,
             AddressSource::Bootp => 1,
@@ -127,7 +127,7 @@ impl InterfaceConfiguration {
     /// # Errors
     /// Returns a [`PacketError`] if the attribute is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new(Structure::InterfaceConfiguration, data);
+        let mut fields = FieldReader::new(Structure::InterfaceConfiguration, data);
         let mut address = || fields.u32().map(Ipv4Addr::from);
         let (own, mask, gateway) = (address()?, address()?, address()?);
         let name_servers = [address()?, address()?];
@@ -136,7 +136,7 @@ impl InterfaceConfiguration {
         if length % 2 == 1 && !fields.is_empty() {
             fields.u8()?;
         }
-        fields.end(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
+        fields.finish(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
     }
 
     /// Checks that a device would be reachable. The address must be valid in a network with this mask, and the gateway
@@ -144,7 +144,7 @@ impl InterfaceConfiguration {
     ///
     /// Returns an [`AddressError`] if an address, the mask or the domain name is not usable.
     /// [`AddressError`].
-    pub fn check(&self) -> Result<(), AddressError> {
+    pub fn check_reachable(&self) -> Result<(), AddressError> {
         let InterfaceConfiguration { address, mask, gateway, .. } = *self;
         check_device_address(address)?;
         let bits = u32::from(mask);
@@ -217,7 +217,7 @@ mod tests {
             name_servers: [Ipv4Addr::UNSPECIFIED; 2],
             domain: String::new(),
         };
-        configuration.check()
+        configuration.check_reachable()
     }
 
     /// The first, last and broadcast addresses match `ipaddress.ip_network("192.168.1.64/26")` of Python: 64, 65…126,
@@ -267,14 +267,14 @@ mod tests {
             name_servers: [Ipv4Addr::new(9, 9, 9, 9), Ipv4Addr::UNSPECIFIED],
             domain: "line-2.plant".to_owned(),
         };
-        assert_eq!(good.check(), Ok(()));
+        assert_eq!(good.check_reachable(), Ok(()));
         let group = Ipv4Addr::new(224, 0, 0, 1);
         let servers = [Ipv4Addr::UNSPECIFIED, group];
         let asked = InterfaceConfiguration { name_servers: servers, ..good.clone() };
-        assert_eq!(asked.check(), Err(AddressError::Reserved(group)));
+        assert_eq!(asked.check_reachable(), Err(AddressError::Reserved(group)));
         for domain in ["two words", "straße", &"a".repeat(49)] {
             let named = InterfaceConfiguration { domain: domain.to_owned(), ..good.clone() };
-            assert_eq!(named.check(), Err(AddressError::Domain(domain.to_owned())));
+            assert_eq!(named.check_reachable(), Err(AddressError::Domain(domain.to_owned())));
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::bits::{hex, parse_hex};
 mod any;
 
 const SESSION: u32 = 0x1234_5678;
-const OWNER: Owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0x0000_ABCD };
+const OWNER: ConnectionOwner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0x0000_ABCD };
 
 fn bytes(text: &str) -> Vec<u8> {
     parse_hex(text).unwrap()
@@ -29,20 +29,20 @@ fn published_frames_match() {
     let cases = [
         ("register", register.clone(), Frame::register([0; 8])),
         ("list identity", format!("63 00 00 00 {zeros}"), Frame::list_identity([0; 8])),
-        ("get 107", get, Frame::unconnected(SESSION, [0; 8], asked.emit())),
+        ("get 107", get, Frame::unconnected_message(SESSION, [0; 8], asked.emit())),
     ];
     for (label, text, frame) in cases {
         assert_eq!(hex(&frame.emit()), hex(&bytes(&text)), "{label}");
         assert_eq!(Frame::parse(&bytes(&text)), Ok(frame), "{label}");
     }
     let request = Frame::parse(&bytes(&register)).unwrap();
-    assert_eq!(request.body(), Ok(Body::Register { version: 1, options: 0 }));
+    assert_eq!(request.parse_body(), Ok(Body::Register { version: 1, options: 0 }));
     let reply = bytes(&register.replacen("00 04 00 00 00 00 00", "00 04 00 78 56 34 12", 1));
-    let given = Frame { session: SESSION, ..request.reply(&request.body().unwrap()) };
+    let given = Frame { session: SESSION, ..request.reply(&request.parse_body().unwrap()) };
     assert_eq!(hex(&given.emit()), hex(&reply));
-    assert!(Frame::parse(&reply).unwrap().answers(&request));
+    assert!(Frame::parse(&reply).unwrap().is_reply_to(&request));
     assert_eq!(
-        Request::parse(Frame::unconnected(1, [0; 8], asked.emit()).body().unwrap().message().unwrap()),
+        Request::parse(Frame::unconnected_message(1, [0; 8], asked.emit()).parse_body().unwrap().message().unwrap()),
         Ok(asked)
     );
 }
@@ -50,17 +50,17 @@ fn published_frames_match() {
 /// A reply to an earlier request, to another session or command is none to this one.
 #[test]
 fn a_reply_matches_only_its_own_request() {
-    let request = Frame::unconnected(SESSION, [7; 8], vec![0x0E]);
-    assert!(request.refusal(EncapsulationStatus::NO_SESSION).answers(&request));
+    let request = Frame::unconnected_message(SESSION, [7; 8], vec![0x0E]);
+    assert!(request.error_reply(EncapsulationStatus::NO_SESSION).is_reply_to(&request));
     let other = |change: fn(&mut Frame)| {
         let mut frame = request.clone();
         change(&mut frame);
-        frame.answers(&request)
+        frame.is_reply_to(&request)
     };
     assert!(!other(|frame| frame.context = [6; 8]));
     assert!(!other(|frame| frame.session = 1));
     assert!(!other(|frame| frame.command = Command::REGISTER_SESSION));
-    assert_eq!(Frame::unregister(SESSION).emit()[..8], bytes("66 00 00 00 78 56 34 12"));
+    assert_eq!(Frame::unregister_session(SESSION).emit()[..8], bytes("66 00 00 00 78 56 34 12"));
 }
 
 /// Reference 9, CIP.
@@ -70,10 +70,10 @@ fn published_requests_match() {
         ("get 107", "0E 03 20 65 24 01 30 6B", Request::get(0x65, 1, 107)),
         ("get 47", "0E 03 20 64 24 01 30 2F", Request::get(0x64, 1, 47)),
         ("get 207", "0E 03 20 66 24 01 30 6B", Request::get(0x66, 1, 0x6B)),
-        ("set 158", "10 03 20 65 24 01 30 9E 00 00 01 FE", Request::set(0x65, 1, 0x9E, bytes("00 00 01 FE"))),
-        ("set 101", "10 03 20 65 24 01 30 65 00 04", Request::set(0x65, 1, 101, bytes("00 04"))),
-        ("set 152", "10 03 20 65 24 01 30 98 01", Request::set(0x65, 1, 152, vec![1])),
-        ("set 47", "10 03 20 64 24 01 30 2F 01 00", Request::set(0x64, 1, 47, vec![1, 0])),
+        ("set 158", "10 03 20 65 24 01 30 9E 00 00 01 FE", Request::set_attribute(0x65, 1, 0x9E, bytes("00 00 01 FE"))),
+        ("set 101", "10 03 20 65 24 01 30 65 00 04", Request::set_attribute(0x65, 1, 101, bytes("00 04"))),
+        ("set 152", "10 03 20 65 24 01 30 98 01", Request::set_attribute(0x65, 1, 152, vec![1])),
+        ("set 47", "10 03 20 64 24 01 30 2F 01 00", Request::set_attribute(0x64, 1, 47, vec![1, 0])),
         ("control", "0E 03 20 F5 24 01 30 03", Request::get(ConfigurationControl::CLASS, 1, 3)),
         // By hand: segments of a class and an attribute above 255 are wide, 21 00 and 31 00 before the number.
         ("wide", "0E 05 21 00 2C 01 24 01 31 00 34 12", Request::get(0x012C, 1, 0x1234)),
@@ -84,11 +84,11 @@ fn published_requests_match() {
         assert_eq!(Request::parse(&bytes(text)), Ok(request), "{label}");
     }
     let position = Reply::parse(&bytes("8E 00 00 00 00 80 02 00")).unwrap();
-    assert_eq!(position, Request::get(0x65, 1, 107).done(bytes("00 80 02 00")));
+    assert_eq!(position, Request::get(0x65, 1, 107).success_reply(bytes("00 80 02 00")));
     assert_eq!(hex(&position.emit()), "8E 00 00 00 00 80 02 00");
-    let set = Request::set(0x65, 1, 0x9E, Vec::new());
+    let set = Request::set_attribute(0x65, 1, 0x9E, Vec::new());
     for (text, reply) in
-        [("90 00 00 00", set.done(Vec::new())), ("90 00 09 00", set.refused(GeneralStatus::INVALID_VALUE))]
+        [("90 00 00 00", set.success_reply(Vec::new())), ("90 00 09 00", set.error_reply(GeneralStatus::INVALID_VALUE))]
     {
         assert_eq!((Reply::parse(&bytes(text)), hex(&reply.emit())), (Ok(reply), text.to_owned()));
     }
@@ -112,9 +112,9 @@ fn every_path_round_trips() {
     let key = ElectronicKey { vendor: 1010, device_type: 12, product_code: 1, major: 0x81, minor: 2 };
     let path = EPath::parse(&bytes("34 04 F2 03 0C 00 01 00 81 02")).unwrap();
     assert_eq!(path, EPath(vec![Segment::Key(key)]));
-    let assemblies = EPath::assemblies(104, 100, 101);
+    let assemblies = EPath::to_assemblies(104, 100, 101);
     assert_eq!(hex(&assemblies.emit()), "20 04 24 68 2C 64 2C 65");
-    assert_eq!(assemblies.numbers(LogicalKind::ConnectionPoint).collect::<Vec<_>>(), [100, 101]);
+    assert_eq!(assemblies.values_of(LogicalKind::ConnectionPoint).collect::<Vec<_>>(), [100, 101]);
     for cut in ["20", "21 00", "21 01 04 00", "34 04 00", "80 02 00 00"] {
         assert!(EPath::parse(&bytes(cut)).is_err(), "{cut}");
     }
@@ -138,7 +138,7 @@ fn open() -> ForwardOpen {
         to_originator_interval_us: 10_000,
         to_originator: parameters(18),
         transport: Transport::CYCLIC,
-        path: EPath::assemblies(104, 100, 101),
+        path: EPath::to_assemblies(104, 100, 101),
     }
 }
 
@@ -149,7 +149,7 @@ fn published_connection_matches() {
                 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
     assert_eq!(hex(&open().request().emit()), text);
     let request = Request::parse(&bytes(text)).unwrap();
-    assert_eq!((request.service, request.class()), (Service::FORWARD_OPEN, Some(6)));
+    assert_eq!((request.service, request.class_id()), (Service::FORWARD_OPEN, Some(6)));
     let parsed = ForwardOpen::parse(&request.data).unwrap();
     assert_eq!(parsed, open());
     assert_eq!(parsed.timeout.duration(), Duration::from_secs(2));
@@ -165,12 +165,12 @@ fn published_connection_matches() {
         to_originator_interval_us: 10_000,
         application: Vec::new(),
     };
-    assert_eq!(hex(&request.done(opened.emit()).emit()), text);
+    assert_eq!(hex(&request.success_reply(opened.emit()).emit()), text);
     assert_eq!(ForwardOpenSuccess::parse(&Reply::parse(&bytes(text)).unwrap().data), Ok(opened));
 
     let text = "4E 02 20 06 24 01 03 FA 01 00 34 12 CD AB 00 00 04 00 20 04 24 68 2C 64 2C 65";
     let close =
-        ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner: OWNER, path: EPath::assemblies(104, 100, 101) };
+        ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner: OWNER, path: EPath::to_assemblies(104, 100, 101) };
     assert_eq!(hex(&close.request().emit()), text);
     assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
 }
@@ -211,7 +211,7 @@ fn published_network_parameters_match() {
         (Multicast, 18, 0x2812),
     ] {
         let parameters = NetworkParameters::new(kind, NetworkPriority::Scheduled, size).unwrap();
-        assert_eq!(parameters.word(), word);
+        assert_eq!(parameters.to_bits(), word);
         assert_eq!((parameters.kind(), parameters.priority()), (kind, NetworkPriority::Scheduled), "{word:04X}");
         assert_eq!(
             (parameters.size(), parameters.is_variable(), parameters.has_redundant_owner()),
@@ -224,16 +224,16 @@ fn published_network_parameters_match() {
     assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
     let odd = NetworkParameters::from_word(0xFE05);
     assert_eq!((odd.kind(), odd.priority()), (NetworkType::Reserved, NetworkPriority::Urgent));
-    assert!(odd.is_variable() && odd.has_redundant_owner() && odd.word() == 0xFE05);
+    assert!(odd.is_variable() && odd.has_redundant_owner() && odd.to_bits() == 0xFE05);
     let intervals: Vec<u32> =
         (0..=8).filter_map(ConnectionTimeout::new).map(ConnectionTimeout::interval_multiplier).collect();
     assert_eq!(intervals, [4, 8, 16, 32, 64, 128, 256, 512]);
     assert_eq!(
-        (Transport::CYCLIC.class(), Transport::CYCLIC.trigger(), Transport::CYCLIC.server()),
+        (Transport::CYCLIC.transport_class(), Transport::CYCLIC.trigger(), Transport::CYCLIC.is_server()),
         (1, Trigger::Cyclic, false)
     );
     let other = Transport::from_byte(0xA3);
-    assert_eq!((other.class(), other.trigger(), other.server()), (3, Trigger::Application, true));
+    assert_eq!((other.transport_class(), other.trigger(), other.is_server()), (3, Trigger::Application, true));
 }
 
 /// Reference 9, UDP both ways.
@@ -253,7 +253,7 @@ fn published_cyclic_packets_match() {
         assert_eq!(hex(&packet.emit()), text);
         assert_eq!(IoPacket::parse(&bytes(text), format), Ok(packet));
     }
-    assert!(RunIdleHeader::RUN.runs() && !RunIdleHeader::IDLE.runs());
+    assert!(RunIdleHeader::RUN.is_running() && !RunIdleHeader::IDLE.is_running());
     let short =
         ItemList(vec![Item::SequencedAddress { connection: 1, sequence: 1 }, Item::ConnectedData(vec![1, 0, 1])]);
     let cut = Err(PacketError::Short { what: Structure::CyclicPacket, got: 3 });
@@ -272,7 +272,7 @@ fn an_identity_item_is_parsed() {
                 45 52 44 52 49 56 45 03";
     let text = format!("63 00 32 00 {} 01 00 0C 00 2C 00 {item}", "00 ".repeat(20));
     let frame = Frame::parse(&bytes(&text)).unwrap();
-    let Body::List(items) = frame.body().unwrap() else { panic!("no list") };
+    let Body::List(items) = frame.parse_body().unwrap() else { panic!("no list") };
     let expected = IdentityItem {
         version: 1,
         socket: SocketAddress::new(Ipv4Addr::new(192, 168, 1, 5), EXPLICIT_PORT),
@@ -293,8 +293,8 @@ fn an_identity_item_is_parsed() {
     // The object's attributes are the same, from the vendor on and without the state.
     let all = bytes(item)[18..43].to_vec();
     assert_eq!((Identity::parse_all(&all), expected.identity.emit_all()), (Ok(expected.identity.clone()), all));
-    assert_eq!(expected.identity.attribute(6), Some(bytes("67 12 00 00")));
-    assert_eq!(expected.identity.attribute(8), None);
+    assert_eq!(expected.identity.attribute_bytes(6), Some(bytes("67 12 00 00")));
+    assert_eq!(expected.identity.attribute_bytes(8), None);
 }
 
 /// By hand: C0A80105h = 192.168.1.5 and so on, low byte first; a text of three with its length in two bytes, and a byte
@@ -313,10 +313,10 @@ fn the_interface_configuration_is_parsed() {
     assert_eq!(InterfaceConfiguration::parse(&bytes(text)), Ok(configuration));
     let control = ConfigurationControl::parse(&bytes("12 00 00 00")).unwrap();
     assert_eq!(control.source(), AddressSource::Dhcp);
-    assert_eq!(control.with(AddressSource::Stored).emit(), [0x10, 0, 0, 0]);
+    assert_eq!(control.with_source(AddressSource::Stored).emit(), [0x10, 0, 0, 0]);
     for number in 0..16 {
         let control = ConfigurationControl::parse(&[number, 0, 0, 0]).unwrap();
-        assert_eq!(control.with(control.source()), control);
+        assert_eq!(control.with_source(control.source()), control);
     }
     assert!(ConfigurationControl::parse(&[2]).is_err());
 }

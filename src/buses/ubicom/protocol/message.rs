@@ -56,7 +56,7 @@ pub enum RequestError {
 
 /// The reply to a write request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Written {
+pub enum WriteReply {
     /// The write was acknowledged (90h).
     Acknowledged,
     /// The write was refused (A0h).
@@ -71,7 +71,7 @@ pub enum Reply {
     /// Register value, in reply to a read request.
     Value(u8),
     /// Result of a write request.
-    Written(Written),
+    Written(WriteReply),
     /// Position, in reply to command 03h.
     Position(PositionWord),
 }
@@ -207,22 +207,22 @@ pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
     }
 }
 
-impl Written {
+impl WriteReply {
     /// Decodes the byte of a reply.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
-            0x90 => Written::Acknowledged,
-            0xA0 => Written::Refused,
-            _ => Written::Unknown(byte),
+            0x90 => WriteReply::Acknowledged,
+            0xA0 => WriteReply::Refused,
+            _ => WriteReply::Unknown(byte),
         }
     }
 
     /// Returns the byte of the reply.
     pub const fn byte(self) -> u8 {
         match self {
-            Written::Acknowledged => 0x90,
-            Written::Refused => 0xA0,
-            Written::Unknown(byte) => byte,
+            WriteReply::Acknowledged => 0x90,
+            WriteReply::Refused => 0xA0,
+            WriteReply::Unknown(byte) => byte,
         }
     }
 }
@@ -260,7 +260,7 @@ impl Reply {
         }
         match (command, frame.payload) {
             (Command::Read, [value]) => Ok(Reply::Value(*value)),
-            (Command::Write, [status]) => Ok(Reply::Written(Written::from_byte(*status))),
+            (Command::Write, [status]) => Ok(Reply::Written(WriteReply::from_byte(*status))),
             (Command::Position, [b0, b1, b2, b3, b4]) => {
                 Ok(Reply::Position(PositionWord::parse([*b0, *b1, *b2, *b3, *b4])))
             }
@@ -307,8 +307,8 @@ mod tests {
         let cases = [
             (Reply::Value(0x4B), "80 01 01 01 00 4B 31"),
             (Reply::Value(0x1C), "80 01 01 01 00 1C 60"),
-            (Reply::Written(Written::Acknowledged), "80 01 02 01 00 90 EB"),
-            (Reply::Written(Written::Refused), "80 01 02 01 00 A0 DB"),
+            (Reply::Written(WriteReply::Acknowledged), "80 01 02 01 00 90 EB"),
+            (Reply::Written(WriteReply::Refused), "80 01 02 01 00 A0 DB"),
             (word(0x2469_8000), "80 01 03 05 00 00 80 69 24 00 69"),
             (word(0), "80 01 03 05 00 00 00 00 00 00 76"),
             (word(0x1_FFFF_FFFF), "80 01 03 05 00 FF FF FF FF 01 79"),
@@ -366,7 +366,7 @@ mod tests {
                 prop_assert_eq!(Request::parse(&Frame::parse(&bytes).unwrap(), order), Ok(request));
             }
             let position = Reply::Position(PositionWord::new(word).unwrap());
-            for reply in [Reply::Value(value), Reply::Written(Written::from_byte(value)), position] {
+            for reply in [Reply::Value(value), Reply::Written(WriteReply::from_byte(value)), position] {
                 let bytes = reply.emit();
                 prop_assert_eq!(Reply::parse(&Frame::parse(&bytes).unwrap(), reply.command()), Ok(reply));
             }

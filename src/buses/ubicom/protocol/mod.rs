@@ -16,7 +16,7 @@ mod receiver;
 use std::time::Duration;
 
 pub use frame::{Frame, FrameError, MAX_PAYLOAD, NODE, SYNC};
-pub use message::{Command, Reply, ReplyError, Request, RequestError, Written, byte_order_from_reply};
+pub use message::{Command, Reply, ReplyError, Request, RequestError, WriteReply, byte_order_from_reply};
 pub use position::PositionWord;
 pub use receiver::Receiver;
 

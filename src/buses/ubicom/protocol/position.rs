@@ -26,7 +26,7 @@ impl PositionWord {
     }
 
     /// Returns the word as a number of 40 bits.
-    pub const fn word(self) -> u64 {
+    pub const fn to_u64(self) -> u64 {
         self.0
     }
 }
@@ -47,7 +47,7 @@ mod tests {
         fn position_words_round_trip(bytes: [u8; 5]) {
             let word = PositionWord::parse(bytes);
             prop_assert_eq!(word.emit(), bytes);
-            prop_assert_eq!(PositionWord::new(word.word()), Some(word));
+            prop_assert_eq!(PositionWord::new(word.to_u64()), Some(word));
         }
     }
 }

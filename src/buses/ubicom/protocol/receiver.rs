@@ -13,7 +13,7 @@ pub struct Receiver {
 }
 
 /// The interpretation of the first bytes in the buffer.
-enum Head {
+enum FrameHead {
     /// More bytes are required.
     Partial,
     /// A complete frame of the given length.
@@ -36,10 +36,10 @@ impl Receiver {
     /// Returns the next complete frame, skipping any preceding bytes that do not belong to a frame.
     pub fn next_frame(&mut self) -> Option<Vec<u8>> {
         loop {
-            match self.head() {
-                Head::Partial => return None,
-                Head::Frame(length) => return Some(self.bytes.drain(..length).collect()),
-                Head::Other => self.skip(),
+            match self.classify_head() {
+                FrameHead::Partial => return None,
+                FrameHead::Frame(length) => return Some(self.bytes.drain(..length).collect()),
+                FrameHead::Other => self.skip_byte(),
             }
         }
     }
@@ -54,7 +54,7 @@ impl Receiver {
             if self.bytes.is_empty() {
                 return None;
             }
-            self.skip();
+            self.skip_byte();
         }
     }
 
@@ -64,29 +64,29 @@ impl Receiver {
     }
 
     /// Returns the total number of received bytes that did not belong to a frame.
-    pub const fn skipped(&self) -> u64 {
+    pub const fn skipped_count(&self) -> u64 {
         self.skipped
     }
 
-    fn head(&self) -> Head {
+    fn classify_head(&self) -> FrameHead {
         match self.bytes.as_slice() {
-            [] | [SYNC] => Head::Partial,
-            [SYNC, node, ..] if *node != self.node => Head::Other,
+            [] | [SYNC] => FrameHead::Partial,
+            [SYNC, node, ..] if *node != self.node => FrameHead::Other,
             [SYNC, _, _, low, high, ..] => {
                 let payload = usize::from(u16::from_le_bytes([*low, *high]));
                 match self.bytes.get(..payload + Frame::OVERHEAD) {
-                    _ if payload > MAX_PAYLOAD => Head::Other,
-                    None => Head::Partial,
-                    Some(frame) if Frame::parse(frame).is_ok() => Head::Frame(frame.len()),
-                    Some(_) => Head::Other,
+                    _ if payload > MAX_PAYLOAD => FrameHead::Other,
+                    None => FrameHead::Partial,
+                    Some(frame) if Frame::parse(frame).is_ok() => FrameHead::Frame(frame.len()),
+                    Some(_) => FrameHead::Other,
                 }
             }
-            [SYNC, ..] => Head::Partial,
-            _ => Head::Other,
+            [SYNC, ..] => FrameHead::Partial,
+            _ => FrameHead::Other,
         }
     }
 
-    fn skip(&mut self) {
+    fn skip_byte(&mut self) {
         // Skips at least one byte, up to a possible start of a frame.
         let rest = self.bytes.get(1..).unwrap_or_default();
         let count = 1 + rest.iter().position(|byte| *byte == SYNC).unwrap_or(rest.len());
@@ -123,7 +123,7 @@ mod tests {
                 found.extend(frames(&mut receiver, &hex(portion)));
             }
             assert_eq!(found, [READ, VALUE, TRICKY], "portions of {size}");
-            assert!(!receiver.is_waiting() && receiver.skipped() == 0);
+            assert!(!receiver.is_waiting() && receiver.skipped_count() == 0);
         }
     }
 
@@ -131,7 +131,7 @@ mod tests {
     fn the_next_frame_after_damage_is_found() {
         let mut receiver = Receiver::new(NODE);
         assert_eq!(frames(&mut receiver, &format!("55 80 80 {VALUE}")), [VALUE], "noise before");
-        assert_eq!(receiver.skipped(), 3);
+        assert_eq!(receiver.skipped_count(), 3);
         let damaged = VALUE.replace("4B", "4A");
         assert_eq!(frames(&mut receiver, &format!("{damaged} {READ}")), [READ], "a wrong checksum");
         assert_eq!(frames(&mut receiver, &format!("80 01 01 FF FF {READ}")), [READ], "an impossible length");
@@ -177,7 +177,7 @@ mod tests {
             found.extend(std::iter::from_fn(|| receiver.next_frame()));
             prop_assert_eq!(found.last().map(|frame| hex(frame)), Some(VALUE.to_owned()));
             let bytes: usize = found.iter().map(Vec::len).sum();
-            prop_assert_eq!(bytes as u64 + receiver.skipped(), noise.len() as u64 + 7);
+            prop_assert_eq!(bytes as u64 + receiver.skipped_count(), noise.len() as u64 + 7);
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::devices::biss::state::TEXTS;
 use serde_json::json;
 
 use super::args::{BissAction, DoOptions};
-use super::plan::{CALIBRATION, change_lines, commit, operations, prepare, results, results_text};
+use super::plan::{CALIBRATION, change_lines, commit_plan, operations_json, prepare_plan, results_json, results_text};
 use super::run::{Runner, registers};
 use crate::app::{KindRegistry, explain};
 use crate::cli::args::{ActionArgs, CommonArgs};
@@ -27,11 +27,11 @@ use crate::devices::biss::state::explain as words;
 use crate::result_of;
 
 /// Time for the user to turn the motor as required.
-const PERSON: Duration = Duration::from_secs(300);
+const OPERATOR_TIMEOUT: Duration = Duration::from_secs(300);
 
 const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back and mounting";
 
-pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
+pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.parse_action(KIND, ACTIONS)?, words.as_slice()) {
@@ -44,18 +44,18 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
             let run = MountingSteps { wiegand: Some(!words.is_empty()), ..MountingSteps::default() };
             run_guided(common, output, act, run)
         }
-        (BissAction::Mounting, words) => run_guided(common, output, act, mounting(output, words)?),
+        (BissAction::Mounting, words) => run_guided(common, output, act, parse_mounting_steps(output, words)?),
         (BissAction::Filter, [name]) => {
             let filter = match *name {
                 "balanced" => PositionFilter::Balanced,
                 "dynamic" => PositionFilter::Dynamic,
                 _ => return Err(takes("balanced or dynamic")),
             };
-            change(common, output, act, |_| Ok(Change::SelectFilter(filter)))
+            run_change(common, output, act, |_| Ok(Change::SelectFilter(filter)))
         }
         (BissAction::Preset, words) => {
             let wish = PresetArguments::read(words)?;
-            change(common, output, act, |runner| wish.change(runner))
+            run_change(common, output, act, |runner| wish.to_change(runner))
         }
         (BissAction::Check | BissAction::LeadBack | BissAction::Calibrate, _) => Err(takes("no argument")),
         (BissAction::WiegandTest, _) => Err(takes("nothing or \"save\"")),
@@ -64,7 +64,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
 }
 
 fn check_device(common: &CommonArgs, output: &Output) -> Result {
-    result_of!(Runner::open(common)?.run(BissJob::Check)?, BissOutput::Check(lines) => check::show(output, &words::check(&lines)))
+    result_of!(Runner::open(common)?.run(BissJob::Check)?, BissOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
 }
 
 fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
@@ -92,7 +92,7 @@ fn run_guided(common: &CommonArgs, output: &Output, act: &ActionArgs, run: Mount
     if act.consent.yes && run.calibrate {
         output.print_message(&format!("Calibration: {CALIBRATION}."));
     }
-    change(common, output, act, |_| Ok(Change::Guided { run, motor }))
+    run_change(common, output, act, |_| Ok(Change::Guided { run, motor }))
 }
 
 fn motor(output: &Output, act: &ActionArgs) -> Result<MotorSource> {
@@ -112,7 +112,7 @@ fn motor(output: &Output, act: &ActionArgs) -> Result<MotorSource> {
     }
 }
 
-fn change(
+fn run_change(
     common: &CommonArgs,
     output: &Output,
     act: &ActionArgs,
@@ -121,16 +121,16 @@ fn change(
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
     let change = change(&mut runner)?;
-    let prepared = prepare(&mut runner, change)?;
-    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
-    let usual = if can_prompt() { PERSON } else { super::PATIENCE };
+    let prepared = prepare_plan(&mut runner, change)?;
+    let (operations, changes) = (operations_json(&prepared.plan), change_lines(&prepared.plan));
+    let usual = if can_prompt() { OPERATOR_TIMEOUT } else { super::OPERATOR_TIMEOUT };
     let DoOptions { timeout } = act.own.read()?;
     let patience = timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
-    let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
+    let (spent, outcomes) = commit_plan(&mut runner, output, prepared, &act.consent, patience)?;
     let name = act.action.clone();
     let text = format!("{changes}{}", results_text(&outcomes));
-    let done = print_write_result(output, &name, &operations, &spent, &results(&outcomes), &text)?;
-    if outcomes.iter().all(passes) {
+    let done = print_write_result(output, &name, &operations, &spent, &results_json(&outcomes), &text)?;
+    if outcomes.iter().all(is_passed) {
         Ok(done)
     } else {
         Err(to_failure(&TEXTS.text("biss_cli.not_passed").with("what", name)))
@@ -138,9 +138,9 @@ fn change(
 }
 
 /// Returns whether an operation is complete and has no bad result.
-fn passes(outcome: &Outcome) -> bool {
+fn is_passed(outcome: &Outcome) -> bool {
     match outcome {
-        Outcome::Tested(report) => report.result.passes(),
+        Outcome::Tested(report) => report.result.is_passed(),
         Outcome::Skipped { .. } => false,
         Outcome::Stored { .. }
         | Outcome::PresetStored { .. }
@@ -152,7 +152,7 @@ fn passes(outcome: &Outcome) -> bool {
 
 /// Parses the arguments of the action `mounting`, which are `calibrate wiegand-test save preset=ST,MT data=FILE`. If
 /// neither calibration nor test is given, both are run.
-fn mounting(output: &Output, words: &[&str]) -> Result<MountingSteps> {
+fn parse_mounting_steps(output: &Output, words: &[&str]) -> Result<MountingSteps> {
     let mut run = MountingSteps::default();
     let (mut tests, mut saves) = (false, false);
     for word in words {
@@ -160,7 +160,7 @@ fn mounting(output: &Output, words: &[&str]) -> Result<MountingSteps> {
             ("calibrate", _) => run.calibrate = true,
             ("wiegand-test", _) => tests = true,
             ("save", _) => saves = true,
-            (_, Some(("preset", value))) => run.preset = Some((place(value)?, PresetParts::Both)),
+            (_, Some(("preset", value))) => run.preset = Some((parse_preset_value(value)?, PresetParts::Both)),
             (_, Some(("data", file))) => run.data = Some(Box::new(profile(output, Path::new(file))?)),
             _ => {
                 let form = "any of calibrate, wiegand-test, save, preset=ST,MT and data=FILE";
@@ -181,7 +181,7 @@ fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
         .map_err(|error| to_failure(&explain::profile(file, &error, KindRegistry::NONE)))
 }
 
-fn place(text: &str) -> Result<PresetValue> {
+fn parse_preset_value(text: &str) -> Result<PresetValue> {
     let numbers: Vec<&str> = text.split(',').collect();
     match numbers.as_slice() {
         [singleturn] => value(singleturn, "0"),
@@ -231,7 +231,7 @@ impl<'a> PresetArguments<'a> {
 
     /// Returns the change. A missing multiturn value is 0, unless only the singleturn is preset. In that case, the
     /// stored multiturn is kept.
-    fn change(&self, runner: &mut Runner) -> Result<Change> {
+    fn to_change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };
             let bytes = registers(runner, range)?;

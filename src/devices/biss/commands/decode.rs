@@ -15,7 +15,7 @@ use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 
-enum Captured {
+enum CapturedData {
     /// Bits of a position frame, with the original string.
     Bits(String, u64),
     /// Position word, with the original string.
@@ -28,9 +28,9 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     let mut requested = None;
     for captured in parse_captured(words)? {
         match captured {
-            Captured::Bits(written, raw) => explained.push(position::explain(raw, written)),
-            Captured::Word(written, raw) => explained.push(position::explain_position_word(raw, written)),
-            Captured::Bytes(bytes) => explained.extend(explain(&bytes, &mut requested)),
+            CapturedData::Bits(written, raw) => explained.push(position::explain_frame(raw, written)),
+            CapturedData::Word(written, raw) => explained.push(position::explain_position_word(raw, written)),
+            CapturedData::Bytes(bytes) => explained.extend(explain_bytes(&bytes, &mut requested)),
         }
     }
     show(output, &explained)
@@ -38,25 +38,25 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
 
 /// Parses the arguments. Nine hexadecimal digits with 0x, digits with a final h, and numbers after `raw=` are position
 /// words. 11 digits, or another number of digits with 0x, are the bits of a frame. Everything else is bytes.
-fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
-    let is_bits = |word: &String| match digits(word) {
+fn parse_captured(words: &[String]) -> Result<Vec<CapturedData>> {
+    let is_bits = |word: &String| match strip_hex_prefix(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
         (false, digits) => digits.len() == 11 && digits.chars().all(|c| c.is_ascii_hexdigit()),
     };
-    let is_word = |word: &String| match digits(word) {
+    let is_word = |word: &String| match strip_hex_prefix(word) {
         (true, digits) => digits.len() == position::WORD_DIGITS,
         (false, word) => word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H'])),
     };
     if !words.iter().any(|word| is_bits(word) || is_word(word)) {
         words.iter().try_for_each(|word| require_even_digit_count(word))?;
-        return Ok(decode::parse_frames(words)?.into_iter().map(Captured::Bytes).collect());
+        return Ok(decode::parse_frames(words)?.into_iter().map(CapturedData::Bytes).collect());
     }
-    let one = |word: &String| match digits(word) {
-        _ if is_word(word) => position_word(word).map(|raw| Captured::Word(word.clone(), raw)),
+    let one = |word: &String| match strip_hex_prefix(word) {
+        _ if is_word(word) => position_word(word).map(|raw| CapturedData::Word(word.clone(), raw)),
         (_, digits) if is_bits(word) => u64::from_str_radix(digits, 16)
-            .map(|raw| Captured::Bits(word.clone(), raw))
+            .map(|raw| CapturedData::Bits(word.clone(), raw))
             .map_err(|_| Failure::Usage(format!("{word:?} is not a position frame in hexadecimal digits"))),
-        _ => require_even_digit_count(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
+        _ => require_even_digit_count(word).and_then(|()| decode::bytes(word)).map(CapturedData::Bytes),
     };
     words.iter().map(one).collect()
 }
@@ -66,7 +66,7 @@ const RAW: &str = "raw=";
 fn position_word(word: &str) -> Result<u64> {
     let number = match word.strip_prefix(RAW) {
         Some(number) => parse_number(number).and_then(|number| u64::try_from(number).ok()),
-        None => u64::from_str_radix(digits(word).1.trim_end_matches(['h', 'H']), 16).ok(),
+        None => u64::from_str_radix(strip_hex_prefix(word).1.trim_end_matches(['h', 'H']), 16).ok(),
     };
     number
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
@@ -84,7 +84,7 @@ fn require_even_digit_count(word: &str) -> Result<()> {
 }
 
 /// Returns whether an argument begins with 0x, and the remaining digits.
-fn digits(word: &str) -> (bool, &str) {
+fn strip_hex_prefix(word: &str) -> (bool, &str) {
     match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
         Some(digits) => (true, digits),
         None => (false, word),
@@ -92,9 +92,9 @@ fn digits(word: &str) -> (bool, &str) {
 }
 
 /// Explains bytes by the protocol whose checksum matches. If there is none, explains them by their form.
-fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
-    let ubicom = ubicom::explain(bytes, requested);
-    let bridge = bridge::explain(bytes);
+fn explain_bytes(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
+    let ubicom = ubicom::explain_frames(bytes, requested);
+    let bridge = bridge::explain_packet(bytes);
     let position: Vec<FrameExplanation> = position::decode_bytes(bytes).into_iter().collect();
     let fits = |found: &Vec<FrameExplanation>| !found.is_empty() && found.iter().all(|one| one.meaning.is_ok());
     if fits(&ubicom) {
@@ -112,6 +112,6 @@ fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanatio
     }
 }
 
-fn form(name: &str) -> Map<String, serde_json::Value> {
+fn form_map(name: &str) -> Map<String, serde_json::Value> {
     Map::from_iter([("device".to_owned(), json!(KIND)), ("form".to_owned(), json!(name))])
 }

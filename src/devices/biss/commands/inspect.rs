@@ -14,7 +14,7 @@ use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Result, Success};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, RegisterValues};
 use crate::devices::biss::procedures::{
-    Damage, Error, FlagRegister, FrameSource, Identity, PositionReading, Status, Transport,
+    EncoderStatus, Error, FlagRegister, FrameSource, Identity, PositionReading, ReplyDamage, Transport,
 };
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{KIND, Name, Role};
@@ -31,7 +31,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     let json = json!({
         "device": KIND,
         "name": identity.description.name(),
-        "profile_id": format!("{:04X}", identity.kind.profile.word()),
+        "profile_id": format!("{:04X}", identity.kind.profile.to_u16()),
         "serial_number": identity.serial_number,
         "firmware": identity.firmware.map(|firmware| firmware.to_string()),
         "device_id": hex_compact(&identity.kind.device_id),
@@ -56,7 +56,7 @@ fn manufacturer_text(identity: &Identity) -> String {
 fn temperature(runner: &mut Runner, identity: &Identity) -> Result<Option<f64>> {
     let Some(register) = identity.description.register_with_role(Role::Temperature) else { return Ok(None) };
     let Some(range) = RegisterRange::new(register.address, register.width) else { return Ok(None) };
-    Ok(words::quantity(register, &registers(runner, range)?))
+    Ok(words::register_quantity(register, &registers(runner, range)?))
 }
 
 fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
@@ -73,10 +73,13 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     let mut lines = Lines::default();
     lines
         .add_line("encoder", identity.description.name())
-        .add_line("profile", format!("0x{:04X}", kind.profile.word()))
+        .add_line("profile", format!("0x{:04X}", kind.profile.to_u16()))
         .add_line("manufacturer", manufacturer_text(identity))
         .add_line("device ID", hex(&kind.device_id))
-        .add_line("serial number", if identity.serial_bytes.is_empty() { unknown() } else { serial(identity) })
+        .add_line(
+            "serial number",
+            if identity.serial_bytes.is_empty() { unknown() } else { format_serial_number(identity) },
+        )
         .add_line("firmware", identity.firmware.map_or_else(unknown, |firmware| firmware.to_string()))
         .add_line("position", format!("{multiturn} bits of turns, {singleturn} of steps, {frame}"))
         .add_line("temperature", celsius.map_or_else(unknown, |celsius| format!("{celsius} °C")));
@@ -93,7 +96,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
 }
 
 /// Returns the serial number together with its bytes, because no manual defines their order.
-fn serial(identity: &Identity) -> String {
+fn format_serial_number(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }
 
@@ -101,11 +104,11 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let status = result_of!(runner.run(BissJob::Status)?, BissOutput::Status(status) => *status);
     let position_error = status.position.and_then(|reading| reading.error);
-    let errors = status.errors.as_ref().map_or_else(Vec::new, list);
+    let errors = status.errors.as_ref().map_or_else(Vec::new, flag_list);
     let json = json!({
         "ok": errors.is_empty() && position_error != Some(true),
         "errors": errors,
-        "warnings": status.warnings.as_ref().map_or_else(Vec::new, list),
+        "warnings": status.warnings.as_ref().map_or_else(Vec::new, flag_list),
         "position_error": position_error,
         "position_warning": status.position.and_then(|reading| reading.warning),
         "mode": status.mode.map(|mode| mode.byte()),
@@ -116,7 +119,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     Ok(Success::Well)
 }
 
-fn list(bits: &FlagRegister) -> Vec<Json> {
+fn flag_list(bits: &FlagRegister) -> Vec<Json> {
     bits.set
         .iter()
         .map(|(bit, name)| json!({"code": bit, "text": bit_text(*bit, name.as_ref().map(Name::english))}))
@@ -127,7 +130,7 @@ fn bit_text(bit: u8, name: Option<&str>) -> String {
     name.map_or_else(|| format!("bit {bit}, which is not described"), str::to_owned)
 }
 
-fn status_text(status: &Status) -> String {
+fn status_text(status: &EncoderStatus) -> String {
     let mut lines = Lines::default();
     for (label, bits) in [("errors", &status.errors), ("warnings", &status.warnings)] {
         match bits {
@@ -150,7 +153,9 @@ fn status_text(status: &Status) -> String {
     }
     match &status.position {
         None => lines.add_line("position", "none can be read"),
-        Some(reading) => lines.add_line("position", format!("{}{}", place(reading), flags(reading))),
+        Some(reading) => {
+            lines.add_line("position", format!("{}{}", describe_position(reading), describe_flags(reading)))
+        }
     };
     lines.text()
 }
@@ -197,34 +202,42 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
 
 /// Returns whether frames arrived, but all of them with a wrong checksum.
 fn is_noise(error: &JobError) -> bool {
-    matches!(error, JobError::Device(Error::Damaged { cause: Damage::Frame(_), .. }))
+    matches!(error, JobError::Device(Error::Damaged { cause: ReplyDamage::Frame(_), .. }))
 }
 
 fn show(output: &Output, reading: &PositionReading) -> Result<()> {
     let t = reading.at.since_start().as_secs_f64();
     let json = json!({
         "t_s": t,
-        "raw": reading.raw().value,
+        "raw": reading.position_word().value,
         "frame": reading.frame.map(|frame| frame.to_string()),
         "turns": reading.is_split_known.then_some(reading.turns),
         "steps": reading.is_split_known.then_some(reading.steps),
-        "degrees": reading.angle(),
+        "degrees": reading.angle_degrees(),
         "valid": reading.is_valid(),
         "warning": reading.warning,
     });
     let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame {frame}"));
-    output.show(&json, &format!("{t:10.3} s  0x{}  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
+    output.show(
+        &json,
+        &format!(
+            "{t:10.3} s  0x{}  {}{}{frame}\n",
+            reading.position_word(),
+            describe_position(reading),
+            describe_flags(reading)
+        ),
+    )
 }
 
-fn place(reading: &PositionReading) -> String {
+fn describe_position(reading: &PositionReading) -> String {
     if !reading.is_split_known {
         return format!("{} (turns and steps are not known: set mt= and st= in the link)", reading.position());
     }
     let steps = 1u64 << reading.singleturn_bits;
-    format!("turn {}, step {} of {steps}, {:.6}°", reading.turns, reading.steps, reading.degrees())
+    format!("turn {}, step {} of {steps}, {:.6}°", reading.turns, reading.steps, reading.degrees_in_turn())
 }
 
-fn flags(reading: &PositionReading) -> &'static str {
+fn describe_flags(reading: &PositionReading) -> &'static str {
     match (reading.is_valid(), reading.warning) {
         (false, _) => "  not valid",
         (true, Some(true)) => "  warning",
@@ -237,25 +250,27 @@ fn row(reading: &PositionReading) -> String {
     format!(
         "{:.6},{},{},{},{},{},{}\n",
         reading.at.since_start().as_secs_f64(),
-        reading.raw().value,
+        reading.position_word().value,
         known(reading.turns.to_string()),
         known(reading.steps.to_string()),
-        known(reading.degrees().to_string()),
+        known(reading.degrees_in_turn().to_string()),
         reading.is_valid(),
         reading.warning.map_or_else(String::new, |warning| warning.to_string()),
     )
 }
 
 pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
-    let range = super::item(item)?;
+    let range = super::parse_item(item)?;
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     let RegisterValues { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
     if let Some(mode) = unsaved {
-        output.print_message(&explained::unsaved(mode).terminal_text());
+        output.print_message(&explained::unsaved_warning(mode).terminal_text());
     }
-    let meaning =
-        identity.description.at(range.start()).and_then(|register| words::describe_register(register, range, &bytes));
+    let meaning = identity
+        .description
+        .register_at(range.start())
+        .and_then(|register| words::describe_register(register, range, &bytes));
     let (value, shown) = match bytes.as_slice() {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
         bytes => (json!(hex_compact(bytes)), hex(bytes)),

@@ -30,7 +30,7 @@ use crate::kinds::attachable_kinds;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
-const PATIENCE: Duration = Duration::from_secs(30);
+const OPERATOR_TIMEOUT: Duration = Duration::from_secs(30);
 
 pub(crate) struct BissCommands;
 
@@ -90,14 +90,14 @@ impl DeviceCommands for BissCommands {
             Command::Read(read) => inspect::read(common, output, &read.item),
             Command::Save(save) => profiles::save(common, output, save),
             Command::Write(write) => write::write(common, output, write),
-            Command::Do(act) => act::act(common, output, act),
+            Command::Do(act) => act::run_action(common, output, act),
             Command::Decode(decode) => decode::decode(output, &decode.hex),
             _ => return None,
         })
     }
 
     fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
-        simulated(output, arguments)
+        create_simulated(output, arguments)
     }
 }
 
@@ -105,9 +105,9 @@ fn is_combined(action: &PossibleValue) -> bool {
     BissAction::Mounting.to_possible_value().as_ref() == Some(action)
 }
 
-fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
+fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     let settings = settings(output, arguments)?;
-    let known = bridge::keys(attachable_kinds());
+    let known = bridge::all_setting_names(attachable_kinds());
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
     if let Some((name, _)) = settings.iter().find(|(name, _)| needs_adapter(name)).filter(|_| !arguments.bridge) {
         return Err(Failure::Usage(format!("{name} is a setting of the adapter: it needs --bridge")));
@@ -125,6 +125,6 @@ impl ServableDevice for sim::UbicomPort {
     }
 }
 
-fn item(text: &str) -> Result<RegisterRange> {
+fn parse_item(text: &str) -> Result<RegisterRange> {
     text.parse().map_err(|error: ItemError| Failure::Usage(error.to_string()))
 }

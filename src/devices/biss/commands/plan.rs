@@ -13,8 +13,8 @@ use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary, warn_not_logged};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
-use crate::devices::biss::procedures::procedure::{Motion, Outcome, UnattendedOperator};
-use crate::devices::biss::procedures::write::Written;
+use crate::devices::biss::procedures::procedure::{Outcome, ShaftMotion, UnattendedOperator};
+use crate::devices::biss::procedures::write::WrittenValues;
 use crate::devices::biss::profile::{BissPlan, Op, PresetParts, RegisterRange};
 use crate::devices::biss::protocol::PresetValue;
 use crate::devices::biss::state::explain as explained;
@@ -25,13 +25,13 @@ use crate::result_of;
 pub(super) const CALIBRATION: &str =
     "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
-pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
+pub(super) fn prepare_plan(runner: &mut Runner, change: Change) -> Result<Prepared> {
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
 /// Asks for consent if required, and executes the plan. An empty plan sends nothing. A run starts as soon as the motor
 /// meets the conditions. The time limit for this is `patience`.
-pub(super) fn commit(
+pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
@@ -42,44 +42,50 @@ pub(super) fn commit(
         return Ok((WriteSummary::default(), Vec::new()));
     }
     check_wear::<Biss>(consent, &prepared)?;
-    if let Some(wear) = explained::wear(&prepared) {
+    if let Some(wear) = explained::wear_warning(&prepared) {
         output.print_message(&wear.terminal_text());
     }
-    let text = shown(&prepared).text;
+    let text = plan_report(&prepared).text;
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let commit = Commit { agreed, attendance: OperatorPresence::Unattended(UnattendedOperator { patience }) };
     let committed =
         result_of!(runner.run(BissJob::Commit(Box::new(commit)))?, BissOutput::Committed(committed) => *committed);
     warn_not_logged(output, committed.logbook_warning.as_ref());
-    let Written { written, verified, write_cycles, outcomes, .. } = committed.written;
+    let WrittenValues { written, verified, write_cycles, outcomes, .. } = committed.written;
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
 
 /// Describes the plan as text and JSON, with the old and new value of each operation, and the cost.
-pub(super) fn shown(prepared: &Prepared) -> PlanReport {
+pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
-    PlanReport::from_plan(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
+    PlanReport::from_plan(
+        plan,
+        plan.ops.iter().flat_map(operation_steps).collect(),
+        prepared.cycles_seen,
+        Some(WEAR_LIMIT),
+    )
 }
 
 /// Returns the operations as JSON. Registers that are saved together have no separate cost.
-pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
-    plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
+pub(super) fn operations_json(plan: &BissPlan) -> Vec<Json> {
+    plan.ops.iter().flat_map(operation_steps).map(|step| step.json()).collect()
 }
 
 /// Returns the operations with old and new values, one per line.
 pub(super) fn change_lines(plan: &BissPlan) -> String {
-    plan::step_lines(plan.ops.iter().flat_map(steps)).text()
+    plan::step_lines(plan.ops.iter().flat_map(operation_steps)).text()
 }
 
-fn steps(op: &Op) -> Vec<PlanStep> {
+fn operation_steps(op: &Op) -> Vec<PlanStep> {
     let cost = op.write_cycles();
-    let step =
-        |old: Option<String>, new: Option<String>| vec![PlanStep { item: op.item(), old, new, write_cycles: cost }];
+    let step = |old: Option<String>, new: Option<String>| {
+        vec![PlanStep { item: op.item_name(), old, new, write_cycles: cost }]
+    };
     let byte = |byte: u8| format!("{byte:02X}");
     match op {
         Op::StoreData { area, registers } => {
             let mut steps: Vec<PlanStep> = op
-                .ranges()
+                .register_ranges()
                 .into_iter()
                 .map(|range: RegisterRange| {
                     let own = registers.iter().filter(|change| range.contains(change.address));
@@ -117,8 +123,8 @@ fn preset_fired_text(parts: PresetParts, value: PresetValue) -> String {
     }
 }
 
-pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
-    let rpm = |motion: &Option<Motion>| motion.map(|motion| motion.rpm);
+pub(super) fn results_json(outcomes: &[Outcome]) -> Vec<Json> {
+    let rpm = |motion: &Option<ShaftMotion>| motion.map(|motion| motion.rpm);
     let one = |outcome: &Outcome| match outcome {
         Outcome::Skipped { after } => {
             json!({"result": "skipped", "after": after.map(|run| if run.is_clockwise() { "clockwise" } else { "counterclockwise" })})
@@ -140,7 +146,7 @@ pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
         }),
         Outcome::Tested(report) => json!({
             "result": "tested",
-            "ok": report.result.passes(),
+            "ok": report.result.is_passed(),
             "saved": report.saved,
             "average_cw_v": report.result.average_cw.volts(),
             "lowest_cw_v": report.result.lowest_cw.volts(),
@@ -155,6 +161,6 @@ pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
 
 /// Returns the results of the operations, one per line.
 pub(super) fn results_text(outcomes: &[Outcome]) -> String {
-    let texts = outcomes.iter().flat_map(explained::outcome);
+    let texts = outcomes.iter().flat_map(explained::outcome_texts);
     texts.map(|text| text.terminal_text() + "\n").collect()
 }

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::BissCommands;
-use super::plan::{commit, prepare, shown};
+use super::plan::{commit_plan, plan_report, prepare_plan};
 use super::run::Runner;
 use crate::app::Text;
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
@@ -22,7 +22,7 @@ use crate::profile::Body;
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
-    let profile = saved(common, BissJob::Save)?;
+    let profile = read_saved_profile(common, BissJob::Save)?;
     let banks = profile.banks().count();
     let (mode, unsaved) = (profile.recorded.device_mode, words::unsaved_profile_warning(&profile));
     save_profile(&save.file, Body::new(profile))?;
@@ -39,7 +39,7 @@ impl ProfileCommands for BissCommands {
         let options = restore_options(restore)?;
         let profile = profile_to_restore::<BissProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
-        let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+        let prepared = prepare_plan(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = &prepared.other_type {
             output.print_message(&words::other_type(types).terminal_text());
         }
@@ -47,15 +47,16 @@ impl ProfileCommands for BissCommands {
         print_skipped_mounting(output, &prepared.mounting_left);
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-        let plan = shown(&prepared);
+        let plan = plan_report(&prepared);
         write_restore(output, restore, &plan, &left, || {
-            commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE).map(|(spent, _)| spent)
+            commit_plan(&mut runner, output, prepared, &restore.consent, super::OPERATOR_TIMEOUT)
+                .map(|(spent, _)| spent)
         })
     }
 
     /// Reads the encoder for a comparison. This is refused if its registers may show values that were never saved.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-        Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
+        Ok(Body::new(read_saved_profile(common, BissJob::SaveToCompare)?))
     }
 
     /// Returns the message that a profile was read in a device mode.
@@ -73,6 +74,6 @@ impl ProfileCommands for BissCommands {
     }
 }
 
-fn saved(common: &CommonArgs, job: BissJob) -> Result<BissProfile> {
+fn read_saved_profile(common: &CommonArgs, job: BissJob) -> Result<BissProfile> {
     Ok(result_of!(Runner::open(common)?.run(job)?, BissOutput::Saved(profile) => *profile))
 }

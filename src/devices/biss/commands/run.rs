@@ -28,15 +28,15 @@ impl CliDevice for Biss {
         match remark {
             // These messages are counted and reported at the end.
             DeviceMessage::CrcErrors(_) => {}
-            remark => {
-                words::remark(remark).iter().for_each(|text| write_stderr(&format!("{}\n", text.terminal_text())))
-            }
+            remark => words::message_texts(remark)
+                .iter()
+                .for_each(|text| write_stderr(&format!("{}\n", text.terminal_text()))),
         }
     }
 
     fn describe_step(doing: &JobStep) -> String {
         match doing {
-            JobStep::Operation { progress: news, .. } => detail(news),
+            JobStep::Operation { progress: news, .. } => describe_detail(news),
             other => other.to_string(),
         }
     }
@@ -44,7 +44,7 @@ impl CliDevice for Biss {
     fn step_message(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, progress: news } => {
-                Some(format!("{item}: {}", words::step(news.step).terminal_text()))
+                Some(format!("{item}: {}", words::procedure_step_text(news.step).terminal_text()))
             }
             JobStep::Register(_) | JobStep::Bank(_) => None,
         }
@@ -52,7 +52,7 @@ impl CliDevice for Biss {
 }
 
 /// Describes the details of a step, such as its duration or the reasons why it cannot start.
-fn detail(news: &ProcedureProgress) -> String {
+fn describe_detail(news: &ProcedureProgress) -> String {
     match &news.detail {
         StepDetail::Begins => String::new(),
         StepDetail::Count { done, total } => format!("{done} of {total}"),

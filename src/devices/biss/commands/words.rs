@@ -4,36 +4,36 @@ use std::sync::LazyLock;
 
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{
-    Decoded, Description, Descriptions, Name, PositionFilter, Register, RegisterAddress,
+    DecodedValue, Description, Descriptions, Name, PositionFilter, Register, RegisterAddress,
 };
 
-static KIT: LazyLock<Option<Description>> =
+static KIT_DESCRIPTION: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|description| description.identity().is_some()).cloned());
 
 fn register(address: RegisterAddress) -> Option<&'static Register> {
-    KIT.as_ref()?.at(address)
+    KIT_DESCRIPTION.as_ref()?.register_at(address)
 }
 
 pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
-    let area = || Some(KIT.as_ref()?.area_at(address)?.name.english());
+    let area = || Some(KIT_DESCRIPTION.as_ref()?.area_at(address)?.name.english());
     register(address).map(|register| register.name.english()).or_else(area)
 }
 
 /// Describes the bytes at an address. They must form a complete register whose number needs an explanation.
 pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
-    words(register, bytes)
+    describe_value(register, bytes)
 }
 
 /// Describes a register if the given bytes cover exactly that register.
 pub(super) fn describe_register(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
-    own.then(|| words(register, bytes)).flatten()
+    own.then(|| describe_value(register, bytes)).flatten()
 }
 
-pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
+pub(super) fn register_quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
     match register.decode(bytes)? {
-        Decoded::Scaled(value) => Some(value),
+        DecodedValue::Scaled(value) => Some(value),
         _ => None,
     }
 }
@@ -48,19 +48,19 @@ pub(super) fn filter(filter: PositionFilter) -> String {
 }
 
 /// Describes the bytes of a register. Returns `None` for a code without a meaning.
-fn words(register: &Register, bytes: &[u8]) -> Option<String> {
+fn describe_value(register: &Register, bytes: &[u8]) -> Option<String> {
     let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
     Some(match register.decode(bytes)? {
-        Decoded::Number(number) => format!("{number}{unit}"),
-        Decoded::Hex(_) => return None,
-        Decoded::Scaled(value) => format!("{value}{unit}"),
-        Decoded::Bits(bits) if bits.is_empty() => "none".to_owned(),
-        Decoded::Bits(bits) => {
+        DecodedValue::Number(number) => format!("{number}{unit}"),
+        DecodedValue::Hex(_) => return None,
+        DecodedValue::Scaled(value) => format!("{value}{unit}"),
+        DecodedValue::Bits(bits) if bits.is_empty() => "none".to_owned(),
+        DecodedValue::Bits(bits) => {
             let named = |(bit, name): (u8, Option<&Name>)| name.map_or_else(|| format!("bit {bit}"), Name::to_string);
             bits.into_iter().map(named).collect::<Vec<_>>().join(", ")
         }
-        Decoded::Choice(_, Some(name)) => name.to_string(),
-        Decoded::Choice(value, None) => format!("unknown (0x{value:02X})"),
-        Decoded::Text(text) => text,
+        DecodedValue::Choice(_, Some(name)) => name.to_string(),
+        DecodedValue::Choice(value, None) => format!("unknown (0x{value:02X})"),
+        DecodedValue::Text(text) => text,
     })
 }

@@ -1,6 +1,6 @@
 //! `write`: writes registers by name.
 
-use super::plan::{change_lines, commit, operations, prepare};
+use super::plan::{change_lines, commit_plan, operations_json, prepare_plan};
 use super::run::Runner;
 use crate::bits::parse_hex;
 use crate::cli::args::{CommonArgs, Write};
@@ -13,13 +13,13 @@ use crate::devices::biss::jobs::Change;
 use crate::devices::biss::profile::RegisterRange;
 
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
-    let range = super::item(&write.item)?;
+    let range = super::parse_item(&write.item)?;
     let bytes = value(range, write.item.contains('+'), &write.value)?;
     require_consent(&write.consent)?;
     let mut runner = Runner::open(common)?;
-    let prepared = prepare(&mut runner, Change::Write(vec![(range, bytes)]))?;
-    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
-    let (spent, _) = commit(&mut runner, output, prepared, &write.consent, super::PATIENCE)?;
+    let prepared = prepare_plan(&mut runner, Change::Write(vec![(range, bytes)]))?;
+    let (operations, changes) = (operations_json(&prepared.plan), change_lines(&prepared.plan));
+    let (spent, _) = commit_plan(&mut runner, output, prepared, &write.consent, super::OPERATOR_TIMEOUT)?;
     show_changes(output, &range.to_string(), &operations, &changes, &spent)
 }
 

@@ -3,13 +3,13 @@
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWriter;
-use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, Recorded};
+use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, RecordedValues};
 use crate::profile::{Body, ChangedItem, UnknownValues};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
 
-pub(super) fn commit(
+pub(super) fn commit_plan(
     encoder: &mut Biss,
     context: &mut SessionContext,
     commit: Commit,
@@ -21,11 +21,11 @@ pub(super) fn commit(
     // The steps of an operation are reported, including its start.
     let report = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
-        let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
+        let item = plan.ops.get(news.op).map(Op::item_name).unwrap_or_default();
         tell(Progress { done, total, step: JobStep::Operation { item, progress: Box::new(news) } });
     };
     encoder.ensure_identified(context)?;
-    let mut master = encoder.master(context);
+    let mut master = encoder.create_master(context);
     let mut write = EncoderWriter::new(&mut master, identity, &mut attendance, report)?;
     let ended = write_plan(&store, is_virtual, &agreed, &mut write, &mut |_| {});
     match &ended {
@@ -64,15 +64,15 @@ impl PlannedWrite for Prepared {
         let description = &self.identity.description;
         let touched = description.areas().iter().map(|area| {
             let banks = base.banks.iter().filter(|bank| area.contains(bank.number)).copied();
-            DataImage::of(area, banks.collect())
+            DataImage::new(area, banks.collect())
         });
         let mut profile = BissProfile {
             identity: self.identity.profile(),
             filter: base.filter,
             preset: base.preset.map(|value| PresetSetting { value, unknown: UnknownValues::new() }),
-            recorded: Recorded::default(),
+            recorded: RecordedValues::default(),
             mounting: Vec::new(),
-            data: touched.filter(|image| image.all().next().is_some()).collect(),
+            data: touched.filter(|image| image.all_banks().next().is_some()).collect(),
         };
         profile.mark_mounting_dependent_values();
         let mut document = backup_document(Body::new(profile));

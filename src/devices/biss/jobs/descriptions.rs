@@ -32,7 +32,7 @@ mod tests {
         let (_, unknown) = Descriptions::BUILT_IN[1];
         fs::write(folder.join("own.RON"), unknown.replace("\"BiSS C encoder\"", "\"own\"")).unwrap();
         let (known, errors) = load_descriptions(&store);
-        assert!(known.named("own").is_some() && known.named("POSITAL IXARC kit encoder").is_some());
+        assert!(known.find_by_name("own").is_some() && known.find_by_name("POSITAL IXARC kit encoder").is_some());
         let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
         let [folder, latin, broken] = texts.as_slice() else { panic!("{texts:?}") };
         assert!(folder.contains("folder.ron: it is a folder"), "{folder}");

@@ -1,9 +1,9 @@
 //! Position frames streamed by an adapter.
 
-use crate::buses::bridge::jobs::Stretch;
-use crate::buses::bridge::procedures::{StreamRequest, Streaming};
+use crate::buses::bridge::jobs::StreamFormat;
+use crate::buses::bridge::procedures::{StreamRequest, StreamingAdapter};
 use crate::buses::bridge::protocol::StreamData;
-use crate::devices::biss::procedures::{Frame, frames};
+use crate::devices::biss::procedures::{Frame, parse_frames};
 use crate::devices::biss::protocol::Layout;
 
 /// BiSS position frames with verified checksums.
@@ -16,10 +16,10 @@ pub struct BissFrames {
     pub period_us: u32,
 }
 
-impl Stretch for BissFrames {
+impl StreamFormat for BissFrames {
     type Samples = Vec<Frame>;
 
-    fn wanted(&self) -> StreamRequest {
+    fn stream_request(&self) -> StreamRequest {
         StreamRequest::Biss {
             clock_hz: self.clock_hz,
             data_bits: self.layout.data_bits(),
@@ -28,9 +28,9 @@ impl Stretch for BissFrames {
         }
     }
 
-    fn read(&self, data: StreamData, _: &Streaming) -> Option<Vec<Frame>> {
+    fn read(&self, data: StreamData, _: &StreamingAdapter) -> Option<Vec<Frame>> {
         let StreamData::Biss(data) = data else { return None };
-        Some(frames(&self.layout, &data))
+        Some(parse_frames(&self.layout, &data))
     }
 }
 
@@ -73,7 +73,7 @@ mod tests {
                 before = Some(position);
             }
         }
-        let streaming = bench.bridge.streaming().get().cloned().unwrap();
+        let streaming = bench.bridge.streaming_adapter().get().cloned().unwrap();
         assert_eq!((streaming.hello.name.as_str(), streaming.period_ns), ("virtual adapter", 50_000));
         assert!(bench.unsolicited_byte_count() > 100_000);
         bench.bridge.end(&*bench.clock);

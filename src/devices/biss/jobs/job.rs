@@ -6,10 +6,10 @@ use super::Identity;
 use crate::bits::hex_compact;
 use crate::devices::biss::procedures::check::BissStepResult;
 use crate::devices::biss::procedures::procedure::{
-    Answer, Operator, OperatorChannel, OperatorPrompt, ProcedureProgress, UnattendedOperator,
+    Operator, OperatorAnswer, OperatorChannel, OperatorPrompt, ProcedureProgress, UnattendedOperator,
 };
-use crate::devices::biss::procedures::write::{Interrupted, Written};
-use crate::devices::biss::procedures::{Error, PositionReading, Status, Survey};
+use crate::devices::biss::procedures::write::{InterruptedWrite, WrittenValues};
+use crate::devices::biss::procedures::{EncoderStatus, Error, PositionReading, Survey};
 use crate::devices::biss::profile::{
     Bank, BissPlan, BissProfile, MotorSource, MountingSteps, PlanError, PresetParts, RegisterRange, RestoreOptions,
     TypeMismatch,
@@ -138,7 +138,7 @@ pub struct Prepared {
 
 impl Prepared {
     /// Returns the minimum number of flash write cycles used so far, or `None` if no warning is necessary.
-    pub fn wear(&self) -> Option<u64> {
+    pub fn wear_to_report(&self) -> Option<u64> {
         total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
@@ -164,15 +164,15 @@ impl Operator for OperatorPresence {
         }
     }
 
-    fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
+    fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer {
         match self {
-            OperatorPresence::Attended(seat) => seat.attend(demand),
-            OperatorPresence::Unattended(nobody) => nobody.attend(demand),
+            OperatorPresence::Attended(seat) => seat.ask(demand),
+            OperatorPresence::Unattended(nobody) => nobody.ask(demand),
         }
     }
 }
 
-pub type Committed = crate::worker::CommitResult<Written>;
+pub type Committed = crate::worker::CommitResult<WrittenValues>;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegisterValues {
@@ -212,7 +212,7 @@ impl fmt::Display for JobStep {
 pub enum BissOutput {
     Surveyed(Box<Survey>),
     Identity(Box<Identity>),
-    Status(Box<Status>),
+    Status(Box<EncoderStatus>),
     Check(Vec<BissStepResult>),
     Position(PositionReading),
     Registers(RegisterValues),
@@ -228,7 +228,7 @@ pub enum BissOutput {
     LedBack(DeviceMode),
 }
 
-pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+pub type JobError = crate::worker::JobError<Error, PlanError, InterruptedWrite, ChangeKind>;
 
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {

@@ -17,12 +17,12 @@ pub use job::{
     BissJob, BissOutput, Change, ChangeKind, Commit, Committed, DeviceMessage, JobError, JobStep, OperatorPresence,
     Prepared, RegisterValues, WEAR_LIMIT, WEAR_WARNING, device_key,
 };
-pub use open::{check, open};
+pub use open::{check_link, open};
 
 use crate::buses::bridge::procedures::log_supply_failure;
 use crate::devices::biss::procedures::check::MemoryWear;
 use crate::devices::biss::procedures::{
-    self, Error, Identity, Master, ReadStep, Sample, Station, Unsaved, identify, procedure, read_position,
+    self, Error, Identity, Master, PolledSample, ReadStep, Station, UnsavedValues, identify, procedure, read_position,
     read_registers, read_sample, read_status, read_watched_value,
 };
 use crate::devices::biss::profile::RegisterRange;
@@ -45,7 +45,7 @@ pub struct Biss {
 }
 
 /// Interval below which an adapter streams positions.
-const STREAMED: Duration = Duration::from_millis(2);
+const STREAMING_INTERVAL: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Biss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -54,7 +54,7 @@ impl fmt::Debug for Biss {
 }
 
 impl Biss {
-    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+    fn create_master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
@@ -63,7 +63,7 @@ impl Biss {
     fn ensure_identified(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
-            identify(&mut self.master(context), &types)?;
+            identify(&mut self.create_master(context), &types)?;
         }
         Ok(())
     }
@@ -72,7 +72,7 @@ impl Biss {
 impl Session<Biss> {
     /// Creates a session on an open connection, with the descriptions of `store`. If a motor is given, the encoder is
     /// simulated in this process and its writes are counted separately.
-    pub fn over(
+    pub fn from_connection(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
         station: Station,
@@ -104,7 +104,7 @@ impl Device for Biss {
     type Output = BissOutput;
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
-    type Sample = Sample;
+    type Sample = PolledSample;
     type Watch = RegisterRange;
     type JobStep = JobStep;
 
@@ -119,12 +119,16 @@ impl Device for Biss {
         Ok(match job {
             BissJob::Survey => {
                 let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
-                BissOutput::Surveyed(Box::new(procedures::survey(&mut self.master(context), &types, progress)?))
+                BissOutput::Surveyed(Box::new(procedures::read_all_registers(
+                    &mut self.create_master(context),
+                    &types,
+                    progress,
+                )?))
             }
-            BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.master(context), &types)?)),
+            BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.create_master(context), &types)?)),
             BissJob::Status => {
                 self.ensure_identified(context)?;
-                BissOutput::Status(Box::new(read_status(&mut self.master(context))?))
+                BissOutput::Status(Box::new(read_status(&mut self.create_master(context))?))
             }
             BissJob::Check => {
                 let (store, is_virtual) = (context.store.clone(), context.is_virtual);
@@ -134,11 +138,16 @@ impl Device for Biss {
                     limit: WEAR_LIMIT,
                 };
                 let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
-                BissOutput::Check(procedures::check::check(&mut self.master(context), &types, wear, progress)?)
+                BissOutput::Check(procedures::check::check_encoder(
+                    &mut self.create_master(context),
+                    &types,
+                    wear,
+                    progress,
+                )?)
             }
             BissJob::Position => {
                 self.ensure_identified(context)?;
-                BissOutput::Position(read_position(&mut self.master(context))?)
+                BissOutput::Position(read_position(&mut self.create_master(context))?)
             }
             BissJob::Read(range) => self.read(context, range.start(), range.count())?,
             BissJob::ReadDirect => self.read(context, RegisterAddress::BANK_SELECT, RegisterAddress::BANK_SIZE)?,
@@ -150,24 +159,29 @@ impl Device for Biss {
                 let first = area.first;
                 let total = area.banks().count() as u64;
                 let report = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
-                let banks = procedures::read_area_at_standstill(&mut self.master(context), &area, report)?;
-                BissOutput::Area { banks, unsaved: self.unsaved(context)? }
+                let banks = procedures::read_area_at_standstill(&mut self.create_master(context), &area, report)?;
+                BissOutput::Area { banks, unsaved: self.unsaved_mode(context)? }
             }
             BissJob::Save | BissJob::SaveToCompare => {
-                let unsaved = if matches!(job, BissJob::Save) { Unsaved::Marked } else { Unsaved::Refused };
+                let unsaved = if matches!(job, BissJob::Save) { UnsavedValues::Marked } else { UnsavedValues::Refused };
                 let progress = &mut |done, total, place| steps(done, total, read_step(place));
-                BissOutput::Saved(Box::new(procedures::save(&mut self.master(context), &types, unsaved, progress)?))
+                BissOutput::Saved(Box::new(procedures::save(
+                    &mut self.create_master(context),
+                    &types,
+                    unsaved,
+                    progress,
+                )?))
             }
             BissJob::Prepare(change) => {
                 let steps = &mut |progress| tell(JobReport::Progress(progress));
-                BissOutput::Prepared(Box::new(prepare::prepare(self, context, &change, steps)?))
+                BissOutput::Prepared(Box::new(prepare::prepare_plan(self, context, &change, steps)?))
             }
             BissJob::Commit(commit) => {
                 let steps = &mut |progress| tell(JobReport::Progress(progress));
-                BissOutput::Committed(Box::new(commit::commit(self, context, *commit, steps)?))
+                BissOutput::Committed(Box::new(commit::commit_plan(self, context, *commit, steps)?))
             }
             BissJob::LeadBack => {
-                let mode = procedure::lead_back(&mut self.master(context), &types)?;
+                let mode = procedure::lead_back(&mut self.create_master(context), &types)?;
                 self.station.unfinished = false;
                 BissOutput::LedBack(mode)
             }
@@ -175,36 +189,36 @@ impl Device for Biss {
     }
 
     fn set_sample_interval(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
-        let streamed = interval.filter(|interval| *interval <= STREAMED);
+        let streamed = interval.filter(|interval| *interval <= STREAMING_INTERVAL);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
         if self.streamed_us.is_none()
-            && let Err(error) = self.master(context).stop_frame_stream()
+            && let Err(error) = self.create_master(context).stop_frame_stream()
         {
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }
     }
 
-    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<PolledSample, JobError> {
         self.ensure_identified(context)?;
         if let Some(period_us) = self.streamed_us
-            && let Some(run) = self.master(context).frames(period_us)?
+            && let Some(run) = self.create_master(context).next_frames(period_us)?
         {
-            return Ok(Sample::Frames(run));
+            return Ok(PolledSample::Frames(run));
         }
-        Ok(read_sample(&mut self.master(context))?)
+        Ok(read_sample(&mut self.create_master(context))?)
     }
 
     fn read_watched(
         &mut self,
         context: &mut SessionContext,
         what: &RegisterRange,
-    ) -> Result<WatchReply<Sample>, JobError> {
+    ) -> Result<WatchReply<PolledSample>, JobError> {
         // Determines the data areas, which must not be read while the shaft turns.
         self.ensure_identified(context)?;
-        let reading = read_watched_value(&mut self.master(context), *what)?;
+        let reading = read_watched_value(&mut self.create_master(context), *what)?;
         let refused = reading.value.is_err();
-        let sample = Sample::Watched(reading);
+        let sample = PolledSample::Watched(reading);
         Ok(if refused { WatchReply::Refused(sample) } else { WatchReply::Sample(sample) })
     }
 
@@ -220,7 +234,7 @@ impl Device for Biss {
     }
 
     fn restore_state(&mut self, context: &mut SessionContext) {
-        log_supply_failure(self.master(context).leave_supply());
+        log_supply_failure(self.create_master(context).switch_off_after_session());
     }
 }
 
@@ -232,15 +246,15 @@ impl Biss {
         count: u8,
     ) -> Result<BissOutput, JobError> {
         self.ensure_identified(context)?;
-        let bytes = read_registers(&mut self.master(context), start, count)?;
+        let bytes = read_registers(&mut self.create_master(context), start, count)?;
         // Direct registers do not show values that are entered first and saved later.
-        let unsaved = if start.bank().is_some() { self.unsaved(context)? } else { None };
+        let unsaved = if start.bank().is_some() { self.unsaved_mode(context)? } else { None };
         Ok(BissOutput::Registers(RegisterValues { start, bytes, unsaved }))
     }
 
     /// Returns the device mode if registers may show values that were never saved in the encoder.
-    fn unsaved(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
-        let mut master = self.master(context);
+    fn unsaved_mode(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
+        let mut master = self.create_master(context);
         let description = master.description()?;
         procedures::write::non_operational_mode(&mut master, &description)
     }

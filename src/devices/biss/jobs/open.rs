@@ -20,7 +20,7 @@ const BRIDGE: &str = "bridge";
 ///
 /// # Errors
 /// Returns [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
-pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
@@ -39,12 +39,12 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
         motor = turning;
         Ok(link)
     })?;
-    Ok(Session::over(wire, clock, station, store, motor))
+    Ok(Session::from_connection(wire, clock, station, store, motor))
 }
 
 /// Parses the line settings and, for a link to a virtual encoder, its settings.
-fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
-    let way = transport(url)?;
+fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
+    let way = parse_transport(url)?;
     let is_virtual = url.scheme == LinkScheme::Sim;
     if is_virtual {
         check_virtual_parameters(&url.query, way)?;
@@ -55,7 +55,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     }
     let mut station = Station::from_query(&url.query, way, reply_margin(url.scheme))?;
     if !is_virtual {
-        return Ok((station, Simulated::new(way, &[])?));
+        return Ok((station, VirtualEncoder::new(way, &[])?));
     }
     // The parameters for echo and byte order configure the virtual encoder. The line detects both as with a real
     // encoder.
@@ -63,18 +63,21 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let line = [Transport::ConfigPin, Transport::Adapter].map(Transport::parameters).concat();
     let of_the_encoder = |name: &str| name != BRIDGE && (Config::KEYS.contains(&name) || !line.contains(&name));
     let settings: Vec<_> = url.query.pairs().iter().filter(|(name, _)| of_the_encoder(name)).cloned().collect();
-    Ok((station, Simulated::new(way, &settings)?))
+    Ok((station, VirtualEncoder::new(way, &settings)?))
 }
 
-fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
-    const WAYS: Keywords<Transport> = Keywords(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
+fn parse_transport(url: &LinkUrl) -> Result<Transport, OpenError> {
+    const TRANSPORT_KEYWORDS: Keywords<Transport> =
+        Keywords(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
         LinkScheme::Bridge => Ok(Transport::Adapter),
         LinkScheme::Serial | LinkScheme::Tcp => Ok(Transport::ConfigPin),
         LinkScheme::Modbus | LinkScheme::Enip => {
             Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, bridge:, replay:"))
         }
-        LinkScheme::Sim | LinkScheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Transport::ConfigPin)),
+        LinkScheme::Sim | LinkScheme::Replay => {
+            Ok(url.query.read(BRIDGE, &TRANSPORT_KEYWORDS)?.unwrap_or(Transport::ConfigPin))
+        }
     }
 }
 
@@ -82,7 +85,11 @@ fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
 fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
-        let device = if way == Transport::Adapter { bridge::keys(attachable_kinds()) } else { Config::KEYS.to_vec() };
+        let device = if way == Transport::Adapter {
+            bridge::all_setting_names(attachable_kinds())
+        } else {
+            Config::KEYS.to_vec()
+        };
         [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
     };
     let known = own(way);
@@ -96,27 +103,27 @@ fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlE
 }
 
 /// A virtual encoder created from its parameters, connected to the configuration pin or an adapter.
-enum Simulated {
+enum VirtualEncoder {
     Pin(Box<Config>),
     Bus(Box<Adapter>),
 }
 
-impl Simulated {
+impl VirtualEncoder {
     fn new(way: Transport, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         Ok(match way {
-            Transport::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
-            Transport::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, attachable_kinds())?)),
+            Transport::ConfigPin => VirtualEncoder::Pin(Box::new(Config::from_pairs(pairs)?)),
+            Transport::Adapter => VirtualEncoder::Bus(Box::new(Adapter::from_pairs(pairs, attachable_kinds())?)),
         })
     }
 
     fn connect(self, clock: &Arc<dyn Clock>) -> (Box<dyn ByteLink>, Option<Motor>) {
         match self {
-            Simulated::Pin(config) => {
+            VirtualEncoder::Pin(config) => {
                 let port = UbicomPort::new(&config);
                 let motor = port.encoder().motor();
                 (connect_simulated(port, clock), Some(motor))
             }
-            Simulated::Bus(adapter) => {
+            VirtualEncoder::Bus(adapter) => {
                 let motor = adapter.motor();
                 (connect_simulated(*adapter, clock), Some(motor))
             }

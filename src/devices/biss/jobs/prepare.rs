@@ -6,21 +6,21 @@ use super::{Biss, Change, JobError, JobStep, Prepared, device_key};
 use crate::devices::biss::procedures::write::{read_bank, read_state};
 use crate::devices::biss::procedures::{Error, Identity, Master, ensure_standstill, identify, write};
 use crate::devices::biss::profile::{
-    Base, BissPlan, RegisterKind, RegisterRange, Restore, check_allowed, other_type, place, plan_edits, plan_filter,
-    plan_mounting, plan_preset, plan_restore, required_banks,
+    Base, BissPlan, RegisterKind, RegisterRange, Restore, check_allowed, other_type, plan_edits, plan_filter,
+    plan_mounting, plan_preset, plan_restore, register_kind, required_banks,
 };
 use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Progress, SessionContext};
 
-pub(super) fn prepare(
+pub(super) fn prepare_plan(
     encoder: &mut Biss,
     context: &mut SessionContext,
     change: &Change,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
-    let mut master = encoder.master(context);
+    let mut master = encoder.create_master(context);
     let identity = identify(&mut master, &types)?;
     let description = identity.description.clone();
     let plan = match change {
@@ -40,7 +40,7 @@ pub(super) fn prepare(
         }
         Change::Guided { run, motor } => {
             // A refusal is reported before anything else is read.
-            run.check(*motor)?;
+            run.check_motor(*motor)?;
             let areas: Vec<Area> = description.areas().to_vec();
             let banks = run.data.as_ref().map(|profile| required_banks(profile, &areas)).unwrap_or_default();
             let state = state(&mut master, &identity, &banks, tell)?;
@@ -93,7 +93,7 @@ fn plan_register_edits(
     let mut banks = BTreeSet::new();
     let mut singles: BTreeSet<RegisterAddress> = BTreeSet::new();
     for address in edits.iter().flat_map(|(range, _)| range.addresses()) {
-        match place(description, address)? {
+        match register_kind(description, address)? {
             RegisterKind::Data(_) => banks.extend(address.bank()),
             RegisterKind::Register => {
                 singles.insert(address);
@@ -107,7 +107,7 @@ fn plan_register_edits(
     let banks = banks.into_iter().map(|bank| read_bank(master, bank)).collect::<Result<Vec<_>, _>>()?;
     let mut registers = Vec::new();
     for address in singles {
-        let reads = description.access(address).is_none_or(|access| access.reads());
+        let reads = description.access_at(address).is_none_or(|access| access.is_readable());
         let value = match reads.then(|| master.read(address)) {
             Some(Err(Error::NoSuchRegister { .. })) | None => None,
             Some(value) => Some(value?),

@@ -1,11 +1,11 @@
 //! Device check. The values of an encoder are compared with its description, its data sheet and the line, and each item
 //! receives a verdict. Nothing is written except the bank selection.
 
-use super::survey::{FlagRegister, Status, survey};
+use super::survey::{EncoderStatus, FlagRegister, read_all_registers};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
 use crate::analysis::check;
 use crate::devices::biss::protocol::{
-    Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
+    Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, IdentityMismatch, Name, RegisterAddress, WiegandResult,
 };
 
 pub use crate::analysis::check::{MemoryWear, Verdict};
@@ -35,7 +35,7 @@ pub enum CheckFinding {
     SerialNumber(String),
     Firmware(Firmware),
     /// No description matches the encoder exactly.
-    Mismatch(Mismatch),
+    Mismatch(IdentityMismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
     /// The encoder does not report errors and warnings, at least not with this firmware.
@@ -96,13 +96,13 @@ const READINGS: u32 = 50;
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the job is cancelled.
-pub fn check(
+pub fn check_encoder(
     master: &mut Master<'_>,
     types: &Descriptions,
     wear: impl FnOnce(&Identity) -> MemoryWear,
     progress: &mut dyn FnMut(u64, u64, RegisterAddress),
 ) -> Result<Vec<BissStepResult>, Error> {
-    let survey = survey(master, types, progress)?;
+    let survey = read_all_registers(master, types, progress)?;
     let mut lines = vec![
         identity(&survey.identity),
         status(&survey.status),
@@ -110,9 +110,9 @@ pub fn check(
         data_sheet(&survey.identity),
     ];
     lines.extend(limits(&survey, master.station().supply.and_then(|supply| supply.measured)));
-    lines.extend(wiegand(&survey));
+    lines.extend(check_wiegand_result(&survey));
     if survey.status.position.is_some() {
-        lines.push(readings(master)?);
+        lines.push(check_readings(master)?);
     }
     lines.extend(wear_result(wear(&survey.identity)));
     Ok(lines)
@@ -128,7 +128,7 @@ fn identity(identity: &Identity) -> BissStepResult {
     BissStepResult::new(CheckStep::Identity, findings)
 }
 
-fn status(status: &Status) -> BissStepResult {
+fn status(status: &EncoderStatus) -> BissStepResult {
     let set = |bits: &Option<FlagRegister>| bits.iter().flat_map(|bits| bits.set.clone()).collect::<Vec<_>>();
     let mut findings: Vec<(Verdict, CheckFinding)> =
         set(&status.errors).into_iter().map(|(bit, name)| (Verdict::Bad, CheckFinding::Error(bit, name))).collect();
@@ -188,9 +188,9 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
 mod offset {
     pub(super) const COLDEST: u8 = 0x30;
     pub(super) const HOTTEST: u8 = 0x32;
-    pub(super) const LEAST_VOLTAGE: u8 = 0x34;
-    pub(super) const MOST_VOLTAGE: u8 = 0x36;
-    pub(super) const MOST_CURRENT: u8 = 0x38;
+    pub(super) const MIN_VOLTAGE: u8 = 0x34;
+    pub(super) const MAX_VOLTAGE: u8 = 0x36;
+    pub(super) const MAX_CURRENT: u8 = 0x38;
 }
 
 /// Compares measured values with the limits in the data sheet. Returns `None` if there is nothing to compare.
@@ -198,7 +198,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult>
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
     let mut findings = Vec::new();
-    let celsius = |at| value(sheet, at).and_then(EdsValue::celsius);
+    let celsius = |at| value(sheet, at).and_then(EdsValue::to_celsius);
     if let (Some(celsius), Some(low), Some(high)) =
         (survey.status.celsius, celsius(offset::COLDEST), celsius(offset::HOTTEST))
     {
@@ -210,7 +210,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult>
         _ => None,
     };
     if let (Some((millivolt, milliampere)), Some(low), Some(high), Some(most)) =
-        (supply, number(offset::LEAST_VOLTAGE), number(offset::MOST_VOLTAGE), number(offset::MOST_CURRENT))
+        (supply, number(offset::MIN_VOLTAGE), number(offset::MAX_VOLTAGE), number(offset::MAX_CURRENT))
     {
         let fits = (low..=high).contains(&millivolt.into());
         findings.push((judge(fits), CheckFinding::Supply { millivolt, low, high }));
@@ -224,19 +224,19 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
 }
 
 /// Checks the saved result of the Wiegand test. Returns `None` if the encoder has no such result.
-fn wiegand(survey: &Survey) -> Option<BissStepResult> {
+fn check_wiegand_result(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
         // The encoder is in factory state. This is no error, but nothing proves that the sensor works.
         [0, 0, 0, 0] => (Verdict::Skipped, CheckFinding::NotTested),
-        _ if saved.passes() => (Verdict::Good, CheckFinding::Wiegand(saved)),
+        _ if saved.is_passed() => (Verdict::Good, CheckFinding::Wiegand(saved)),
         _ => (Verdict::Bad, CheckFinding::Wiegand(saved)),
     };
     Some(BissStepResult::new(CheckStep::Wiegand, vec![finding]))
 }
 
 /// Reads the position repeatedly and counts a missing reading as damaged.
-fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
+fn check_readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
     let told_by_line = master.station().transport == Transport::ConfigPin;
     let mut damaged = 0;

@@ -38,7 +38,7 @@ pub enum Error {
         echo_heard: bool,
     },
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
-    Damaged { requested: RequestedItem, tries: u32, cause: Damage },
+    Damaged { requested: RequestedItem, tries: u32, cause: ReplyDamage },
     /// Bytes keep arriving during a required period of silence.
     #[error("the line is never silent")]
     NeverSilent,
@@ -156,7 +156,7 @@ pub(super) fn to_register_array<const N: usize>(start: RegisterAddress, bytes: V
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Damage {
+pub enum ReplyDamage {
     #[error("no complete frame in the received bytes (number of bytes: {bytes})")]
     NoFrame { bytes: usize },
     /// The frame is not a reply to the request.

@@ -19,7 +19,7 @@ pub(super) struct Flags {
 
 /// Interval at which one of the two registers is read during position polling. It is long enough to cost hardly any
 /// position.
-const EVERY: Duration = Duration::from_millis(500);
+const READ_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Reads the position once, together with the encoder's current errors and warnings.
 ///
@@ -44,7 +44,7 @@ pub(super) fn add_error_flags(master: &mut Master<'_>, reading: PositionReading)
             looked_at: now,
             errors_last: false,
         },
-        Some(flags) if now.duration_since(flags.looked_at) < EVERY => flags,
+        Some(flags) if now.duration_since(flags.looked_at) < READ_INTERVAL => flags,
         Some(flags) if flags.errors_last => {
             Flags { warning: is_set(master, Role::Warnings)?, looked_at: now, errors_last: false, ..flags }
         }

@@ -72,11 +72,11 @@ impl ConsecutiveFrames {
     }
 }
 
-pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
-    data.values.iter().map(|(status, raw)| frame(layout, *status, *raw)).collect()
+pub fn parse_frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
+    data.values.iter().map(|(status, raw)| parse_frame(layout, *status, *raw)).collect()
 }
 
-fn frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
+fn parse_frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
     match status {
         BissStatus::OK => Ok(layout.parse(raw)?),
         BissStatus::NO_ACKNOWLEDGE => Err(FrameReadError::NoAcknowledge),
@@ -108,6 +108,6 @@ mod tests {
         let values = cases.iter().map(|(status, raw, _)| (*status, *raw)).collect();
         let data = BissData { first_index: 0, t0_us: 0, period_us: 50, lost: 0, width: 6, values };
         let expected: Vec<Frame> = cases.into_iter().map(|(.., frame)| frame).collect();
-        assert_eq!(frames(&Layout::default(), &data), expected);
+        assert_eq!(parse_frames(&Layout::default(), &data), expected);
     }
 }

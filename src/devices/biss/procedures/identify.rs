@@ -11,7 +11,7 @@ use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol::Hello;
 use crate::devices::biss::profile::ProfileIdentity;
 use crate::devices::biss::protocol::{
-    Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
+    Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, IdentityMismatch, Layout, ProfileId,
     RegisterAddress, Role, eds_layout,
 };
 use crate::profile::UnknownValues;
@@ -28,7 +28,7 @@ pub struct Identity {
     pub description: Arc<Description>,
     /// Difference from a description of the same manufacturer for another device ID. `None` if there is no such
     /// description.
-    pub mismatch: Option<Mismatch>,
+    pub mismatch: Option<IdentityMismatch>,
     /// Data sheet, or `None` if the encoder has none or its profile is not supported.
     pub data_sheet: Option<DataSheet>,
     pub layout: Layout,
@@ -132,7 +132,7 @@ pub(super) fn identify_and_record(
         .and_then(|register| registers.bytes(register))
         .unwrap_or_default();
     let serial_number =
-        registers.number(&description, Role::SerialNumber).map(|number| number.to_string()).unwrap_or_default();
+        registers.number_of(&description, Role::SerialNumber).map(|number| number.to_string()).unwrap_or_default();
     let firmware = firmware_from_registers(&description, registers);
     let data_sheet = read_data_sheet(master, kind.profile, registers)?;
     let sheet_layout = data_sheet.as_ref().and_then(|sheet| sheet.layout.clone().ok());
@@ -154,8 +154,8 @@ pub(super) fn identify_and_record(
     station.source = Some(source);
     Ok(Identity {
         mismatch: closest_mismatch(types, &kind).filter(|_| description.identity().is_none()),
-        layout: station.frame(),
-        adapter: station.adapter.hello().cloned(),
+        layout: station.frame_layout(),
+        adapter: station.adapter.identity().cloned(),
         order: station.order,
         kind,
         serial_number,
@@ -202,12 +202,12 @@ fn read_type_identity(master: &mut Master<'_>, registers: &mut Registers) -> Res
 }
 
 /// Returns a description of the same manufacturer and profile for another device.
-fn closest_mismatch(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
+fn closest_mismatch(types: &Descriptions, kind: &Kind) -> Option<IdentityMismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types
         .iter()
         .filter(|description| description.identity().is_some_and(is_near))
-        .find_map(|near| near.check(kind).err())
+        .find_map(|near| near.check_identity(kind).err())
 }
 
 fn firmware_from_registers(description: &Description, registers: &Registers) -> Option<Firmware> {

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use bus::NoFrame;
 
-use super::error::{Damage, RequestedItem, requested_register};
+use super::error::{ReplyDamage, RequestedItem, requested_register};
 use super::position::PositionReading;
 use super::{Error, Station, Transport};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, byte_order_from_reply};
@@ -25,7 +25,7 @@ use crate::units::Moment;
 
 /// Number of missing replies after which a register is considered missing, if another register replies. A single reply
 /// may be lost on a bad line.
-const SILENCES: u32 = 3;
+const MAX_MISSING_REPLIES: u32 = 3;
 
 /// Host side of the line to a BiSS encoder, over either transport.
 pub struct Master<'a> {
@@ -39,12 +39,12 @@ enum ExchangeError {
     Silence {
         echo_heard: bool,
     },
-    Damage(Damage),
+    Damage(ReplyDamage),
     NoFrame(NoFrame),
 }
 
 /// Result of an exchange. The outer error is final, and the inner one may be retried.
-type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
+type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
@@ -128,7 +128,7 @@ impl<'a> Master<'a> {
             Err(Error::NoReply { .. }) if self.is_only_this_register_silent(address)? => {
                 Err(Error::NoSuchRegister { address })
             }
-            Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose(failed)),
+            Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose_line(failed)),
             result => result,
         }
     }
@@ -141,9 +141,9 @@ impl<'a> Master<'a> {
     pub fn read_consecutive(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
         let none = || Error::OutOfRange { start, count };
         let count_16 = u16::try_from(count).map_err(|_| none())?;
-        let end = start.global().checked_add(count_16).ok_or_else(none)?;
+        let end = start.global_number().checked_add(count_16).ok_or_else(none)?;
         let place = |global| RegisterAddress::from_global(global).ok_or_else(none);
-        let places = (start.global()..end).map(place).collect::<Result<Vec<_>, _>>()?;
+        let places = (start.global_number()..end).map(place).collect::<Result<Vec<_>, _>>()?;
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
@@ -181,7 +181,7 @@ impl<'a> Master<'a> {
                 }
                 Err(trouble) => trouble,
             };
-            let failed = self.failed(requested, tries, &trouble);
+            let failed = self.retries_exhausted(requested, tries, &trouble);
             let failure = self.prepare_retry(tries, trouble, failed.clone());
             if !self.station.is_readback_conclusive(address) {
                 return Err(unclear(failed));
@@ -202,30 +202,30 @@ impl<'a> Master<'a> {
     /// or the user cancels.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.transport == Transport::ConfigPin {
-            return self.ask(RequestedItem::Position, |master| master.read_pin_position_once());
+            return self.request_with_retries(RequestedItem::Position, |master| master.read_pin_position_once());
         }
         self.ensure_ready()?;
-        match self.ask(RequestedItem::Position, |master| master.read_bus_position_once()) {
-            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.recheck_frame_widths(failed),
+        match self.request_with_retries(RequestedItem::Position, |master| master.read_bus_position_once()) {
+            Err(failed @ Error::Damaged { cause: ReplyDamage::Frame(_), .. }) => self.recheck_frame_widths(failed),
             result => result,
         }
     }
 
     /// Reads a frame of the given widths over an adapter. The frame is right-justified and its checksum is not
     /// verified.
-    pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
+    pub(super) fn read_frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.ensure_bus_ready_for(data_bits, crc_bits)?;
-        self.ask(RequestedItem::Position, |master| master.read_frame_once()).map(|(raw, _)| raw)
+        self.request_with_retries(RequestedItem::Position, |master| master.read_frame_once()).map(|(raw, _)| raw)
     }
 
-    fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+    fn read_once(&mut self, address: RegisterAddress) -> AttemptResult<u8> {
         match self.station.transport {
             Transport::ConfigPin => self.read_pin_once(address),
             Transport::Adapter => self.read_bus_once(address),
         }
     }
 
-    fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
+    fn write_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<WriteReaction> {
         match self.station.transport {
             Transport::ConfigPin => self.write_pin_once(address, value),
             Transport::Adapter => self.write_bus_once(address, value),
@@ -250,7 +250,11 @@ impl<'a> Master<'a> {
     }
 
     /// Sends a request that changes nothing in the encoder, with retries if the line fails.
-    fn ask<T>(&mut self, requested: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
+    fn request_with_retries<T>(
+        &mut self,
+        requested: RequestedItem,
+        mut once: impl FnMut(&mut Self) -> AttemptResult<T>,
+    ) -> Result<T, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -260,35 +264,35 @@ impl<'a> Master<'a> {
                     return Ok(answer);
                 }
                 Err(trouble) => {
-                    let failed = self.failed(requested, tries, &trouble);
+                    let failed = self.retries_exhausted(requested, tries, &trouble);
                     self.prepare_retry(tries, trouble, failed)?;
                 }
             }
         }
     }
 
-    /// Sends a request like [`ask`](Self::ask). If the line has damaged any data before, the same reply must arrive
+    /// Sends a request like [`request_with_retries`](Self::request_with_retries). If the line has damaged any data before, the same reply must arrive
     /// twice.
     fn read_confirmed(
         &mut self,
         requested: RequestedItem,
-        mut once: impl FnMut(&mut Self) -> Attempt<u8>,
+        mut once: impl FnMut(&mut Self) -> AttemptResult<u8>,
     ) -> Result<u8, Error> {
-        let mut value = self.ask(requested, &mut once)?;
+        let mut value = self.request_with_retries(requested, &mut once)?;
         for _ in 0..MAX_ATTEMPTS {
             if !self.station.needs_double_read() {
                 return Ok(value);
             }
-            let again = self.ask(requested, &mut once)?;
+            let again = self.request_with_retries(requested, &mut once)?;
             if again == value {
                 return Ok(value);
             }
             value = again;
         }
-        Err(Error::Damaged { requested, tries: MAX_ATTEMPTS, cause: Damage::Inconsistent })
+        Err(Error::Damaged { requested, tries: MAX_ATTEMPTS, cause: ReplyDamage::Inconsistent })
     }
 
-    fn failed(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
+    fn retries_exhausted(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
             ExchangeError::Silence { echo_heard } => Error::NoReply { requested, tries, echo_heard: *echo_heard },
             ExchangeError::Damage(cause) => Error::Damaged { requested, tries, cause: cause.clone() },
@@ -313,7 +317,7 @@ impl<'a> Master<'a> {
         }
         match trouble {
             // No pause is needed, because late packets are recognised by their number.
-            ExchangeError::Damage(Damage::Frame(_)) => {}
+            ExchangeError::Damage(ReplyDamage::Frame(_)) => {}
             _ if self.station.transport == Transport::Adapter => self.pause()?,
             ExchangeError::Silence { .. } => {
                 self.line.receive_late_bytes(&mut self.station.line, tries, BYTE_TIME_OUT)?
@@ -330,7 +334,7 @@ impl<'a> Master<'a> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);
         }
-        for _ in 0..SILENCES {
+        for _ in 0..MAX_MISSING_REPLIES {
             let answers = self.read_once(RegisterAddress::BANK_SELECT)?.is_ok();
             if !answers || !matches!(self.read_once(address)?, Err(ExchangeError::Silence { .. })) {
                 return Ok(false);

@@ -9,23 +9,23 @@ use super::registers::Registers;
 use super::survey::read_survey;
 use super::write::non_operational_mode;
 use super::{Error, Master, PositionReading, Survey};
-use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
+use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, RecordedValues};
 use crate::devices::biss::protocol::{Area, Descriptions, DeviceMode, RegisterAddress};
 use crate::profile::UnknownValues;
 
 /// Number of position readings for detecting standstill.
 const READINGS: usize = 3;
-const BETWEEN: Duration = Duration::from_millis(100);
+const READING_INTERVAL: Duration = Duration::from_millis(100);
 /// Minimum multiturn width in bits for measuring a speed. During the readings, a motor at 12,000 rpm turns forty times,
 /// which is less than this range.
-const COUNTED: u8 = 7;
+const MIN_MULTITURN_BITS: u8 = 7;
 /// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`).
-const TREMBLE: u64 = 8192;
+const REST_JITTER_DIVISOR: u64 = 8192;
 
 /// Treatment of values that were entered in a device mode but never saved. The encoder shows them as if they were
 /// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unsaved {
+pub enum UnsavedValues {
     Marked,
     /// Refuses the values, because a comparison would treat them as stored.
     Refused,
@@ -46,13 +46,13 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
     let mut readings = vec![first];
     let mut last = first;
     for _ in 1..READINGS {
-        master.wait(BETWEEN)?;
+        master.wait(READING_INTERVAL)?;
         last = master.position()?;
         readings.push(last);
     }
-    let range = 1u64.checked_shl(first.raw().bits.into());
-    let allowed = ((1u64 << first.singleturn_bits) / TREMBLE).max(1);
-    if readings.iter().all(|reading| distance(first.position(), reading.position(), range) <= allowed) {
+    let range = 1u64.checked_shl(first.position_word().bits.into());
+    let allowed = ((1u64 << first.singleturn_bits) / REST_JITTER_DIVISOR).max(1);
+    if readings.iter().all(|reading| shortest_distance(first.position(), reading.position(), range) <= allowed) {
         Ok(last)
     } else {
         Err(Error::Moving { rpm: speed(&readings) })
@@ -63,7 +63,7 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
 /// multiturn is too narrow to count the turns, or its width is unknown.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
-    if first.multiturn_bits < COUNTED || !first.is_split_known {
+    if first.multiturn_bits < MIN_MULTITURN_BITS || !first.is_split_known {
         return None;
     }
     let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;
@@ -76,7 +76,7 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
 }
 
 /// Returns the number of steps between two positions along the shorter way. A shaft at rest may jitter across zero.
-fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
+fn shortest_distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     let straight = a.abs_diff(b);
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
 }
@@ -129,19 +129,19 @@ pub fn read_area_at_standstill(
 pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
-    unsaved: Unsaved,
+    unsaved: UnsavedValues,
     progress: &mut dyn FnMut(u64, u64, ReadStep),
 ) -> Result<BissProfile, Error> {
     read_reliably(master, |master| {
         let mut registers = Registers::default();
         let identity = identify_and_record(master, types, &mut registers)?;
         let description = identity.description.clone();
-        let refused = |mode: &Option<DeviceMode>| mode.filter(|_| unsaved == Unsaved::Refused);
+        let refused = |mode: &Option<DeviceMode>| mode.filter(|_| unsaved == UnsavedValues::Refused);
         let before = non_operational_mode(master, &description)?;
         if let Some(mode) = refused(&before) {
             return Err(Error::NotInOperation { mode });
         }
-        let areas: Vec<&Area> = description.areas().iter().filter(|area| area.access.reads()).collect();
+        let areas: Vec<&Area> = description.areas().iter().filter(|area| area.access.is_readable()).collect();
         let (mut done, mut total) = (0, areas.iter().map(|area| area.size() as u64).sum());
         let in_areas = total;
         let survey = read_survey(master, identity, registers, &mut |at, of, address| {
@@ -155,13 +155,13 @@ pub fn save(
                 progress(done, total, ReadStep::Bank(bank));
                 done += Bank::SIZE as u64;
             })?;
-            data.push(DataImage::of(area, banks));
+            data.push(DataImage::new(area, banks));
         }
         // Another host may have entered a mode meanwhile.
         let mode = before.or(non_operational_mode(master, &description)?);
         match refused(&mode) {
             Some(mode) => Err(Error::NotInOperation { mode }),
-            None => Ok(profile_of(&survey, data, mode)),
+            None => Ok(create_profile(&survey, data, mode)),
         }
     })
 }
@@ -178,14 +178,14 @@ fn read_reliably<T>(
 }
 
 /// Creates the profile of an encoder. `unsaved` is the device mode during the reading, or `None` in operation.
-pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
+pub fn create_profile(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);
     let mut profile = BissProfile {
         identity: identity.profile(),
         filter: survey.status.filter,
         preset: survey.preset.map(|value| PresetSetting { value, unknown: UnknownValues::new() }),
-        recorded: Recorded {
+        recorded: RecordedValues {
             eds: sheets.map(|sheet| ListedBank::from(Bank { number: sheet.bank, bytes: sheet.bytes })).collect(),
             wiegand_last: survey.wiegand_last,
             wiegand_production: survey.wiegand_production,
@@ -207,8 +207,8 @@ mod tests {
 
     #[test]
     fn distances_take_the_shorter_direction() {
-        assert_eq!(distance(0, (1 << 33) - 1, Some(1 << 33)), 1);
-        assert_eq!(distance(5, 3, Some(1 << 33)), 2);
-        assert_eq!(distance(0, u64::MAX, None), u64::MAX);
+        assert_eq!(shortest_distance(0, (1 << 33) - 1, Some(1 << 33)), 1);
+        assert_eq!(shortest_distance(5, 3, Some(1 << 33)), 2);
+        assert_eq!(shortest_distance(0, u64::MAX, None), u64::MAX);
     }
 }

@@ -23,15 +23,16 @@ mod widths;
 pub mod write;
 
 pub use crate::link::line::Echo;
-pub use error::{Damage, Error, RequestedItem};
+pub use error::{Error, ReplyDamage, RequestedItem};
 pub use flags::read_position;
-pub use frames::{ConsecutiveFrames, Frame, FrameReadError, frames};
+pub use frames::{ConsecutiveFrames, Frame, FrameReadError, parse_frames};
 pub use identify::{DataSheet, DataSheetBank, FrameSource, Identity, identify};
 pub use master::Master;
 pub use memory::{
-    ReadStep, Unsaved, ensure_standstill, profile_of, read_area, read_area_at_standstill, read_registers, save,
+    ReadStep, UnsavedValues, create_profile, ensure_standstill, read_area, read_area_at_standstill, read_registers,
+    save,
 };
-pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched_value};
+pub use position::{PolledSample, PositionReading, WatchedReading, read_sample, read_watched_value};
 pub use registers::Registers;
 pub use station::{BusParameters, FrameParameters, LineParameters, ORDERS, PinParameters, Station, Supply, Transport};
-pub use survey::{FlagRegister, Status, Survey, read_status, survey};
+pub use survey::{EncoderStatus, FlagRegister, Survey, read_all_registers, read_status};

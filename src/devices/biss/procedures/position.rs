@@ -1,7 +1,7 @@
 //! Positions for display and plotting, and watched registers.
 
 use super::flags::add_error_flags;
-use super::{ConsecutiveFrames, Damage, Error, Master};
+use super::{ConsecutiveFrames, Error, Master, ReplyDamage};
 use crate::bits::Word;
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{Layout, PositionData};
@@ -62,7 +62,7 @@ impl PositionReading {
     }
 
     /// Returns the position word, which has the multiturn bits above the singleturn bits. It has no flags and no CRC.
-    pub const fn raw(&self) -> Word {
+    pub const fn position_word(&self) -> Word {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
 
@@ -73,12 +73,12 @@ impl PositionReading {
 
     /// Returns the angle within the revolution in degrees, at least 0 and less than 360. Returns `None` if the number
     /// of steps per revolution is unknown.
-    pub fn angle(&self) -> Option<f64> {
-        self.is_split_known.then(|| self.degrees())
+    pub fn angle_degrees(&self) -> Option<f64> {
+        self.is_split_known.then(|| self.degrees_in_turn())
     }
 
     /// Returns the angle within the revolution in degrees, at least 0 and less than 360.
-    pub fn degrees(&self) -> f64 {
+    pub fn degrees_in_turn(&self) -> f64 {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
@@ -89,7 +89,7 @@ impl PositionReading {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Sample {
+pub enum PolledSample {
     Position(PositionReading),
     /// Frames have arrived, but none with a correct checksum.
     Missed {
@@ -115,12 +115,12 @@ pub struct WatchedReading {
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
-pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
+pub fn read_sample(master: &mut Master<'_>) -> Result<PolledSample, Error> {
     match master.position() {
-        Ok(reading) if reading.frame.is_some() => Ok(Sample::Position(reading)),
-        Ok(reading) => add_error_flags(master, reading).map(Sample::Position),
-        Err(Error::Damaged { cause: Damage::Frame(_), .. }) => {
-            Ok(Sample::Missed { at: master.now(), crc_errors: master.station().take_crc_errors() })
+        Ok(reading) if reading.frame.is_some() => Ok(PolledSample::Position(reading)),
+        Ok(reading) => add_error_flags(master, reading).map(PolledSample::Position),
+        Err(Error::Damaged { cause: ReplyDamage::Frame(_), .. }) => {
+            Ok(PolledSample::Missed { at: master.now(), crc_errors: master.station().take_crc_errors() })
         }
         Err(error) => Err(error),
     }

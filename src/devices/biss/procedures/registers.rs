@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Error, Master};
-use crate::devices::biss::protocol::{Decoded, Description, Firmware, Register, RegisterAddress, Role};
+use crate::devices::biss::protocol::{DecodedValue, Description, Firmware, Register, RegisterAddress, Role};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Registers(BTreeMap<RegisterAddress, u8>);
@@ -15,7 +15,7 @@ impl Registers {
 
     /// Returns the bytes of consecutive registers by global address. Returns `None` if some of them have not been read.
     pub fn run(&self, start: RegisterAddress, count: u8) -> Option<Vec<u8>> {
-        let first = start.global();
+        let first = start.global_number();
         (first..first.saturating_add(count.into())).map(|at| self.get(RegisterAddress::from_global(at)?)).collect()
     }
 
@@ -24,17 +24,17 @@ impl Registers {
         self.run(register.address, register.width)
     }
 
-    pub fn number(&self, description: &Description, role: Role) -> Option<u64> {
+    pub fn number_of(&self, description: &Description, role: Role) -> Option<u64> {
         let register = description.register_with_role(role)?;
-        register.number(&self.bytes(register)?)
+        register.to_number(&self.bytes(register)?)
     }
 
-    pub fn quantity(&self, description: &Description, role: Role) -> Option<f64> {
+    pub fn quantity_of(&self, description: &Description, role: Role) -> Option<f64> {
         let register = description.register_with_role(role)?;
         match register.decode(&self.bytes(register)?)? {
-            Decoded::Scaled(value) => Some(value),
-            Decoded::Number(value) | Decoded::Hex(value) => Some(value as f64),
-            Decoded::Bits(_) | Decoded::Choice(..) | Decoded::Text(_) => None,
+            DecodedValue::Scaled(value) => Some(value),
+            DecodedValue::Number(value) | DecodedValue::Hex(value) => Some(value as f64),
+            DecodedValue::Bits(_) | DecodedValue::Choice(..) | DecodedValue::Text(_) => None,
         }
     }
 
@@ -44,8 +44,8 @@ impl Registers {
     }
 
     /// Stores consecutive bytes that were read.
-    pub(super) fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
-        let places = (start.global()..).map_while(RegisterAddress::from_global);
+    pub(super) fn store_bytes(&mut self, start: RegisterAddress, bytes: &[u8]) {
+        let places = (start.global_number()..).map_while(RegisterAddress::from_global);
         self.0.extend(places.zip(bytes.iter().copied()));
     }
 
@@ -60,7 +60,7 @@ impl Registers {
         count: u8,
     ) -> Result<Vec<u8>, Error> {
         let bytes = master.read_consecutive(start, count.into())?;
-        self.take(start, &bytes);
+        self.store_bytes(start, &bytes);
         Ok(bytes)
     }
 
@@ -83,7 +83,7 @@ impl Registers {
         let wanted: Vec<&Register> = description
             .registers()
             .iter()
-            .filter(|register| has(register, firmware) && self.bytes(register).is_none())
+            .filter(|register| is_readable(register, firmware) && self.bytes(register).is_none())
             .collect();
         let mut missing = Vec::new();
         for (done, register) in (0..).zip(&wanted) {
@@ -109,7 +109,7 @@ impl Registers {
         roles: &[Role],
     ) -> Result<(), Error> {
         for register in roles.iter().filter_map(|role| description.register_with_role(*role)) {
-            if !has(register, firmware) {
+            if !is_readable(register, firmware) {
                 continue;
             }
             match self.read_register(master, register) {
@@ -123,8 +123,8 @@ impl Registers {
 
 /// Returns whether a register can be read with the given firmware. If the firmware is unknown, the register must exist
 /// in every version.
-fn has(register: &Register, firmware: Option<Firmware>) -> bool {
-    register.access.reads() && firmware.unwrap_or_default() >= register.since
+fn is_readable(register: &Register, firmware: Option<Firmware>) -> bool {
+    register.access.is_readable() && firmware.unwrap_or_default() >= register.since
 }
 
 #[cfg(test)]
@@ -138,13 +138,13 @@ mod tests {
 
     #[test]
     fn values_are_found_by_address_and_by_role() {
-        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().unwrap();
+        let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").cloned().unwrap();
         let mut registers = Registers::default();
-        registers.take(at("0x44"), &[0x00, 0x12, 0xD6, 0x87]);
-        registers.take(at("0x66"), &[0x4B]);
-        assert_eq!(registers.number(&kit, Role::SerialNumber), Some(1_234_567));
-        assert_eq!(registers.quantity(&kit, Role::Temperature), Some(25.0));
-        assert_eq!(registers.number(&kit, Role::Errors), None);
+        registers.store_bytes(at("0x44"), &[0x00, 0x12, 0xD6, 0x87]);
+        registers.store_bytes(at("0x66"), &[0x4B]);
+        assert_eq!(registers.number_of(&kit, Role::SerialNumber), Some(1_234_567));
+        assert_eq!(registers.quantity_of(&kit, Role::Temperature), Some(25.0));
+        assert_eq!(registers.number_of(&kit, Role::Errors), None);
         assert_eq!(registers.run(at("0x45"), 3), Some(vec![0x12, 0xD6, 0x87]));
         assert_eq!(registers.run(at("0x45"), 4), None);
         assert_eq!(registers.iter().count(), 5);
@@ -152,10 +152,10 @@ mod tests {
 
     #[test]
     fn registers_missing_in_the_firmware_are_not_read() {
-        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().unwrap();
+        let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").cloned().unwrap();
         let errors = kit.register_with_role(Role::Errors).unwrap();
-        assert!(has(errors, Some(Firmware::new(1, 6, 0))));
-        assert!(!has(errors, Some(Firmware::new(1, 5, 9))) && !has(errors, None));
-        assert!(has(kit.register_with_role(Role::Mode).unwrap(), None));
+        assert!(is_readable(errors, Some(Firmware::new(1, 6, 0))));
+        assert!(!is_readable(errors, Some(Firmware::new(1, 5, 9))) && !is_readable(errors, None));
+        assert!(is_readable(kit.register_with_role(Role::Mode).unwrap(), None));
     }
 }

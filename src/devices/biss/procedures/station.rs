@@ -55,7 +55,7 @@ parameters! {
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
         /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE));
-        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;
+        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::KEYWORDS;
     }
 }
 
@@ -154,7 +154,7 @@ impl Supply {
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
     /// Returns the requested supply voltage together with the range of the kit encoder.
-    pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
+    pub(super) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
 }
@@ -209,21 +209,21 @@ impl Station {
         (station.order, station.line.echo, station.timeout) = (pin.order, pin.echo, pin.timeout);
         station.clock_hz = bus.clock_hz;
         station.supply = bus.millivolt.map(|millivolt| Supply { millivolt, measured: None });
-        station.adapter.leave_supply(bus.after);
+        station.adapter.set_supply_after_session(bus.after);
         station.given = FrameParameters::read(pairs)?.layout(query)?;
         Ok(station)
     }
 
     /// Returns the position frame layout. A layout from the data sheet or the link has priority over the one in the
     /// description. The default is the layout of the kit encoder.
-    pub fn frame(&self) -> Layout {
+    pub fn frame_layout(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
     }
 
     /// Forgets the adapter, so that it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
-        self.adapter.forget();
+        self.adapter.forget_identity();
         self.flow = None;
         self.forget_settings();
     }
@@ -257,13 +257,13 @@ impl Station {
             return true;
         }
         let Some(description) = &self.description else { return false };
-        description.access(address) == Some(Access::Rw) && !self.is_command_register(address)
+        description.access_at(address) == Some(Access::Rw) && !self.is_command_register(address)
     }
 
     /// Returns whether writing the given register is a command that runs a procedure or saves something.
     pub(super) fn is_command_register(&self, address: RegisterAddress) -> bool {
         self.description.as_ref().is_some_and(|description| {
-            let saves = description.at(address).is_some_and(|register| !register.saves.is_empty());
+            let saves = description.register_at(address).is_some_and(|register| !register.saves.is_empty());
             saves || description.procedures().iter().any(|procedure| procedure.command == address)
         })
     }
@@ -321,7 +321,7 @@ mod tests {
         assert_eq!(station.to_string(), "UBICOM at 115200 8N1");
         assert_eq!((station.order, station.line.echo), (None, Echo::Unknown));
         assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(100), Duration::from_millis(50)));
-        assert_eq!((station.clock_hz, station.supply, station.frame().bits()), (1_000_000, None, 41));
+        assert_eq!((station.clock_hz, station.supply, station.frame_layout().bits()), (1_000_000, None, 41));
     }
 
     #[test]
@@ -382,7 +382,7 @@ mod tests {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);
         let tells = |station: &Station, text: &str| station.is_readback_conclusive(text.parse().unwrap());
         assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");
-        station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
+        station.description = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").cloned().map(Arc::new);
         for text in ["0x40", "0x6A", "0x6B", "0x01:0x02", "0x01:0x07", "0x04:0x00", "0x43:0x3F"] {
             assert!(tells(&station, text), "{text}");
         }

@@ -4,13 +4,13 @@ use super::identify::identify_and_record;
 use super::registers::Registers;
 use super::{Error, Identity, Master, PositionReading};
 use crate::devices::biss::protocol::{
-    CalibrationStatus, Decoded, Description, Descriptions, DeviceMode, Name, PositionFilter, PresetValue,
+    CalibrationStatus, DecodedValue, Description, Descriptions, DeviceMode, Name, PositionFilter, PresetValue,
     ProcedureKind, RegisterAddress, Role, WiegandResult,
 };
 
 /// The status of an encoder. A value is `None` if the encoder or its firmware has no register for it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Status {
+pub struct EncoderStatus {
     pub mode: Option<DeviceMode>,
     pub protection: Option<u8>,
     pub errors: Option<FlagRegister>,
@@ -21,7 +21,7 @@ pub struct Status {
     pub position: Option<PositionReading>,
 }
 
-impl Status {
+impl EncoderStatus {
     /// Returns the device mode, or `None` in operation. In other modes, registers may show values that were never
     /// saved.
     pub fn non_operational_mode(&self) -> Option<DeviceMode> {
@@ -40,7 +40,7 @@ pub struct FlagRegister {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
-    pub status: Status,
+    pub status: EncoderStatus,
     pub calibration: Option<CalibrationStatus>,
     /// Result of the last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
@@ -62,20 +62,20 @@ const WIEGAND_RESULTS: u8 = 1;
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder has not been identified.
-pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
+pub fn read_status(master: &mut Master<'_>) -> Result<EncoderStatus, Error> {
     let description = master.description()?;
     let firmware = master.station().firmware;
     let mut registers = Registers::default();
     registers.read_registers_with_roles(master, &description, firmware, &STATUS)?;
     let position = read_position_if_available(master)?;
-    Ok(status_of(&description, &registers, position))
+    Ok(status_from_registers(&description, &registers, position))
 }
 
 /// Reads every register in the encoder's description, and the position.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
-pub fn survey(
+pub fn read_all_registers(
     master: &mut Master<'_>,
     types: &Descriptions,
     progress: &mut dyn FnMut(u64, u64, RegisterAddress),
@@ -95,10 +95,10 @@ pub(super) fn read_survey(
     let description = identity.description.clone();
     let missing = registers.read_described_registers(master, &description, identity.firmware, progress)?;
     let position = read_position_if_available(master)?;
-    let results = |number| wiegand(&description, &registers, number);
+    let results = |number| wiegand_result(&description, &registers, number);
     Ok(Survey {
-        status: status_of(&description, &registers, position),
-        calibration: calibration(&description, &registers),
+        status: status_from_registers(&description, &registers, position),
+        calibration: calibration_status(&description, &registers),
         wiegand_last: results(0),
         wiegand_production: results(1),
         wiegand_saved: results(2),
@@ -118,14 +118,18 @@ fn read_position_if_available(master: &mut Master<'_>) -> Result<Option<Position
     }
 }
 
-fn status_of(description: &Description, registers: &Registers, position: Option<PositionReading>) -> Status {
-    let byte = |role| registers.number(description, role).and_then(|number| u8::try_from(number).ok());
-    Status {
+fn status_from_registers(
+    description: &Description,
+    registers: &Registers,
+    position: Option<PositionReading>,
+) -> EncoderStatus {
+    let byte = |role| registers.number_of(description, role).and_then(|number| u8::try_from(number).ok());
+    EncoderStatus {
         mode: byte(Role::Mode).map(DeviceMode::new),
         protection: byte(Role::Password),
         errors: bits(description, registers, Role::Errors),
         warnings: bits(description, registers, Role::Warnings),
-        celsius: registers.quantity(description, Role::Temperature),
+        celsius: registers.quantity_of(description, Role::Temperature),
         filter: byte(Role::Filter).map(PositionFilter::from_byte),
         position,
     }
@@ -134,17 +138,17 @@ fn status_of(description: &Description, registers: &Registers, position: Option<
 fn bits(description: &Description, registers: &Registers, role: Role) -> Option<FlagRegister> {
     let register = description.register_with_role(role)?;
     let bytes = registers.bytes(register)?;
-    let raw = register.number(&bytes)?;
+    let raw = register.to_number(&bytes)?;
     let set = match register.decode(&bytes)? {
-        Decoded::Bits(set) => set.into_iter().map(|(bit, name)| (bit, name.cloned())).collect(),
+        DecodedValue::Bits(set) => set.into_iter().map(|(bit, name)| (bit, name.cloned())).collect(),
         _ => (0..64).filter(|bit| raw >> bit & 1 == 1).map(|bit| (bit, None)).collect(),
     };
     Some(FlagRegister { raw, set })
 }
 
-fn wiegand(description: &Description, registers: &Registers, number: u8) -> Option<WiegandResult> {
+fn wiegand_result(description: &Description, registers: &Registers, number: u8) -> Option<WiegandResult> {
     let error = description.procedure(ProcedureKind::WiegandTest)?.data?;
-    let bytes = registers.run(error.plus(WIEGAND_RESULTS + 4 * number)?, 4)?;
+    let bytes = registers.run(error.offset_by(WIEGAND_RESULTS + 4 * number)?, 4)?;
     bytes.try_into().ok().map(WiegandResult::parse)
 }
 
@@ -153,6 +157,6 @@ fn preset(description: &Description, registers: &Registers) -> Option<PresetValu
     bytes.try_into().ok().map(PresetValue::parse)
 }
 
-fn calibration(description: &Description, registers: &Registers) -> Option<CalibrationStatus> {
+fn calibration_status(description: &Description, registers: &Registers) -> Option<CalibrationStatus> {
     registers.get(description.procedure(ProcedureKind::Calibration)?.status).map(CalibrationStatus::from_byte)
 }

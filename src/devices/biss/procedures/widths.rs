@@ -9,9 +9,9 @@ use crate::devices::biss::protocol::{Crc, Layout, LayoutError, detect_data_bits}
 const CLOCKED: u8 = 64;
 /// Maximum number of frames examined.
 const FRAMES: usize = 200;
-const BETWEEN: Duration = Duration::from_millis(2);
+const READING_INTERVAL: Duration = Duration::from_millis(2);
 /// Maximum width of the singleturn position in bits.
-const MOST: u8 = 32;
+const MAX_SINGLETURN_BITS: u8 = 32;
 
 /// Finds the frame layout by its checksum while the shaft turns. It is assumed that an error and a warning bit follow
 /// the position, and that the checksum is CRC6 43h inverted, as usual for BiSS encoders (`U`). The multiturn width
@@ -24,13 +24,13 @@ pub(super) fn find_frame_layout(master: &mut Master<'_>) -> Result<Layout, Error
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
     let mut frames = Vec::with_capacity(FRAMES);
     while frames.len() < FRAMES {
-        frames.push(master.frame(CLOCKED - crc.width(), crc.width())?);
+        frames.push(master.read_frame(CLOCKED - crc.width(), crc.width())?);
         if let Some(bits) = detect_data_bits(&frames, CLOCKED, &crc) {
             let position = bits.saturating_sub(2);
-            let singleturn = position.min(MOST);
+            let singleturn = position.min(MAX_SINGLETURN_BITS);
             return Ok(Layout::new(position - singleturn, singleturn, true, true, Some(crc))?);
         }
-        master.wait(BETWEEN)?;
+        master.wait(READING_INTERVAL)?;
     }
     let moving = frames.windows(2).any(|pair| pair.first() != pair.last());
     Err(Error::WidthsUnknown { moving })

@@ -3,7 +3,7 @@
 //! operation after each operation.
 
 use super::error::to_register_array;
-use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
+use super::procedure::{Failure, LeftState, Operator, Outcome, ProcedureContext, ProcedureProgress, ProcedureStep};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
 use crate::devices::biss::protocol::{
@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{
 use crate::profile::{ConfirmedPlan, Write, WriteRecord};
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Written {
+pub struct WrittenValues {
     pub ops: usize,
     pub written: u64,
     /// Number of registers read back with the correct value.
@@ -22,7 +22,7 @@ pub struct Written {
     pub outcomes: Vec<Outcome>,
 }
 
-impl WriteRecord for Written {
+impl WriteRecord for WrittenValues {
     fn operation_count(&self) -> usize {
         self.ops
     }
@@ -32,7 +32,7 @@ impl WriteRecord for Written {
     }
 }
 
-pub type Interrupted = crate::profile::InterruptedWrite<Op, Failure, Written, EndState>;
+pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Failure, WrittenValues, EndState>;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
@@ -43,7 +43,7 @@ pub struct EndState {
     pub standing: Option<LeftState>,
 }
 
-impl Interrupted {
+impl InterruptedWrite {
     /// Returns the register whose individual write has an unknown result, if any. The result is known if the value was
     /// refused or not sent.
     pub fn uncertain_write(&self) -> Option<RegisterAddress> {
@@ -56,7 +56,7 @@ impl Interrupted {
 }
 
 pub struct EncoderWriter<'w, 'm> {
-    guide: Guide<'w, 'm>,
+    guide: ProcedureContext<'w, 'm>,
     identity: &'w Identity,
     /// The step at which an operation ended early.
     at: ProcedureStep,
@@ -75,7 +75,7 @@ impl<'w, 'm> EncoderWriter<'w, 'm> {
     ) -> Result<Self, Error> {
         let description = master.description()?;
         Ok(EncoderWriter {
-            guide: Guide::new(master, description, operator, tell),
+            guide: ProcedureContext::new(master, description, operator, tell),
             identity,
             at: ProcedureStep::LeadBack,
         })
@@ -86,13 +86,13 @@ impl Write for EncoderWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Failure;
-    type Written = Written;
+    type Written = WrittenValues;
     type EndState = EndState;
 
     /// Checks that the plan was made for the connected encoder. The memory is compared as well, because two new
     /// encoders have the same identity.
     fn confirm_base(&mut self, plan: &BissPlan) -> Result<(), Error> {
-        let master = self.guide.master();
+        let master = self.guide.master_mut();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
         if !is_same(master, self.identity)? {
             return changed("the encoder itself");
@@ -123,27 +123,27 @@ impl Write for EncoderWriter<'_, '_> {
                 return changed(&format!("bank 0x{:02X}", bank.number));
             }
         }
-        self.guide.found(password);
+        self.guide.set_initial_state(password);
         Ok(())
     }
 
     /// Performs an operation and then returns the encoder to operation, even after a failure. Cancellation is checked
     /// between exchanges, unless stopping would leave something incomplete.
-    fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
+    fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut WrittenValues) -> Result<(), Failure> {
         let guide = &mut self.guide;
-        guide.begin(done.outcomes.len());
-        let ended = guide.perform(op);
-        done.write_cycles = guide.cycles();
-        self.at = guide.at();
+        guide.begin_operation(done.outcomes.len());
+        let ended = guide.execute(op);
+        done.write_cycles = guide.write_cycles();
+        self.at = guide.current_step();
         let led = lead_back(guide, ended.as_ref().err());
         count(done, op, ended?);
         // The operation is done, and the encoder cannot be left in this state.
-        self.at = guide.at();
+        self.at = guide.current_step();
         Ok(led?)
     }
 
     fn end_state(&mut self, cause: &Failure) -> EndState {
-        let mut standing = self.guide.standing().clone();
+        let mut standing = self.guide.left_state().clone();
         if matches!(cause, Failure::Device(error) if error.is_lost()) {
             standing.record_possible_power_loss();
         }
@@ -152,7 +152,7 @@ impl Write for EncoderWriter<'_, '_> {
 }
 
 /// Returns the encoder to operation if the line still works.
-fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
+fn lead_back(guide: &mut ProcedureContext<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
         Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
         _ => guide.lead_back(),
@@ -168,25 +168,25 @@ fn is_gone(error: &Error) -> bool {
     }
 }
 
-fn count(done: &mut Written, op: &Op, outcome: Outcome) {
+fn count(done: &mut WrittenValues, op: &Op, outcome: Outcome) {
     if !matches!(outcome, Outcome::Skipped { .. }) {
         done.ops += 1;
-        done.written += op.weight();
+        done.written += op.compared_items();
         // The result of a calibration is known only from the encoder's status. The same applies to a result that shows
         // only after a restart.
         let is_unverifiable =
             matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
-        done.verified += if is_unverifiable { 0 } else { op.weight() };
+        done.verified += if is_unverifiable { 0 } else { op.compared_items() };
     }
     done.outcomes.push(outcome);
 }
 
 fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> {
     let kind = &identity.kind;
-    let direct = |address| RegisterAddress::direct(address).unwrap_or(RegisterAddress::BANK_SELECT);
+    let direct = |address| RegisterAddress::direct_register(address).unwrap_or(RegisterAddress::BANK_SELECT);
     let serial = identity.description.register_with_role(Role::SerialNumber).map(|register| register.address);
     let mut wanted = vec![
-        (direct(0x42), kind.profile.word().to_be_bytes().to_vec()),
+        (direct(0x42), kind.profile.to_u16().to_be_bytes().to_vec()),
         (direct(0x78), kind.device_id.to_vec()),
         (direct(0x7E), kind.manufacturer.to_vec()),
     ];
@@ -245,7 +245,7 @@ pub fn read_state(
         progress(done, *number);
         read.push(read_bank(master, *number)?);
     }
-    let areas: Vec<Area> = description.areas().iter().filter(|area| area.access.reads()).cloned().collect();
+    let areas: Vec<Area> = description.areas().iter().filter(|area| area.access.is_readable()).cloned().collect();
     Ok(DeviceState { identity: identity.profile(), filter, preset, areas, banks: read })
 }
 
@@ -263,7 +263,7 @@ pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
 fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<PositionFilter>, Error> {
     let firmware = master.station().firmware;
     let Some(register) = description.register_with_role(Role::Filter) else { return Ok(None) };
-    if !has(description, firmware, ProcedureKind::FilterSelection) {
+    if !has_procedure(description, firmware, ProcedureKind::FilterSelection) {
         return Ok(None);
     }
     Ok(Some(PositionFilter::from_byte(master.read(register.address)?)))
@@ -273,12 +273,14 @@ fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Opt
 fn read_preset(master: &mut Master<'_>, description: &Description) -> Result<Option<PresetValue>, Error> {
     let firmware = master.station().firmware;
     let place = description.procedure(ProcedureKind::Preset).and_then(|procedure| procedure.data);
-    let Some(place) = place.filter(|_| has(description, firmware, ProcedureKind::Preset)) else { return Ok(None) };
+    let Some(place) = place.filter(|_| has_procedure(description, firmware, ProcedureKind::Preset)) else {
+        return Ok(None);
+    };
     let bytes = master.read_consecutive(place, PresetValue::BYTES.into())?;
     Ok(<[u8; 6]>::try_from(bytes).ok().map(PresetValue::parse))
 }
 
-fn has(description: &Description, firmware: Option<Firmware>, kind: ProcedureKind) -> bool {
+fn has_procedure(description: &Description, firmware: Option<Firmware>, kind: ProcedureKind) -> bool {
     let since = description.procedure(kind).map(|procedure| procedure.since);
     since.is_some_and(|since| firmware.is_none_or(|firmware| firmware >= since))
 }

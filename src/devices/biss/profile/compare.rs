@@ -38,7 +38,7 @@ fn compare_bytes(item: &str, left: Option<Vec<u8>>, right: Option<Vec<u8>>, comp
     for run in differing_ranges(&left, &right) {
         let part = |side: &[u8]| hex_compact(side.get(run.clone()).unwrap_or_default());
         let addresses = all.addresses().skip(run.start).take(run.len());
-        let item = RegisterRange::runs(addresses).first().map(ToString::to_string).unwrap_or_default();
+        let item = RegisterRange::from_addresses(addresses).first().map(ToString::to_string).unwrap_or_default();
         comparison.differences.push(Difference { item, left: part(&left), right: part(&right) });
     }
 }

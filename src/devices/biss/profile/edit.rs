@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::restore::{check_preset_width, store};
+use super::restore::{check_preset_width, store_operations};
 use super::{
     Bank, Base, BissPlan, BissProfile, DeviceState, Op, PlanError, PresetParts, RegisterChange, RegisterRange,
     plan_data_areas,
@@ -48,7 +48,7 @@ impl MountingSteps {
     ///
     /// # Errors
     /// Returns [`PlanError::DrivenByThisEncoder`] for such a motor.
-    pub fn check(&self, motor: MotorSource) -> Result<(), PlanError> {
+    pub fn check_motor(&self, motor: MotorSource) -> Result<(), PlanError> {
         if self.needs_motor() && motor == MotorSource::ThisEncoder {
             return Err(PlanError::DrivenByThisEncoder);
         }
@@ -69,11 +69,11 @@ pub enum RegisterKind<'d> {
 ///
 /// # Errors
 /// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that only the procedures write.
-pub fn place(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
+pub fn register_kind(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
     if is_protected_register(description, address) {
         return Err(PlanError::Guarded { address });
     }
-    if description.access(address).is_some_and(|access| !access.writes()) {
+    if description.access_at(address).is_some_and(|access| !access.is_writable()) {
         return Err(PlanError::ReadOnly { address });
     }
     let area = description.area_at(address).filter(|area| area.open.is_some());
@@ -96,7 +96,7 @@ fn is_protected_register(description: &Description, address: RegisterAddress) ->
 ///
 /// # Errors
 /// Returns [`PlanError::NoProcedure`] or [`PlanError::FirmwareTooOld`].
-pub fn procedure(
+pub fn find_procedure(
     description: &Description,
     firmware: Option<Firmware>,
     kind: ProcedureKind,
@@ -135,12 +135,17 @@ pub fn plan_edits(
     let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
     let mut touched = BTreeSet::new();
     for (address, new) in wanted {
-        match place(description, address)? {
+        match register_kind(description, address)? {
             RegisterKind::Register => {
                 let old = registers.iter().find(|(own, _)| *own == address).and_then(|(_, old)| *old);
                 if old != Some(new) {
                     base.registers.extend(old.map(|old| (address, old)));
-                    singles.push(Op::WriteRegister { address, old, new, cycles: cycles(description, address, new) });
+                    singles.push(Op::WriteRegister {
+                        address,
+                        old,
+                        new,
+                        cycles: write_cycles(description, address, new),
+                    });
                 }
             }
             RegisterKind::Data(area) => {
@@ -160,14 +165,14 @@ pub fn plan_edits(
         }
     }
     base.banks.extend(banks.iter().filter(|bank| touched.contains(&bank.number)));
-    let mut ops: Vec<Op> = areas.into_iter().flat_map(|(area, changes)| store(area, changes)).collect();
+    let mut ops: Vec<Op> = areas.into_iter().flat_map(|(area, changes)| store_operations(area, changes)).collect();
     ops.extend(singles);
     Ok(BissPlan { base, ops })
 }
 
 /// Returns the number of persistent writes that a value needs. It is at most one for a register without a description.
-fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
-    description.at(address).map_or(1, |register| u8::from(register.costs_write_cycle(value)))
+fn write_cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
+    description.register_at(address).map_or(1, |register| u8::from(register.costs_write_cycle(value)))
 }
 
 /// Plans to select a filter. The plan is empty if the filter is already active.
@@ -175,7 +180,7 @@ fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 
 /// # Errors
 /// Returns an error if the filter does not exist or the encoder offers no choice.
 pub fn plan_filter(description: &Description, device: &DeviceState, to: PositionFilter) -> Result<BissPlan, PlanError> {
-    let from = have(description, device, ProcedureKind::FilterSelection, device.filter)?;
+    let from = require_setting(description, device, ProcedureKind::FilterSelection, device.filter)?;
     if let PositionFilter::Unknown(code) = to {
         return Err(PlanError::UnknownFilter { code });
     }
@@ -196,7 +201,7 @@ pub fn plan_preset(
     parts: Option<PresetParts>,
 ) -> Result<BissPlan, PlanError> {
     let kind = ProcedureKind::Preset;
-    let from = have(description, device, kind, device.preset)?;
+    let from = require_setting(description, device, kind, device.preset)?;
     if let (Some(PresetParts::Singleturn | PresetParts::Multiturn), Some(found)) = (parts, device.identity.firmware)
         && found < PRESET_PARTS_SINCE
     {
@@ -223,10 +228,10 @@ pub fn plan_mounting(
     motor: MotorSource,
 ) -> Result<BissPlan, PlanError> {
     let firmware = device.identity.firmware;
-    run.check(motor)?;
+    run.check_motor(motor)?;
     let mut plan = BissPlan { base: Base::default(), ops: Vec::new() };
     if run.calibrate {
-        procedure(description, firmware, ProcedureKind::Calibration)?;
+        find_procedure(description, firmware, ProcedureKind::Calibration)?;
         if let Some(filter) = device.filter.filter(|filter| *filter != PositionFilter::Balanced) {
             return Err(PlanError::NotBalanced { code: filter.byte() });
         }
@@ -234,7 +239,7 @@ pub fn plan_mounting(
         plan.ops.push(Op::Calibrate);
     }
     if let Some(save) = run.wiegand {
-        procedure(description, firmware, ProcedureKind::WiegandTest)?;
+        find_procedure(description, firmware, ProcedureKind::WiegandTest)?;
         plan.ops.push(Op::WiegandTest { save });
     }
     if let Some((value, parts)) = run.preset {
@@ -251,13 +256,13 @@ pub fn plan_mounting(
 }
 
 /// Returns a setting of the encoder, or the reason why it is not available.
-fn have<T: Copy>(
+fn require_setting<T: Copy>(
     description: &Description,
     device: &DeviceState,
     kind: ProcedureKind,
     setting: Option<T>,
 ) -> Result<T, PlanError> {
-    procedure(description, device.identity.firmware, kind)?;
+    find_procedure(description, device.identity.firmware, kind)?;
     setting.ok_or_else(|| PlanError::NoProcedure { kind, description: description.name().to_owned() })
 }
 

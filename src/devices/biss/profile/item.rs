@@ -21,14 +21,14 @@ pub struct ItemError(pub String);
 
 impl RegisterRange {
     /// Creates a range of one register.
-    pub const fn one(start: RegisterAddress) -> Self {
+    pub const fn single(start: RegisterAddress) -> Self {
         RegisterRange { start, count: 1 }
     }
 
     /// Creates the range of `count` registers from `start`. Returns `None` if `count` is 0 or the range extends beyond
     /// the bank.
     pub fn new(start: RegisterAddress, count: u8) -> Option<Self> {
-        start.plus(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
+        start.offset_by(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
     }
 
     /// Returns the first register of the range.
@@ -44,22 +44,22 @@ impl RegisterRange {
     /// Returns whether the range contains the given register.
     pub fn contains(self, address: RegisterAddress) -> bool {
         // Global addresses of a bank are consecutive, and a range lies within one bank.
-        let first = self.start.global();
-        (first..first + u16::from(self.count)).contains(&address.global())
+        let first = self.start.global_number();
+        (first..first + u16::from(self.count)).contains(&address.global_number())
     }
 
     /// Returns all registers of the range in ascending order.
     pub fn addresses(self) -> impl Iterator<Item = RegisterAddress> {
-        (0..self.count).filter_map(move |at| self.start.plus(at))
+        (0..self.count).filter_map(move |at| self.start.offset_by(at))
     }
 
     /// Returns the shortest list of ranges that covers the given registers, which must be in ascending order.
-    pub fn runs(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
+    pub fn from_addresses(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
         let mut runs: Vec<RegisterRange> = Vec::new();
         for address in addresses {
             match runs.last_mut() {
-                Some(run) if run.start.plus(run.count) == Some(address) => run.count += 1,
-                _ => runs.push(RegisterRange::one(address)),
+                Some(run) if run.start.offset_by(run.count) == Some(address) => run.count += 1,
+                _ => runs.push(RegisterRange::single(address)),
             }
         }
         runs
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn ranges_end_with_their_bank() {
         let addresses = ["0x7E", "0x7F", "0x00:0x00", "0x24:0x3E", "0x24:0x3F", "0x25:0x00", "0x25:0x02"];
-        let runs = RegisterRange::runs(addresses.map(|text| text.parse().unwrap()));
+        let runs = RegisterRange::from_addresses(addresses.map(|text| text.parse().unwrap()));
         let names: Vec<String> = runs.iter().map(ToString::to_string).collect();
         assert_eq!(names, ["0x7E+2", "0x00:0x00", "0x24:0x3E+2", "0x25:0x00", "0x25:0x02"]);
         let again: Vec<String> = runs.iter().flat_map(|run| run.addresses()).map(|at| at.to_string()).collect();

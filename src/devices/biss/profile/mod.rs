@@ -17,14 +17,16 @@ mod test_profiles;
 mod text;
 
 pub use edit::{
-    MotorSource, MountingSteps, RegisterKind, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
+    MotorSource, MountingSteps, RegisterKind, find_procedure, plan_edits, plan_filter, plan_mounting, plan_preset,
+    register_kind,
 };
 pub use entry_error::EntryError;
 pub use item::{ItemError, RegisterRange};
 pub use other_type::{TypeMismatch, Width, other_type};
 pub use plan::{Base, BissPlan, Op, PresetParts, RegisterChange};
 pub use record::{
-    Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,
+    Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,
+    RecordedValues,
 };
 pub use restore::{
     DeviceState, PlanError, Restore, RestoreOptions, check_allowed, check_device, plan_data_areas, plan_restore,

@@ -12,31 +12,32 @@ impl Op {
         let byte = |byte: u8| format!("{byte:02X}");
         vec![match self {
             Op::StoreData { area, registers } => {
-                let ranges = RegisterRange::runs(registers.iter().map(|change| change.address)).into_iter();
+                let ranges = RegisterRange::from_addresses(registers.iter().map(|change| change.address)).into_iter();
                 return ranges
                     .map(|range| range_item(range, registers).with_manual_name(area.name.english()))
                     .collect();
             }
             Op::StorePreset { from, to } => {
-                ChangedItem::new(self.item(), Some(place(*from)), Some(place(*to))).with_manual_name("preset value")
+                ChangedItem::new(self.item_name(), Some(format_preset(*from)), Some(format_preset(*to)))
+                    .with_manual_name("preset value")
             }
             Op::FirePreset { parts, value } => ChangedItem::new_value(
                 "position",
                 match parts {
-                    PresetParts::Both => place(*value),
+                    PresetParts::Both => format_preset(*value),
                     PresetParts::Singleturn => format!("step {}", value.singleturn()),
                     PresetParts::Multiturn => format!("turn {}", value.multiturn()),
                 },
             ),
             Op::SelectFilter { from, to } => {
                 let [old, new] = [from, to].map(|own| Some(filter(*own).to_owned()));
-                ChangedItem::new(self.item(), old, new).with_manual_name("filter")
+                ChangedItem::new(self.item_name(), old, new).with_manual_name("filter")
             }
-            Op::Calibrate | Op::WiegandTest { save: false } => ChangedItem::new(self.item(), None, None),
-            Op::WiegandTest { save: true } => ChangedItem::new_value(self.item(), "result saved"),
+            Op::Calibrate | Op::WiegandTest { save: false } => ChangedItem::new(self.item_name(), None, None),
+            Op::WiegandTest { save: true } => ChangedItem::new_value(self.item_name(), "result saved"),
             Op::WriteRegister { address, old, new, .. } => {
                 let item = ChangedItem::new(address, old.map(byte), Some(byte(*new)));
-                match description.at(*address) {
+                match description.register_at(*address) {
                     Some(register) => item.with_manual_name(&register.name),
                     None => item,
                 }
@@ -51,7 +52,7 @@ fn range_item(range: RegisterRange, registers: &[RegisterChange]) -> ChangedItem
     ChangedItem::new(range, Some(hex_compact(&old)), Some(hex_compact(&new)))
 }
 
-fn place(value: PresetValue) -> String {
+fn format_preset(value: PresetValue) -> String {
     format!("step {}, turn {}", value.singleturn(), value.multiturn())
 }
 
@@ -70,7 +71,7 @@ mod tests {
 
     #[test]
     fn every_operation_describes_its_change() {
-        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
+        let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").unwrap().clone();
         let area: Area = kit.areas().iter().find(|area| area.first == 0x24).unwrap().clone();
         let change = |at: u8, new| {
             let address = RegisterAddress::in_bank(0x24, at).unwrap();
@@ -78,7 +79,7 @@ mod tests {
         };
         let value = PresetValue::new(98_304, 5).unwrap();
         let zero = PresetValue::new(0, 0).unwrap();
-        let mode = RegisterAddress::direct(0x6A).unwrap();
+        let mode = RegisterAddress::direct_register(0x6A).unwrap();
         let cases = [
             (
                 Op::StoreData {
@@ -104,7 +105,7 @@ mod tests {
             (Op::WiegandTest { save: true }, "Wiegand test: → result saved".to_owned()),
             (
                 Op::WriteRegister { address: mode, old: Some(5), new: 0, cycles: 0 },
-                format!("0x6A {}: 05 → 00", kit.at(mode).unwrap().name),
+                format!("0x6A {}: 05 → 00", kit.register_at(mode).unwrap().name),
             ),
         ];
         for (op, words) in cases {

@@ -38,12 +38,12 @@ pub struct Width {
 }
 
 impl Width {
-    fn of(identity: &ProfileIdentity) -> Self {
+    fn from_identity(identity: &ProfileIdentity) -> Self {
         Width { multiturn: identity.multiturn_bits, singleturn: identity.singleturn_bits }
     }
 
     /// Returns whether a width is known on both sides and differs.
-    fn differs(self, other: Self) -> bool {
+    fn differs_from(self, other: Self) -> bool {
         let parts = [(self.multiturn, other.multiturn), (self.singleturn, other.singleturn)];
         parts.into_iter().any(|(one, other)| one.zip(other).is_some_and(|(one, other)| one != other))
     }
@@ -64,6 +64,6 @@ pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option
     if of_profile != of_device {
         return Some(TypeMismatch::Kind { profile: Box::new(of_profile), device: Box::new(of_device) });
     }
-    let (profile, device) = (Width::of(profile), Width::of(device));
-    profile.differs(device).then_some(TypeMismatch::Width { profile, device })
+    let (profile, device) = (Width::from_identity(profile), Width::from_identity(device));
+    profile.differs_from(device).then_some(TypeMismatch::Width { profile, device })
 }

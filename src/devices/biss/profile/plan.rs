@@ -130,37 +130,39 @@ impl Operation for Op {
 
 impl Op {
     /// Returns whether the operation needs a motor that turns the shaft.
-    pub fn turns(&self) -> bool {
+    pub fn needs_motor(&self) -> bool {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
 
     /// Returns the register ranges that the operation changes, in the notation of the command `read`. The list is empty
     /// if no readable register changes.
-    pub fn ranges(&self) -> Vec<RegisterRange> {
+    pub fn register_ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();
         match self {
-            Op::StoreData { registers, .. } => RegisterRange::runs(registers.iter().map(|change| change.address)),
+            Op::StoreData { registers, .. } => {
+                RegisterRange::from_addresses(registers.iter().map(|change| change.address))
+            }
             Op::StorePreset { .. } => known(BissProfile::PRESET),
             Op::SelectFilter { .. } => known(BissProfile::FILTER),
-            Op::WriteRegister { address, .. } => vec![RegisterRange::one(*address)],
+            Op::WriteRegister { address, .. } => vec![RegisterRange::single(*address)],
             Op::FirePreset { .. } | Op::Calibrate | Op::WiegandTest { .. } => Vec::new(),
         }
     }
 
     /// Returns the name of the item that the operation changes. The command `read` accepts this name if the item can be
     /// read.
-    pub fn item(&self) -> String {
+    pub fn item_name(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
             Op::Calibrate => "calibration".to_owned(),
             Op::WiegandTest { .. } => "Wiegand test".to_owned(),
-            op => op.ranges().iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+            op => op.register_ranges().iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
         }
     }
 
     /// Returns the number of items that a comparison counts for the operation. This is the number of changed registers
     /// in an area, and otherwise one.
-    pub fn weight(&self) -> u64 {
+    pub fn compared_items(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,
             Op::WiegandTest { save: false } => 0,

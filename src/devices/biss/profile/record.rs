@@ -19,7 +19,7 @@ pub struct BissProfile {
     /// Preset value, or `None` if the encoder has none. It is only valid for the encoder on its motor.
     pub preset: Option<PresetSetting>,
     /// Values that the encoder changes by itself, or that cannot be written. They are neither compared nor restored.
-    pub recorded: Recorded,
+    pub recorded: RecordedValues,
     /// Values that are only valid for this encoder on its motor. They are written to another encoder only on request.
     pub mounting: Vec<MountingMark>,
     /// Data areas in ascending order of bank.
@@ -60,7 +60,7 @@ pub struct PresetSetting {
 
 /// The values in a profile that the encoder changes by itself, or that cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Recorded {
+pub struct RecordedValues {
     /// Banks of the electronic data sheet.
     pub eds: Vec<ListedBank>,
     /// Result of the last Wiegand test since power-up.
@@ -171,7 +171,7 @@ impl BissProfile {
     }
 
     /// Changes a register in a data area. Returns `false` if the profile does not contain its bank.
-    pub fn put(&mut self, address: RegisterAddress, byte: u8) -> bool {
+    pub fn set_register(&mut self, address: RegisterAddress, byte: u8) -> bool {
         let Some(number) = address.bank() else { return false };
         let image = self.data.iter_mut().find_map(|image| Some((image.bank(number)?, image)));
         let Some((mut bank, image)) = image else { return false };
@@ -190,7 +190,7 @@ impl BissProfile {
 
     /// Returns all banks in the profile, in file order.
     pub fn banks(&self) -> impl Iterator<Item = Bank> {
-        self.data.iter().flat_map(DataImage::all)
+        self.data.iter().flat_map(DataImage::all_banks)
     }
 }
 
@@ -206,7 +206,7 @@ impl Bank {
     pub const SIZE: usize = RegisterAddress::BANK_SIZE as usize;
 
     /// Creates a bank with the given byte in every register.
-    pub const fn filled(number: u8, byte: u8) -> Self {
+    pub const fn filled_with(number: u8, byte: u8) -> Self {
         Bank { number, bytes: [byte; Self::SIZE] }
     }
 
@@ -232,7 +232,7 @@ impl From<Bank> for ListedBank {
 impl DataImage {
     /// Creates the image of an area from the given banks, which must be in ascending order. If the image is complete,
     /// empty banks are omitted.
-    pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
+    pub fn new(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.uniform_byte() == Some(byte)).count();
         // These are the contents of memory that was never written or was erased.
@@ -252,12 +252,12 @@ impl DataImage {
     /// Returns a bank of the area, or `None` if the profile does not contain the bank.
     pub fn bank(&self, number: u8) -> Option<Bank> {
         let listed = self.listed.iter().map(|listed| listed.bank).find(|bank| bank.number == number);
-        let blank = || self.empty.map(|byte| Bank::filled(number, byte));
+        let blank = || self.empty.map(|byte| Bank::filled_with(number, byte));
         listed.or_else(|| blank().filter(|_| (self.first..=self.last).contains(&number)))
     }
 
     /// Returns all banks of the area that the profile contains.
-    pub fn all(&self) -> impl Iterator<Item = Bank> {
+    pub fn all_banks(&self) -> impl Iterator<Item = Bank> {
         (self.first..=self.last).filter_map(|number| self.bank(number))
     }
 }

@@ -127,7 +127,7 @@ pub fn plan_restore(
 ) -> Result<Restore, PlanError> {
     check_allowed(profile, &device.identity, options)?;
     let same_device = is_same_device(profile, &device.identity);
-    let mounting = if same_device { Mounting::Own } else { Mounting::for_other_device(options) };
+    let mounting = if same_device { MountingPolicy::Own } else { MountingPolicy::for_other_device(options) };
     let mut planner = Planner::new(profile, device, mounting);
     planner.data()?;
     planner.filter()?;
@@ -141,7 +141,7 @@ pub fn plan_restore(
 /// # Errors
 /// See [`PlanError`].
 pub fn plan_data_areas(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
-    let mut planner = Planner::new(profile, device, Mounting::Own);
+    let mut planner = Planner::new(profile, device, MountingPolicy::Own);
     planner.data()?;
     Ok(planner.finish())
 }
@@ -203,7 +203,7 @@ pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity)
 
 /// The treatment of values that are only valid for one encoder on its motor.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Mounting {
+enum MountingPolicy {
     /// The values belong to this encoder.
     Own,
     /// The values belong to another encoder and are not written.
@@ -212,16 +212,16 @@ enum Mounting {
     Write,
 }
 
-impl Mounting {
+impl MountingPolicy {
     fn for_other_device(options: RestoreOptions) -> Self {
-        if options.with_mounting { Mounting::Write } else { Mounting::Leave }
+        if options.with_mounting { MountingPolicy::Write } else { MountingPolicy::Leave }
     }
 }
 
 struct Planner<'a> {
     profile: &'a BissProfile,
     device: &'a DeviceState,
-    mounting: Mounting,
+    mounting: MountingPolicy,
     base: Base,
     ops: Vec<Op>,
     unchanged: u64,
@@ -231,7 +231,7 @@ struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    fn new(profile: &'a BissProfile, device: &'a DeviceState, mounting: Mounting) -> Self {
+    fn new(profile: &'a BissProfile, device: &'a DeviceState, mounting: MountingPolicy) -> Self {
         Planner {
             profile,
             device,
@@ -253,11 +253,11 @@ impl<'a> Planner<'a> {
             let area = self.device.areas.iter().find(|area| area.contains(bank));
             let area = area.ok_or(PlanError::NoBank { bank })?;
             let now = self.device.banks.iter().find(|own| own.number == bank).ok_or(PlanError::NoBank { bank })?;
-            let changes = self.changes(now, &wanted);
+            let changes = self.register_changes(now, &wanted);
             if changes.is_empty() {
                 continue;
             }
-            if !area.access.writes() {
+            if !area.access.is_writable() {
                 return Err(PlanError::NoBank { bank });
             }
             self.base.banks.push(*now);
@@ -266,20 +266,20 @@ impl<'a> Planner<'a> {
                 None => areas.push((area, changes)),
             }
         }
-        self.ops.extend(areas.into_iter().flat_map(|(area, registers)| store(area, registers)));
+        self.ops.extend(areas.into_iter().flat_map(|(area, registers)| store_operations(area, registers)));
         Ok(())
     }
 
     /// Returns a change for each register of a bank that differs and may be written.
-    fn changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
+    fn register_changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
         let mut changes = Vec::new();
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
             if old == new {
                 self.unchanged += 1;
-            } else if self.mounting == Mounting::Leave && self.profile.depends_on_mounting(address) {
+            } else if self.mounting == MountingPolicy::Leave && self.profile.depends_on_mounting(address) {
                 self.left.push(address);
             } else {
-                if self.mounting == Mounting::Write && self.profile.depends_on_mounting(address) {
+                if self.mounting == MountingPolicy::Write && self.profile.depends_on_mounting(address) {
                     self.mounting_written.push(address);
                 }
                 changes.push(RegisterChange { address, old, new });
@@ -308,10 +308,10 @@ impl<'a> Planner<'a> {
             (None, _) => {}
             (Some(_), None) => self.missing.push(BissProfile::PRESET.to_owned()),
             (Some(to), Some(from)) if to == from => self.unchanged += to.emit().len() as u64,
-            (Some(_), Some(_)) if self.mounting == Mounting::Leave => self.left.extend(preset_addresses()),
+            (Some(_), Some(_)) if self.mounting == MountingPolicy::Leave => self.left.extend(preset_addresses()),
             (Some(to), Some(from)) => {
                 check_preset_width(to, &self.device.identity)?;
-                if self.mounting == Mounting::Write {
+                if self.mounting == MountingPolicy::Write {
                     self.mounting_written.extend(preset_addresses());
                 }
                 self.base.preset = Some(from);
@@ -328,8 +328,8 @@ impl<'a> Planner<'a> {
             plan: BissPlan { base: self.base, ops: self.ops },
             unchanged: self.unchanged,
             missing: self.missing,
-            mounting_left: RegisterRange::runs(self.left),
-            mounting_written: RegisterRange::runs(self.mounting_written),
+            mounting_left: RegisterRange::from_addresses(self.left),
+            mounting_written: RegisterRange::from_addresses(self.mounting_written),
         }
     }
 }
@@ -340,7 +340,7 @@ fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
 
 /// Returns the operations that store changes in an area. There is a single operation if the area is opened and saved as
 /// a whole, and otherwise one for each register.
-pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
+pub(super) fn store_operations(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
     if area.open.is_some() {
         return vec![Op::StoreData { area: area.clone(), registers }];
     }

@@ -1,10 +1,10 @@
 //! Test profiles based on a kit encoder as delivered.
 
-use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, Recorded};
+use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, RecordedValues};
 use crate::devices::biss::protocol::{Access, Area, Firmware, PositionFilter, PresetValue, ProfileId};
 
 /// Returns the data areas from table 12 of the manual.
-pub(super) fn areas() -> [Area; 2] {
+pub(super) fn data_areas() -> [Area; 2] {
     let area = |name: &str, first, last, open| Area {
         name: crate::devices::biss::protocol::Name::new(name),
         first,
@@ -17,7 +17,7 @@ pub(super) fn areas() -> [Area; 2] {
 
 /// Returns the profile of a factory-new encoder with the latest known firmware.
 pub(super) fn profile(serial_number: &str) -> BissProfile {
-    let empty = |area: &Area| DataImage::of(area, area.banks().map(|number| Bank::filled(number, 0)).collect());
+    let empty = |area: &Area| DataImage::new(area, area.banks().map(|number| Bank::filled_with(number, 0)).collect());
     BissProfile {
         identity: ProfileIdentity {
             serial_number: serial_number.to_owned(),
@@ -32,15 +32,15 @@ pub(super) fn profile(serial_number: &str) -> BissProfile {
         },
         filter: Some(PositionFilter::Balanced),
         preset: Some(PresetSetting { value: PresetValue::default(), unknown: Default::default() }),
-        recorded: Recorded::default(),
+        recorded: RecordedValues::default(),
         mounting: Vec::new(),
-        data: areas().iter().map(empty).collect(),
+        data: data_areas().iter().map(empty).collect(),
     }
 }
 
 /// Changes bytes in a bank, which is added to the listed banks if necessary.
 pub(super) fn set_bank_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
-    let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled(number, 0));
+    let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled_with(number, 0));
     for (at, byte) in bytes {
         if let Some(place) = bank.bytes.get_mut(*at) {
             *place = *byte;

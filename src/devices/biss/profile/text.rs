@@ -2,7 +2,7 @@
 
 use super::{
     Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,
-    Recorded,
+    RecordedValues,
 };
 use crate::bits::hex;
 use crate::devices::biss::protocol::{
@@ -79,9 +79,9 @@ impl BissProfile {
         let identity = &self.identity;
         writer.open("identity", '(');
         writer.text("serial_number", &identity.serial_number);
-        writer.entry("profile_id", &format!("0x{:04X}", identity.profile_id.word()), "");
+        writer.entry("profile_id", &format!("0x{:04X}", identity.profile_id.to_u16()), "");
         writer.entry("device_id", &quote(&hex(&identity.device_id)), "");
-        writer.entry("manufacturer", &quote(&hex(&identity.manufacturer)), &printable(&identity.manufacturer));
+        writer.entry("manufacturer", &quote(&hex(&identity.manufacturer)), &to_printable(&identity.manufacturer));
         if let Some(firmware) = identity.firmware {
             writer.text("firmware", &firmware.to_string());
         }
@@ -97,7 +97,7 @@ impl BissProfile {
     }
 }
 
-impl Recorded {
+impl RecordedValues {
     fn write(&self, writer: &mut Writer) {
         writer.write_comment("recorded, neither compared nor restored");
         writer.open("recorded", '(');
@@ -151,7 +151,7 @@ fn write_bank(writer: &mut Writer, listed: &ListedBank) {
     writer.close(')');
 }
 
-fn printable(bytes: &[u8]) -> String {
+fn to_printable(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| crate::bits::ascii(*byte).unwrap_or('.')).collect()
 }
 
@@ -205,12 +205,12 @@ fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
     Ok(PresetSetting { value, unknown: entries.into_unknown()? })
 }
 
-fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
+fn read_recorded(mut entries: Entries) -> Result<RecordedValues, ProfileError> {
     let mut result = |name| {
         let tenths: Option<[u8; 4]> = entries.take_optional(name, AllowedValues::FourTenths)?;
         Ok(tenths.map(WiegandResult::parse))
     };
-    Ok(Recorded {
+    Ok(RecordedValues {
         wiegand_last: result("wiegand_last")?,
         wiegand_production: result("wiegand_production")?,
         wiegand_saved: result("wiegand_saved")?,

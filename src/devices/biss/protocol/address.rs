@@ -26,7 +26,7 @@ impl RegisterAddress {
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
     /// Creates the address of a direct register. Returns `None` outside 40h to 7Fh.
-    pub const fn direct(address: u8) -> Option<Self> {
+    pub const fn direct_register(address: u8) -> Option<Self> {
         if 0x40 <= address && address <= 0x7F { Some(RegisterAddress(address as u16 - 0x40)) } else { None }
     }
 
@@ -46,7 +46,7 @@ impl RegisterAddress {
     }
 
     /// Returns the global number. Direct registers start at 0, bank 0 starts at 40h, and the other banks follow.
-    pub const fn global(self) -> u16 {
+    pub const fn global_number(self) -> u16 {
         self.0
     }
 
@@ -64,7 +64,7 @@ impl RegisterAddress {
     }
 
     /// Returns the address `count` registers after this one, or `None` beyond the end of the bank.
-    pub fn plus(self, count: u8) -> Option<Self> {
+    pub fn offset_by(self, count: u8) -> Option<Self> {
         let offset = u16::from(self.address() % Self::BANK_SIZE) + u16::from(count);
         (offset < u16::from(Self::BANK_SIZE)).then_some(RegisterAddress(self.0 + u16::from(count)))
     }
@@ -85,7 +85,7 @@ impl FromStr for RegisterAddress {
     /// Parses an address such as `0x66` or `0x24:0x10`. Numbers without `0x` are decimal.
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let place = match text.split_once(':') {
-            None => byte(text).and_then(Self::direct),
+            None => byte(text).and_then(Self::direct_register),
             Some((bank, offset)) => byte(bank).zip(byte(offset)).and_then(|(bank, offset)| Self::in_bank(bank, offset)),
         };
         place.ok_or_else(|| AddressError(text.to_owned()))
@@ -134,7 +134,7 @@ mod tests {
         ];
         for (text, global) in cases {
             let address: RegisterAddress = text.parse().unwrap();
-            assert_eq!(address.global(), global, "{text}");
+            assert_eq!(address.global_number(), global, "{text}");
             assert_eq!(RegisterAddress::from_global(global), Some(address), "{text}");
             assert_eq!(address.to_string(), text);
         }
@@ -156,22 +156,25 @@ mod tests {
             (0x42, RegisterAddress::PROFILE),
             (0x78, RegisterAddress::DEVICE_ID),
         ] {
-            assert_eq!(RegisterAddress::direct(address), Some(place));
+            assert_eq!(RegisterAddress::direct_register(address), Some(place));
         }
         assert_eq!(RegisterAddress::from_global(0x4040), None);
         let last = RegisterAddress::in_bank(2, 0x3F).unwrap();
-        assert_eq!((last.plus(0), last.plus(1)), (Some(last), None));
-        assert_eq!(RegisterAddress::direct(0x7E).and_then(|own| own.plus(1)), RegisterAddress::direct(0x7F));
+        assert_eq!((last.offset_by(0), last.offset_by(1)), (Some(last), None));
+        assert_eq!(
+            RegisterAddress::direct_register(0x7E).and_then(|own| own.offset_by(1)),
+            RegisterAddress::direct_register(0x7F)
+        );
     }
 
     proptest! {
         #[test]
         fn every_address_has_one_number(global in 0u16..0x4040) {
             let address = RegisterAddress::from_global(global).unwrap();
-            prop_assert_eq!(address.global(), global);
+            prop_assert_eq!(address.global_number(), global);
             prop_assert_eq!(address.to_string().parse(), Ok(address));
             let again = match address.bank() {
-                None => RegisterAddress::direct(address.address()),
+                None => RegisterAddress::direct_register(address.address()),
                 Some(bank) => RegisterAddress::in_bank(bank, address.address()),
             };
             prop_assert_eq!(again, Some(address));

@@ -87,7 +87,7 @@ impl Request {
     /// # Errors
     /// Returns a [`RequestError`] if the slave or a register does not exist.
     pub fn read(slave: u8, address: u8, count: u8) -> Result<Self, RequestError> {
-        Self::checked(slave, address, RequestKind::Read { count })
+        Self::new_checked(slave, address, RequestKind::Read { count })
     }
 
     /// Creates a request to write consecutive registers.
@@ -95,10 +95,10 @@ impl Request {
     /// # Errors
     /// Returns a [`RequestError`] if the slave or a register does not exist.
     pub fn write(slave: u8, address: u8, values: &[u8]) -> Result<Self, RequestError> {
-        Self::checked(slave, address, RequestKind::Write { values: values.to_vec() })
+        Self::new_checked(slave, address, RequestKind::Write { values: values.to_vec() })
     }
 
-    fn checked(slave: u8, address: u8, what: RequestKind) -> Result<Self, RequestError> {
+    fn new_checked(slave: u8, address: u8, what: RequestKind) -> Result<Self, RequestError> {
         let request = Request { slave, address, kind: what };
         let count = request.count();
         if slave > 7 {
@@ -117,7 +117,7 @@ impl Request {
         }
     }
 
-    fn reads(&self) -> bool {
+    fn is_read(&self) -> bool {
         matches!(self.kind, RequestKind::Read { .. })
     }
 

@@ -53,7 +53,7 @@ impl Crc {
         if polynomial & 1 == 0 {
             return Err(CrcError::LowestTerm(polynomial));
         }
-        let crc = Crc { polynomial, start, inverted, table: table(polynomial, degree) };
+        let crc = Crc { polynomial, start, inverted, table: crc_table(polynomial, degree) };
         if start & !crc.mask() != 0 {
             return Err(CrcError::Start { start, width: crc.width() });
         }
@@ -94,7 +94,7 @@ impl Crc {
 
     /// Returns the checksum of the lowest `bits` bits of `data`, highest bit first. The result is inverted if the
     /// checksum is sent inverted. Values of `bits` above 64 count as 64.
-    pub fn of(&self, data: u64, bits: u8) -> u32 {
+    pub fn compute(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;
         let mut left = u32::from(bits.min(64));
@@ -138,7 +138,7 @@ pub(super) fn crc4(data: u16, bits: u8) -> u8 {
     sum ^ 0xF
 }
 
-fn table(polynomial: u64, degree: u32) -> [u32; 256] {
+fn crc_table(polynomial: u64, degree: u32) -> [u32; 256] {
     // The polynomial without its highest term, aligned to the upper end of 32 bits.
     let low_terms = ((polynomial ^ 1 << degree) << (32 - degree)) as u32;
     let mut table = [0; 256];
@@ -202,7 +202,7 @@ mod tests {
         for header in 0..1 << 11 {
             let sum = remainder_by_division(0x13, 0, header.into(), 11) as u8 ^ 0xF;
             assert_eq!(crc4(header, 11), sum, "{header:03X}");
-            assert_eq!(crc.of(header.into(), 11), u32::from(sum), "{header:03X}");
+            assert_eq!(crc.compute(header.into(), 11), u32::from(sum), "{header:03X}");
         }
     }
 
@@ -234,8 +234,8 @@ mod tests {
             // Nine bytes do not fit into 64 bits, so the first one goes into the start value.
             let first = remainder_by_division(polynomial, start, u64::from(b'1'), 8);
             let rest = Crc::new(polynomial, first, xor != 0).unwrap();
-            assert_eq!(rest.of(u64::from_be_bytes(*b"23456789"), 64), check, "{name}");
-            let plain = crc.of(u64::from(b'1'), 8) ^ xor;
+            assert_eq!(rest.compute(u64::from_be_bytes(*b"23456789"), 64), check, "{name}");
+            let plain = crc.compute(u64::from(b'1'), 8) ^ xor;
             assert_eq!(plain, first, "{name}");
         }
     }
@@ -263,7 +263,7 @@ mod tests {
             let mask = u32::MAX >> (32 - degree);
             let crc = Crc::new(polynomial, start & mask, inverted).unwrap();
             let sum = remainder_by_division(polynomial, start & mask, data, bits);
-            prop_assert_eq!(crc.of(data, bits), if inverted { sum ^ mask } else { sum });
+            prop_assert_eq!(crc.compute(data, bits), if inverted { sum ^ mask } else { sum });
         }
     }
 }

@@ -12,9 +12,9 @@ mod tests;
 
 use std::fmt;
 
-pub use flaw::{Claim, DescriptionErrorKind};
+pub use flaw::{DescriptionErrorKind, UniqueItem};
 pub use name::Name;
-pub use register::{Access, Area, Decoded, Register, Role, ValueDecoding};
+pub use register::{Access, Area, DecodedValue, Register, Role, ValueDecoding};
 
 use super::address::RegisterAddress;
 use super::procedure::ProcedureKind;
@@ -48,7 +48,7 @@ pub struct Identity {
 /// A mismatch between an encoder and its description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the encoder says {found}; the description \"{name}\" is for {expected}")]
-pub struct Mismatch {
+pub struct IdentityMismatch {
     /// Name of the description.
     pub name: String,
     /// Identity in the description.
@@ -166,7 +166,7 @@ impl Description {
     }
 
     /// Returns the register that contains the byte at an address, if any.
-    pub fn at(&self, address: RegisterAddress) -> Option<&Register> {
+    pub fn register_at(&self, address: RegisterAddress) -> Option<&Register> {
         self.registers.iter().find(|register| register.contains(address))
     }
 
@@ -181,18 +181,20 @@ impl Description {
     }
 
     /// Returns the permitted access to the byte at an address, or `None` if the byte is not described.
-    pub fn access(&self, address: RegisterAddress) -> Option<Access> {
-        self.at(address).map(|register| register.access).or_else(|| self.area_at(address).map(|area| area.access))
+    pub fn access_at(&self, address: RegisterAddress) -> Option<Access> {
+        self.register_at(address)
+            .map(|register| register.access)
+            .or_else(|| self.area_at(address).map(|area| area.access))
     }
 
     /// Checks whether an encoder is of the described kind.
     ///
     /// # Errors
-    /// Returns a [`Mismatch`] with both identities if it is not.
-    pub fn check(&self, found: &Identity) -> Result<(), Mismatch> {
+    /// Returns a [`IdentityMismatch`] with both identities if it is not.
+    pub fn check_identity(&self, found: &Identity) -> Result<(), IdentityMismatch> {
         match &self.identity {
             Some(expected) if expected != found => {
-                Err(Mismatch { name: self.name.clone(), expected: expected.clone(), found: found.clone() })
+                Err(IdentityMismatch { name: self.name.clone(), expected: expected.clone(), found: found.clone() })
             }
             _ => Ok(()),
         }
@@ -252,11 +254,11 @@ impl Descriptions {
     /// Returns the description for the given identity. A specific description is preferred to one that applies to any
     /// encoder.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
-        self.0.iter().find(|description| description.check(identity).is_ok())
+        self.0.iter().find(|description| description.check_identity(identity).is_ok())
     }
 
     /// Returns the description with the given name, if any.
-    pub fn named(&self, name: &str) -> Option<&Description> {
+    pub fn find_by_name(&self, name: &str) -> Option<&Description> {
         self.0.iter().find(|description| description.name == name)
     }
 

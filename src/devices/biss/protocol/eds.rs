@@ -26,11 +26,11 @@ pub struct EdsField {
     pub name: &'static str,
     /// Factory setting of a kit encoder, or `None` if the manual does not give one.
     pub default: Option<u32>,
-    meaning: Meaning,
+    meaning: FieldMeaning,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Meaning {
+enum FieldMeaning {
     Number(&'static str),
     Bank,
     Ticks { zero: EdsValue },
@@ -85,51 +85,51 @@ pub enum StatusBitMeaning {
     Unknown(u8),
 }
 
-const NUMBER: Meaning = Meaning::Number("");
-const TIME_OUT: Meaning = Meaning::Ticks { zero: EdsValue::Adaptive };
+const NUMBER: FieldMeaning = FieldMeaning::Number("");
+const TIME_OUT: FieldMeaning = FieldMeaning::Ticks { zero: EdsValue::Adaptive };
 
-const fn row(offset: u8, width: u8, default: Option<u32>, meaning: Meaning, name: &'static str) -> EdsField {
+const fn row(offset: u8, width: u8, default: Option<u32>, meaning: FieldMeaning, name: &'static str) -> EdsField {
     EdsField { offset, width, name, default, meaning }
 }
 
 #[rustfmt::skip]
 const COMMON: [EdsField; 15] = [
     row(0x00, 1, Some(0x01),   NUMBER,              "EDS version"),
-    row(0x01, 1, Some(0x02),   Meaning::Number("banks"), "EDS length"),
-    row(0x02, 1, Some(0x04),   Meaning::Bank,       "bank address user start"),
-    row(0x03, 1, Some(0x43),   Meaning::Bank,       "bank address user end"),
+    row(0x01, 1, Some(0x02),   FieldMeaning::Number("banks"), "EDS length"),
+    row(0x02, 1, Some(0x04),   FieldMeaning::Bank,       "bank address user start"),
+    row(0x03, 1, Some(0x43),   FieldMeaning::Bank,       "bank address user end"),
     row(0x05, 1, Some(0x1C),   TIME_OUT,            "minimum BiSS timeout"),
     row(0x06, 1, Some(0x30),   TIME_OUT,            "maximum BiSS timeout"),
-    row(0x0B, 1, None,         Meaning::Ticks { zero: EdsValue::NoLimit }, "minimum cycle time"),
-    row(0x0C, 1, Some(0x20),   Meaning::Ticks { zero: EdsValue::Ticks(0) }, "maximum processing time SCD"),
-    row(0x0E, 2, Some(0x01F4), Meaning::Number("ms"), "maximum power-on delay until control communication is available"),
+    row(0x0B, 1, None,         FieldMeaning::Ticks { zero: EdsValue::NoLimit }, "minimum cycle time"),
+    row(0x0C, 1, Some(0x20),   FieldMeaning::Ticks { zero: EdsValue::Ticks(0) }, "maximum processing time SCD"),
+    row(0x0E, 2, Some(0x01F4), FieldMeaning::Number("ms"), "maximum power-on delay until control communication is available"),
     row(0x10, 1, Some(0x01),   NUMBER,              "number of data channels"),
-    row(0x11, 1, Some(0x01),   Meaning::Number("slave addresses"), "area of validity for this EDS"),
-    row(0x14, 1, Some(0x03),   Meaning::Bank,       "bank address of the description of data channel 1"),
-    row(0x15, 1, Some(0x23),   Meaning::Number("bit"), "data length, data channel 1"),
-    row(0x16, 1, Some(0x00),   Meaning::Format,     "data format, data channel 1"),
-    row(0x17, 1, Some(0x21),   Meaning::Polynomial, "CRC polynomial (8:1) for data channel 1"),
+    row(0x11, 1, Some(0x01),   FieldMeaning::Number("slave addresses"), "area of validity for this EDS"),
+    row(0x14, 1, Some(0x03),   FieldMeaning::Bank,       "bank address of the description of data channel 1"),
+    row(0x15, 1, Some(0x23),   FieldMeaning::Number("bit"), "data length, data channel 1"),
+    row(0x16, 1, Some(0x00),   FieldMeaning::Format,     "data format, data channel 1"),
+    row(0x17, 1, Some(0x21),   FieldMeaning::Polynomial, "CRC polynomial (8:1) for data channel 1"),
 ];
 
 #[rustfmt::skip]
 const ENCODER: [EdsField; 17] = [
     row(0x00, 1, Some(0x01),   NUMBER,               "BiSS profile 3 version"),
-    row(0x01, 1, Some(0x01),   Meaning::Number("banks"), "length of this profile"),
-    row(0x02, 2, Some(0x6129), Meaning::Profile,     "profile identification BP3"),
-    row(0x04, 1, Some(0x01),   Meaning::Feedback,    "feedback bit 1"),
-    row(0x05, 1, Some(0x02),   Meaning::Feedback,    "feedback bit 2"),
+    row(0x01, 1, Some(0x01),   FieldMeaning::Number("banks"), "length of this profile"),
+    row(0x02, 2, Some(0x6129), FieldMeaning::Profile,     "profile identification BP3"),
+    row(0x04, 1, Some(0x01),   FieldMeaning::Feedback,    "feedback bit 1"),
+    row(0x05, 1, Some(0x02),   FieldMeaning::Feedback,    "feedback bit 2"),
     row(0x06, 1, Some(0xFF),   NUMBER,               "maximum power-on delay until position data is available"),
-    row(0x08, 1, Some(0x00),   Meaning::EncoderType, "encoder type"),
-    row(0x0A, 1, Some(0x10),   Meaning::Number("bit"), "data length multiturn"),
-    row(0x0C, 1, Some(0x11),   Meaning::Number("bit"), "data length coarse"),
-    row(0x1C, 4, Some(0x21),   Meaning::Polynomial,  "CRC polynomial (32:1)"),
-    row(0x20, 4, Some(0x00),   Meaning::Hex,         "CRC start value"),
-    row(0x2C, 2, Some(12_000), Meaning::Number("1/min"), "maximum revolution speed"),
-    row(0x30, 2, Some(233),    Meaning::Kelvin,      "minimum operating temperature"),
-    row(0x32, 2, Some(378),    Meaning::Kelvin,      "maximum operating temperature"),
-    row(0x34, 2, Some(5_000),  Meaning::Number("mV"), "minimum operating voltage"),
-    row(0x36, 2, Some(12_000), Meaning::Number("mV"), "maximum operating voltage"),
-    row(0x38, 2, Some(70),     Meaning::Number("mA"), "maximum current consumption"),
+    row(0x08, 1, Some(0x00),   FieldMeaning::EncoderType, "encoder type"),
+    row(0x0A, 1, Some(0x10),   FieldMeaning::Number("bit"), "data length multiturn"),
+    row(0x0C, 1, Some(0x11),   FieldMeaning::Number("bit"), "data length coarse"),
+    row(0x1C, 4, Some(0x21),   FieldMeaning::Polynomial,  "CRC polynomial (32:1)"),
+    row(0x20, 4, Some(0x00),   FieldMeaning::Hex,         "CRC start value"),
+    row(0x2C, 2, Some(12_000), FieldMeaning::Number("1/min"), "maximum revolution speed"),
+    row(0x30, 2, Some(233),    FieldMeaning::Kelvin,      "minimum operating temperature"),
+    row(0x32, 2, Some(378),    FieldMeaning::Kelvin,      "maximum operating temperature"),
+    row(0x34, 2, Some(5_000),  FieldMeaning::Number("mV"), "minimum operating voltage"),
+    row(0x36, 2, Some(12_000), FieldMeaning::Number("mV"), "maximum operating voltage"),
+    row(0x38, 2, Some(70),     FieldMeaning::Number("mA"), "maximum current consumption"),
 ];
 
 /// The raw contents of an electronic data sheet bank.
@@ -178,7 +178,7 @@ pub enum EdsError {
 
 impl EdsBank {
     /// Returns the number of this bank in a kit encoder.
-    pub const fn number(self) -> u8 {
+    pub const fn kit_number(self) -> u8 {
         match self {
             EdsBank::Common => 0x02,
             EdsBank::Encoder => 0x03,
@@ -206,7 +206,7 @@ impl Eds {
         let expected = sum(&bytes);
         let [.., got] = bytes;
         if got != expected {
-            return Err(EdsError::Checksum { bank: bank.number(), expected, got });
+            return Err(EdsError::Checksum { bank: bank.kit_number(), expected, got });
         }
         Ok(Eds { bank, bytes })
     }
@@ -247,9 +247,9 @@ impl Eds {
         }
     }
 
-    fn number(&self, offset: u8) -> u32 {
+    fn number_at(&self, offset: u8) -> u32 {
         let field = self.bank.fields().iter().find(|field| field.offset == offset);
-        field.map_or(0, |field| field.raw(&self.bytes))
+        field.map_or(0, |field| field.raw_value(&self.bytes))
     }
 
     fn byte(&self, offset: u8) -> u8 {
@@ -270,7 +270,7 @@ pub fn layout(common: &Eds, encoder: &Eds) -> Result<Layout, EdsError> {
         };
     let error_bit = feedback(1, 0x04, StatusBitMeaning::Error)?;
     let warning_bit = feedback(2, 0x05, StatusBitMeaning::Warning)?;
-    let crc = Crc::from_data_sheet(encoder.number(0x1C), encoder.number(0x20))?;
+    let crc = Crc::from_data_sheet(encoder.number_at(0x1C), encoder.number_at(0x20))?;
     let layout = Layout::new(encoder.byte(0x0A), encoder.byte(0x0C), error_bit, warning_bit, crc)?;
     let (common, encoder) = (common.byte(0x15), layout.data_bits());
     if common == encoder { Ok(layout) } else { Err(EdsError::DataLength { common, encoder }) }
@@ -283,7 +283,7 @@ fn sum(bytes: &[u8; 64]) -> u8 {
 
 impl EdsField {
     /// Returns the number stored in the field, high byte first.
-    pub fn raw(&self, bank: &[u8; 64]) -> u32 {
+    pub fn raw_value(&self, bank: &[u8; 64]) -> u32 {
         let first = usize::from(self.offset);
         let bytes = bank.get(first..first + usize::from(self.width)).unwrap_or_default();
         bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
@@ -291,29 +291,29 @@ impl EdsField {
 
     /// Returns the decoded value of the field. The checksum of the bank is not verified. See [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
-        let raw = self.raw(bank);
+        let raw = self.raw_value(bank);
         // The conversion loses nothing, because fields with these meanings use only one byte.
         let byte = raw as u8;
         match self.meaning {
-            Meaning::Number(unit) => EdsValue::Number(raw, unit),
-            Meaning::Bank if byte == 0xFF => EdsValue::NotAvailable,
-            Meaning::Bank => EdsValue::Bank(byte),
-            Meaning::Ticks { zero } if byte == 0 => zero,
-            Meaning::Ticks { .. } => EdsValue::Ticks(byte),
-            Meaning::Format | Meaning::Hex => EdsValue::Code(raw),
-            Meaning::Profile => EdsValue::Profile(ProfileId::new(raw as u16)),
-            Meaning::Feedback => EdsValue::Feedback(StatusBitMeaning::from_byte(byte)),
-            Meaning::EncoderType => EdsValue::EncoderType(byte),
-            Meaning::Polynomial if raw == 0 => EdsValue::Polynomial(0),
-            Meaning::Polynomial => EdsValue::Polynomial(u64::from(raw) << 1 | 1),
-            Meaning::Kelvin => EdsValue::Kelvin(raw as u16),
+            FieldMeaning::Number(unit) => EdsValue::Number(raw, unit),
+            FieldMeaning::Bank if byte == 0xFF => EdsValue::NotAvailable,
+            FieldMeaning::Bank => EdsValue::Bank(byte),
+            FieldMeaning::Ticks { zero } if byte == 0 => zero,
+            FieldMeaning::Ticks { .. } => EdsValue::Ticks(byte),
+            FieldMeaning::Format | FieldMeaning::Hex => EdsValue::Code(raw),
+            FieldMeaning::Profile => EdsValue::Profile(ProfileId::new(raw as u16)),
+            FieldMeaning::Feedback => EdsValue::Feedback(StatusBitMeaning::from_byte(byte)),
+            FieldMeaning::EncoderType => EdsValue::EncoderType(byte),
+            FieldMeaning::Polynomial if raw == 0 => EdsValue::Polynomial(0),
+            FieldMeaning::Polynomial => EdsValue::Polynomial(u64::from(raw) << 1 | 1),
+            FieldMeaning::Kelvin => EdsValue::Kelvin(raw as u16),
         }
     }
 }
 
 impl EdsValue {
     /// Returns a temperature in whole degrees Celsius, or `None` if the value is not a temperature.
-    pub fn celsius(self) -> Option<i32> {
+    pub fn to_celsius(self) -> Option<i32> {
         match self {
             EdsValue::Kelvin(kelvin) => Some(i32::from(kelvin) - 273),
             _ => None,

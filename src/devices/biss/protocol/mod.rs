@@ -28,8 +28,8 @@ pub use control::{
 };
 pub use crc::{Crc, CrcError};
 pub use description::{
-    Access, Area, Claim, Decoded, Description, DescriptionError, DescriptionErrorKind, Descriptions, Identity, Lock,
-    Mismatch, Name, Procedure, Register, Role, ValueDecoding,
+    Access, Area, DecodedValue, Description, DescriptionError, DescriptionErrorKind, Descriptions, Identity,
+    IdentityMismatch, Lock, Name, Procedure, Register, Role, UniqueItem, ValueDecoding,
 };
 pub use eds::{Eds, EdsBank, EdsError, EdsField, EdsValue, StatusBitMeaning, layout as eds_layout};
 pub use line::{BissCycle, CycleError};

@@ -7,7 +7,7 @@ use crate::buses::ubicom::protocol::PositionWord;
 impl Layout {
     /// Returns the position word for a reading. Multiturn bits beyond the frame's width are dropped.
     pub fn position_word(&self, reading: &PositionData) -> PositionWord {
-        let [b0, b1, b2, b3, b4, ..] = self.steps(reading).to_le_bytes();
+        let [b0, b1, b2, b3, b4, ..] = self.steps_of(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
@@ -15,7 +15,7 @@ impl Layout {
     /// warning flags of the result are not set.
     pub fn decode_position(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
-        let (singleturn, above) = split(word.word(), self.singleturn_bits());
+        let (singleturn, above) = split(word.to_u64(), self.singleturn_bits());
         let (multiturn, rest) = split(above, self.multiturn_bits());
         // Fields are at most 32 bits wide.
         let fields = PositionData {

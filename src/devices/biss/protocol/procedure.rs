@@ -318,7 +318,7 @@ impl WiegandResult {
     }
 
     /// Returns whether the results of both directions are above the limit.
-    pub fn passes(&self) -> bool {
+    pub fn is_passed(&self) -> bool {
         self.lowest_cw > PulseVoltage::LIMIT && self.lowest_ccw > PulseVoltage::LIMIT
     }
 }
@@ -364,7 +364,7 @@ mod tests {
             ([255, 255, 255, 255], true),
         ] {
             let result = WiegandResult::parse(bytes);
-            assert_eq!((result.passes(), result.emit()), (passes, bytes));
+            assert_eq!((result.is_passed(), result.emit()), (passes, bytes));
         }
         assert_eq!(WiegandResult::parse([1, 2, 3, 4]).lowest_ccw.byte(), 4);
     }

@@ -155,7 +155,7 @@ impl Layout {
         let data = raw.checked_shr(self.crc_bits().into()).unwrap_or(0);
         let sums = self.crc.as_ref().map(|crc| {
             let got = (raw & low_bits_mask(crc.width())) as u32;
-            (crc.of(data, self.data_bits()), got)
+            (crc.compute(data, self.data_bits()), got)
         });
         let moves = raw != 0 && raw != whole;
         match sums {
@@ -179,17 +179,17 @@ impl Layout {
         }
         match &self.crc {
             None => data,
-            Some(crc) => data << crc.width() | u64::from(crc.of(data, self.data_bits())),
+            Some(crc) => data << crc.width() | u64::from(crc.compute(data, self.data_bits())),
         }
     }
 
     /// Returns the angle within the revolution in degrees, at least 0 and less than 360.
-    pub fn degrees(&self, reading: &PositionData) -> f64 {
+    pub fn degrees_of(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
     /// Returns the multiturn and singleturn position as a single step count.
-    pub fn steps(&self, reading: &PositionData) -> u64 {
+    pub fn steps_of(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
 
@@ -294,9 +294,9 @@ mod tests {
     fn an_angle_is_a_fraction_of_a_turn() {
         let layout = Layout::default();
         for (singleturn, degrees) in [(0, 0.0), (0x8000, 90.0), (0x10000, 180.0), (0x18000, 270.0)] {
-            assert_eq!(layout.degrees(&reading(7, singleturn, false, false)), degrees);
+            assert_eq!(layout.degrees_of(&reading(7, singleturn, false, false)), degrees);
         }
-        assert_eq!(layout.steps(&reading(1, 2, false, false)), 0x2_0002);
+        assert_eq!(layout.steps_of(&reading(1, 2, false, false)), 0x2_0002);
     }
 
     #[test]

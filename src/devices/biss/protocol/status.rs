@@ -39,7 +39,7 @@ impl ErrorRegister {
     }
 
     /// Returns the set bits with their meanings, lowest bit first.
-    pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
+    pub fn set_bits(self) -> impl Iterator<Item = (u8, &'static str)> {
         set_bits(self.0, &ERRORS, UNKNOWN_ERROR)
     }
 }
@@ -59,7 +59,7 @@ impl WarningRegister {
     }
 
     /// Returns the set bits with their meanings, lowest bit first.
-    pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
+    pub fn set_bits(self) -> impl Iterator<Item = (u8, &'static str)> {
         set_bits(self.0, &WARNINGS, UNKNOWN_WARNING)
     }
 }
@@ -98,13 +98,13 @@ impl Temperature {
     }
 
     /// Returns the temperature in whole degrees Celsius, −50 to 205.
-    pub fn celsius(self) -> i16 {
+    pub fn to_celsius(self) -> i16 {
         i16::from(self.0) - Self::OFFSET
     }
 
     /// Returns the temperature in degrees Fahrenheit. The manual's formula omits the offset of 50.
-    pub fn fahrenheit(self) -> f64 {
-        1.8 * f64::from(self.celsius()) + 32.0
+    pub fn to_fahrenheit(self) -> f64 {
+        1.8 * f64::from(self.to_celsius()) + 32.0
     }
 }
 
@@ -228,7 +228,7 @@ impl ProfileId {
     }
 
     /// Returns the profile ID as a 16-bit word. The first byte is in the high half.
-    pub const fn word(self) -> u16 {
+    pub const fn to_u16(self) -> u16 {
         self.0
     }
 
@@ -256,8 +256,8 @@ mod tests {
             [(0x0A, -40, -40.0), (0x4B, 25, 77.0), (0x7B, 73, 163.4), (0xAF, 125, 257.0), (0xB4, 130, 266.0)]
         {
             let temperature = Temperature::new(byte);
-            assert_eq!(temperature.celsius(), celsius, "{byte:02X}");
-            assert!((temperature.fahrenheit() - fahrenheit).abs() < 1e-9, "{byte:02X}");
+            assert_eq!(temperature.to_celsius(), celsius, "{byte:02X}");
+            assert!((temperature.to_fahrenheit() - fahrenheit).abs() < 1e-9, "{byte:02X}");
             assert_eq!(Temperature::from_celsius(celsius).byte(), byte);
         }
         assert_eq!(Temperature::from_celsius(-300).byte(), 0x00);
@@ -267,13 +267,16 @@ mod tests {
     /// In reference 7, error 12h means multiturn and field too low, and warning 01h means temperature.
     #[test]
     fn error_and_warning_bits_are_named() {
-        let errors: Vec<_> = ErrorRegister::new(0x12).set().collect();
+        let errors: Vec<_> = ErrorRegister::new(0x12).set_bits().collect();
         assert_eq!(errors, [(1, "multiturn synchronisation error"), (4, "magnetic field too low")]);
         assert_eq!(0x12, ErrorRegister::MULTITURN.byte() | ErrorRegister::FIELD_TOO_LOW.byte());
-        assert_eq!(WarningRegister::new(0x01).set().collect::<Vec<_>>(), [(0, "temperature too high")]);
-        assert_eq!(ErrorRegister::new(0xA0).set().collect::<Vec<_>>(), [(5, "unknown error"), (7, "unknown error")]);
-        assert_eq!(WarningRegister::new(0x80).set().collect::<Vec<_>>(), [(7, "unknown warning")]);
-        assert_eq!(ErrorRegister::new(0).set().count(), 0);
+        assert_eq!(WarningRegister::new(0x01).set_bits().collect::<Vec<_>>(), [(0, "temperature too high")]);
+        assert_eq!(
+            ErrorRegister::new(0xA0).set_bits().collect::<Vec<_>>(),
+            [(5, "unknown error"), (7, "unknown error")]
+        );
+        assert_eq!(WarningRegister::new(0x80).set_bits().collect::<Vec<_>>(), [(7, "unknown warning")]);
+        assert_eq!(ErrorRegister::new(0).set_bits().count(), 0);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::crc::Crc;
 /// Range of data widths to try, in bits (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
 /// Required number of consecutive frames with a matching checksum. Repeated data does not count (`U`).
-const ENOUGH: usize = 8;
+const REQUIRED_FRAMES: usize = 8;
 
 /// Returns the data width without the checksum, or `None` if no length fits or too few frames differ.
 ///
@@ -15,10 +15,10 @@ const ENOUGH: usize = 8;
 /// Consecutive frames with the same data count once. At a wrong length, one frame in 64 matches by chance, and every
 /// repetition would match again.
 pub fn detect_data_bits(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
-    DATA_BITS.into_iter().find(|bits| fits(frames, clocked, *bits, crc))
+    DATA_BITS.into_iter().find(|bits| matches_widths(frames, clocked, *bits, crc))
 }
 
-fn fits(frames: &[u64], clocked: u8, bits: u8, crc: &Crc) -> bool {
+fn matches_widths(frames: &[u64], clocked: u8, bits: u8, crc: &Crc) -> bool {
     let Some(behind) = clocked.checked_sub(bits + crc.width()) else { return false };
     let sums = |frame: u64| {
         let data = frame.checked_shr(u32::from(behind) + u32::from(crc.width())).unwrap_or(0);
@@ -30,8 +30,8 @@ fn fits(frames: &[u64], clocked: u8, bits: u8, crc: &Crc) -> bool {
         if before.replace(data) == Some(data) {
             continue;
         }
-        in_a_row = if u64::from(crc.of(data, bits)) == sum { in_a_row + 1 } else { 0 };
-        if in_a_row >= ENOUGH {
+        in_a_row = if u64::from(crc.compute(data, bits)) == sum { in_a_row + 1 } else { 0 };
+        if in_a_row >= REQUIRED_FRAMES {
             return true;
         }
     }

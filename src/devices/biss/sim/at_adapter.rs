@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub struct AttachableEncoder;
 
 impl AttachableKind for AttachableEncoder {
-    fn keys(&self) -> &'static [&'static str] {
+    fn setting_names(&self) -> &'static [&'static str] {
         Config::KEYS
     }
 
@@ -20,17 +20,17 @@ impl AttachableKind for AttachableEncoder {
 }
 
 impl BissDevice for Encoder {
-    fn duplicate(&self) -> Box<dyn BissDevice> {
+    fn clone_device(&self) -> Box<dyn BissDevice> {
         Box::new(self.clone())
     }
 
-    fn frame(&mut self, at: Moment) -> Option<(u64, u8)> {
-        let reading = self.reading(at)?;
+    fn frame_at(&mut self, at: Moment) -> Option<(u64, u8)> {
+        let reading = self.position_at(at)?;
         Some((self.layout().emit(&reading), self.layout().bits()))
     }
 
-    fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
-        self.reading(at).map(|_| self.shaft_position(at))
+    fn shaft_position(&mut self, at: Moment) -> Option<(u64, u64)> {
+        self.position_at(at).map(|_| self.shaft_position(at))
     }
 
     fn motor(&self) -> Motor {
@@ -57,8 +57,8 @@ impl BissDevice for Encoder {
         Encoder::has_power(self)
     }
 
-    fn answers(&mut self, now: Moment) -> bool {
-        Encoder::answers(self, now)
+    fn can_access_registers(&mut self, now: Moment) -> bool {
+        Encoder::can_access_registers(self, now)
     }
 
     fn has_address(&self, address: u8) -> bool {

@@ -23,13 +23,13 @@ pub(super) struct CalibrationConditions {
 pub(super) struct Calibration {
     pub(super) command: u8,
     pub(super) status: CalibrationStatus,
-    run: Option<Run>,
+    run: Option<CalibrationRun>,
     duration: Duration,
     keeps_status: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct CalibrationRun {
     clockwise: bool,
     begins: Moment,
     ends: Moment,
@@ -38,7 +38,7 @@ struct Run {
 
 /// The effect of a finished calibration run on the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ended {
+pub(super) enum RunOutcome {
     No,
     /// The second run is complete and the table has been saved.
     Saved,
@@ -47,11 +47,11 @@ pub(super) enum Ended {
 }
 
 impl Calibration {
-    const BEGINS_AFTER: Duration = Duration::from_millis(300);
-    const FAILS_AFTER: Duration = Duration::from_secs(1);
+    const START_DELAY: Duration = Duration::from_millis(300);
+    const FAILURE_DELAY: Duration = Duration::from_secs(1);
     /// Allowed speed in revolutions per minute, in either direction.
     const SPEED: std::ops::RangeInclusive<f64> = 300.0..=700.0;
-    const MAX_WAVER: f64 = 2.0;
+    const MAX_SPEED_DEVIATION: f64 = 2.0;
     const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
 
     pub(super) fn new(duration: Duration, keeps_status: bool) -> Self {
@@ -75,13 +75,13 @@ impl Calibration {
         self.command = value;
         let success =
             if clockwise { CalibrationStatus::ClockwiseDone } else { CalibrationStatus::CounterclockwiseDone };
-        let (outcome, duration) = match failure(conditions, clockwise) {
-            Some(failure) => (failure, Self::FAILS_AFTER),
+        let (outcome, duration) = match run_failure(conditions, clockwise) {
+            Some(failure) => (failure, Self::FAILURE_DELAY),
             None => (success, self.duration),
         };
-        let begins = if self.keeps_status { now + Self::BEGINS_AFTER } else { now };
-        self.run = Some(Run { clockwise, begins, ends: begins + duration, outcome });
-        self.settle(now);
+        let begins = if self.keeps_status { now + Self::START_DELAY } else { now };
+        self.run = Some(CalibrationRun { clockwise, begins, ends: begins + duration, outcome });
+        self.update(now);
         true
     }
 
@@ -92,40 +92,40 @@ impl Calibration {
     }
 
     /// Starts a run that is due, and ends a run whose time is over.
-    pub(super) fn settle(&mut self, now: Moment) -> Ended {
+    pub(super) fn update(&mut self, now: Moment) -> RunOutcome {
         if self.run.is_some_and(|run| run.begins <= now) {
             self.status = CalibrationStatus::Running;
         }
-        let Some(run) = self.run.filter(|run| run.ends <= now) else { return Ended::No };
+        let Some(run) = self.run.filter(|run| run.ends <= now) else { return RunOutcome::No };
         self.run = None;
         self.status = run.outcome;
         match run.outcome {
-            CalibrationStatus::ClockwiseDone => Ended::Saved,
-            CalibrationStatus::CounterclockwiseDone => Ended::No,
-            _ if run.clockwise => Ended::Lost,
-            _ => Ended::No,
+            CalibrationStatus::ClockwiseDone => RunOutcome::Saved,
+            CalibrationStatus::CounterclockwiseDone => RunOutcome::No,
+            _ if run.clockwise => RunOutcome::Lost,
+            _ => RunOutcome::No,
         }
     }
 
     /// Aborts the calibration because the device mode was left or power was lost.
-    pub(super) fn abandon(&mut self) -> Ended {
+    pub(super) fn abort(&mut self) -> RunOutcome {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
         self.command = 0;
         if !self.keeps_status || self.status == CalibrationStatus::Running {
             self.status = CalibrationStatus::Idle;
         }
-        if lost { Ended::Lost } else { Ended::No }
+        if lost { RunOutcome::Lost } else { RunOutcome::No }
     }
 }
 
-fn failure(conditions: CalibrationConditions, clockwise: bool) -> Option<CalibrationStatus> {
+fn run_failure(conditions: CalibrationConditions, clockwise: bool) -> Option<CalibrationStatus> {
     if !Calibration::CELSIUS.contains(&conditions.celsius) {
         Some(CalibrationStatus::Temperature)
     } else if !Calibration::SPEED.contains(&conditions.rpm.abs()) {
         Some(CalibrationStatus::Speed)
     } else if (conditions.rpm > 0.0) != clockwise {
         Some(CalibrationStatus::WrongDirection)
-    } else if conditions.waver > Calibration::MAX_WAVER || conditions.filter != PositionFilter::Balanced {
+    } else if conditions.waver > Calibration::MAX_SPEED_DEVIATION || conditions.filter != PositionFilter::Balanced {
         Some(CalibrationStatus::Failed)
     } else {
         None

@@ -22,7 +22,7 @@ parameters! {
         pub(super) serial_number: u32 = 0x0012_D687, "serial" => CustomNotation(AllowedValues::Number32, parse_whole::<u32>);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         pub(super) reverses: bool = false, "motor" => Keywords(&[("steady", false), ("reverse", true)]);
-        pub(super) waver: f64 = 0.5, "waver" => CustomNotation(AllowedValues::RevolutionsAMinute { most: 1000 }, |text| within(text, 0.0..=1000.0));
+        pub(super) waver: f64 = 0.5, "waver" => CustomNotation(AllowedValues::RevolutionsAMinute { most: 1000 }, |text| parse_in_range(text, 0.0..=1000.0));
         pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => WholeNumbers(Quantity::Position, 0..=(1 << 33) - 1);
         pub(super) temperature: i16 = 30, "temperature" => WholeNumbers(Quantity::WholeCelsius, -50..=205);
         pub(super) errors: u8 = 0, "errors" => CustomNotation(AllowedValues::ErrorRegister, parse_whole::<u8>);
@@ -30,9 +30,9 @@ parameters! {
             "filter" => Keywords(&[("balanced", PositionFilter::Balanced), ("dynamic", PositionFilter::Dynamic)]);
         pub(super) cycles: u32 = 3, "cycles" => CustomNotation(AllowedValues::WriteCycles, parse_whole::<u32>);
         pub(super) pulses: WiegandPulses = WiegandPulses { average: 63, lowest: 58 },
-            "pulses" => CustomNotation(AllowedValues::Pulses, pulses);
+            "pulses" => CustomNotation(AllowedValues::Pulses, parse_pulses);
         pub(super) calibration_time: Duration = Duration::from_secs(5),
-            "calibration" => CustomNotation(AllowedValues::Seconds { low: Limit::from_thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
+            "calibration" => CustomNotation(AllowedValues::Seconds { low: Limit::from_thousandths(100), high: Limit::whole(60) }, |text| parse_in_range(text, 0.1..=60.0).map(Duration::from_secs_f64));
         pub(super) silent_calibration: bool = true, "calibration-silent" => SWITCH;
         pub(super) keeps_status: bool = false, "calibration-status" => Keywords(&[("fresh", false), ("kept", true)]);
         pub(super) echo: bool = false, "echo" => SWITCH;
@@ -65,7 +65,7 @@ impl Config {
     }
 }
 
-fn within(text: &str, range: RangeInclusive<f64>) -> Option<f64> {
+fn parse_in_range(text: &str, range: RangeInclusive<f64>) -> Option<f64> {
     text.parse().ok().filter(|number| range.contains(number))
 }
 
@@ -77,7 +77,7 @@ fn firmware(text: &str) -> Option<Firmware> {
     }
 }
 
-fn pulses(text: &str) -> Option<WiegandPulses> {
+fn parse_pulses(text: &str) -> Option<WiegandPulses> {
     let tenths = |volts: &str| {
         let volts: f64 = volts.parse().ok()?;
         // The product is at most 255.

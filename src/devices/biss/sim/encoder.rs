@@ -13,12 +13,12 @@ mod time;
 
 use std::time::Duration;
 
-use super::calibration::{Calibration, CalibrationConditions, Ended};
+use super::calibration::{Calibration, CalibrationConditions, RunOutcome};
 use super::config::Config;
-use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
+use super::entry::{Area, DataEntry, EntryEffect, FilterEntry, PresetEntry};
 use super::flash::Flash;
 use super::motor::Drive;
-use super::shaft::{FINE, Shaft};
+use super::shaft::{FRACTIONAL_BITS, Shaft};
 use super::wiegand::{WiegandPulses, WiegandState};
 use crate::devices::biss::protocol::{
     CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, PositionData, RegisterAddress,
@@ -126,7 +126,7 @@ impl Encoder {
 
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.drive.motor().set_rpm(rpm);
-        self.settle(now);
+        self.update(now);
     }
 
     pub fn set_temperature(&mut self, celsius: i16) {
@@ -145,13 +145,13 @@ impl Encoder {
     }
 
     pub fn power_cycle(&mut self, now: Moment) {
-        self.settle(now);
+        self.update(now);
         self.disconnect();
         self.start(now);
     }
 
     pub fn disconnect(&mut self) {
-        self.abandon();
+        self.abort_mode();
         self.power = Power::Off;
     }
 
@@ -168,16 +168,16 @@ impl Encoder {
 
     /// Returns whether registers can be read at `now`. The encoder is silent while starting, and may be silent during
     /// calibration.
-    pub fn answers(&mut self, now: Moment) -> bool {
-        self.settle(now);
+    pub fn can_access_registers(&mut self, now: Moment) -> bool {
+        self.update(now);
         self.power == Power::On && !(self.silent_calibration && self.calibration.is_running())
     }
 
     /// Returns the position at `now`, or `None` without power or during start-up. The position is marked invalid during
     /// calibration.
-    pub fn reading(&mut self, now: Moment) -> Option<PositionData> {
-        self.settle(now);
-        let reading = self.shaft.reading(now);
+    pub fn position_at(&mut self, now: Moment) -> Option<PositionData> {
+        self.update(now);
+        let reading = self.shaft.position_at(now);
         let error = self.errors != ErrorRegister::default() || self.calibration.is_running();
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
@@ -185,8 +185,8 @@ impl Encoder {
     /// Returns the shaft position at `now` and the number of steps per revolution. The position is available even if
     /// the encoder reports none.
     pub fn shaft_position(&mut self, now: Moment) -> (u64, u64) {
-        self.settle(now);
-        (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
+        self.update(now);
+        (self.shaft.fractional_position_at(now), 1 << (self.shaft.layout().singleturn_bits() + FRACTIONAL_BITS))
     }
 
     pub const fn bank(&self) -> u8 {
@@ -198,27 +198,27 @@ impl Encoder {
         if address < RegisterAddress::BANK_SIZE {
             RegisterAddress::in_bank(self.bank, address)
         } else {
-            RegisterAddress::direct(address)
+            RegisterAddress::direct_register(address)
         }
     }
 
     /// Reads a register at `now`. Returns `None` if its bank does not exist.
     pub fn read(&mut self, now: Moment, address: RegisterAddress) -> Option<u8> {
-        self.settle(now);
+        self.update(now);
         let offset = address.address();
         let value = match address.bank() {
-            None => self.direct(offset),
+            None => self.direct_register(offset),
             Some(0x00) => self.bank_0_register(offset),
             Some(0x01) => self.preset_register(offset),
             Some(bank @ (0x02 | 0x03)) => {
                 let [common, encoder] = &self.eds;
-                let eds = if bank == EdsBank::Common.number() { common } else { encoder };
+                let eds = if bank == EdsBank::Common.kit_number() { common } else { encoder };
                 eds.emit().get(usize::from(offset)).copied().unwrap_or(0)
             }
             Some(bank) if bank <= Self::MAX_BANK => {
                 let (area, begin) = Area::area_of_bank(bank)?;
                 let at = begin + usize::from(offset);
-                self.data.byte(area, at).or_else(|| self.area(area).get(at).copied())?
+                self.data.byte(area, at).or_else(|| self.area_bytes(area).get(at).copied())?
             }
             Some(_) => return None,
         };
@@ -227,7 +227,7 @@ impl Encoder {
 
     /// Writes a register at `now`. Returns `false` and changes nothing if the encoder refuses.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
-        self.settle(now);
+        self.update(now);
         let offset = address.address();
         let accepted = match (address.bank(), offset) {
             (None, 0x40) => {
@@ -246,16 +246,16 @@ impl Encoder {
             (Some(0x00), 0x06) if self.mode == DeviceMode::WIEGAND_TEST => self.wiegand_command(now, value),
             (Some(0x00), 0x1A) if self.mode == DeviceMode::DATA_WRITE => {
                 let then = self.data.command(value);
-                self.follow(now, then)
+                self.apply_effect(now, then)
             }
             (Some(0x00), 0x24) if self.mode == DeviceMode::FILTER => {
                 let then = self.filter.command(value);
-                self.follow(now, then)
+                self.apply_effect(now, then)
             }
             (Some(0x01), 0x00) if self.mode == DeviceMode::PRESET => {
                 let parts = self.firmware >= Self::PRESET_PARTS_SINCE;
                 let then = self.preset.command(value, parts, self.shaft.layout());
-                self.follow(now, then)
+                self.apply_effect(now, then)
             }
             (Some(0x01), 0x02..=0x07) if self.mode == DeviceMode::PRESET => {
                 self.preset.enter(usize::from(offset - 2), value)
@@ -264,11 +264,11 @@ impl Encoder {
                 .is_some_and(|(area, begin)| self.data.enter(area, begin + usize::from(offset), value)),
             _ => false,
         };
-        self.settle(now);
+        self.update(now);
         accepted
     }
 
-    fn area(&self, area: Area) -> &[u8] {
+    fn area_bytes(&self, area: Area) -> &[u8] {
         match area {
             Area::Motor => &self.flash.motor_data,
             Area::Oem => &self.flash.oem_data,
@@ -296,7 +296,7 @@ impl Encoder {
             return false;
         }
         if mode != self.mode {
-            self.abandon();
+            self.abort_mode();
             self.mode = mode;
         }
         true
@@ -311,7 +311,7 @@ impl Encoder {
         }
         let result = self.wiegand.result;
         self.wiegand.command = value;
-        self.store(|flash, whole| {
+        self.write_flash(|flash, whole| {
             if whole {
                 flash.wiegand = result;
             }
@@ -319,16 +319,16 @@ impl Encoder {
         true
     }
 
-    fn follow(&mut self, now: Moment, then: Then) -> bool {
+    fn apply_effect(&mut self, now: Moment, then: EntryEffect) -> bool {
         match then {
-            Then::Refused => return false,
-            Then::Nothing => {}
-            Then::Open(area) => {
-                let bytes = self.area(area).to_vec();
+            EntryEffect::Refused => return false,
+            EntryEffect::Nothing => {}
+            EntryEffect::Open(area) => {
+                let bytes = self.area_bytes(area).to_vec();
                 self.data.open(area, bytes);
             }
-            Then::SaveData(area, bytes) => {
-                self.store(|flash, whole| {
+            EntryEffect::SaveData(area, bytes) => {
+                self.write_flash(|flash, whole| {
                     let place = match area {
                         Area::Motor => &mut flash.motor_data,
                         Area::Oem => &mut flash.oem_data,
@@ -337,9 +337,9 @@ impl Encoder {
                     place.iter_mut().zip(bytes.into_iter().take(count)).for_each(|(old, new)| *old = new);
                 });
             }
-            Then::SaveFilter(filter) => self.write_flash_and_restart(now, |flash| flash.filter = filter),
-            Then::SavePreset(preset) => self.write_flash_and_restart(now, |flash| flash.preset = preset),
-            Then::Preset { singleturn, multiturn } => {
+            EntryEffect::SaveFilter(filter) => self.write_flash_and_restart(now, |flash| flash.filter = filter),
+            EntryEffect::SavePreset(preset) => self.write_flash_and_restart(now, |flash| flash.preset = preset),
+            EntryEffect::Preset { singleturn, multiturn } => {
                 let preset = self.flash.preset;
                 self.write_flash_and_restart(now, |_| {});
                 if self.power != Power::Off {
@@ -352,7 +352,7 @@ impl Encoder {
     }
 
     /// Writes the flash once. `change` receives `false` if power is lost during the write.
-    fn store(&mut self, change: impl FnOnce(&mut Flash, bool)) {
+    fn write_flash(&mut self, change: impl FnOnce(&mut Flash, bool)) {
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.flash.cycles = self.flash.cycles.saturating_add(1);
         let whole = self.die_in_store != Some(self.stores_begun);
@@ -363,7 +363,7 @@ impl Encoder {
     }
 
     fn write_flash_and_restart(&mut self, now: Moment, change: impl FnOnce(&mut Flash)) {
-        self.store(|flash, whole| {
+        self.write_flash(|flash, whole| {
             if whole {
                 change(flash);
             }
@@ -375,7 +375,7 @@ impl Encoder {
 
     /// Starts the encoder and clears its volatile memory.
     fn start(&mut self, now: Moment) {
-        self.abandon();
+        self.abort_mode();
         self.power = Power::Starting { ready: now + Self::START };
         (self.bank, self.password, self.mode) = (0, 0, DeviceMode::OPERATION);
         self.calibration.status = CalibrationStatus::Idle;
@@ -383,11 +383,11 @@ impl Encoder {
         self.saved_wiegand = self.flash.wiegand;
     }
 
-    fn abandon(&mut self) {
-        if self.calibration.abandon() == Ended::Lost {
+    fn abort_mode(&mut self) {
+        if self.calibration.abort() == RunOutcome::Lost {
             self.flash.calibrated = false;
         }
-        self.wiegand.abandon();
+        self.wiegand.abort();
         self.data = DataEntry::default();
         self.filter = FilterEntry::default();
         self.preset = PresetEntry::new(self.flash.preset);

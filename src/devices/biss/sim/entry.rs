@@ -26,7 +26,7 @@ impl Area {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Then {
+pub(super) enum EntryEffect {
     Refused,
     Nothing,
     /// A data area is opened. Its content must then be passed to [`DataEntry::open`].
@@ -54,18 +54,18 @@ impl DataEntry {
         if self.open.is_some() { DataStatus::Open } else { DataStatus::Closed }
     }
 
-    pub(super) fn command(&mut self, value: u8) -> Then {
+    pub(super) fn command(&mut self, value: u8) -> EntryEffect {
         let then = match (DataCommand::from_byte(value), self.open.take()) {
-            (DataCommand::OpenMotorData, None) => Then::Open(Area::Motor),
-            (DataCommand::OpenOemData, None) => Then::Open(Area::Oem),
-            (DataCommand::Save, Some((area, bytes))) => Then::SaveData(area, bytes),
-            (DataCommand::Cancel, _) => Then::Nothing,
+            (DataCommand::OpenMotorData, None) => EntryEffect::Open(Area::Motor),
+            (DataCommand::OpenOemData, None) => EntryEffect::Open(Area::Oem),
+            (DataCommand::Save, Some((area, bytes))) => EntryEffect::SaveData(area, bytes),
+            (DataCommand::Cancel, _) => EntryEffect::Nothing,
             (_, open) => {
                 self.open = open;
-                Then::Refused
+                EntryEffect::Refused
             }
         };
-        if then != Then::Refused {
+        if then != EntryEffect::Refused {
             self.command = value;
         }
         then
@@ -102,18 +102,20 @@ impl Default for FilterEntry {
 }
 
 impl FilterEntry {
-    pub(super) fn command(&mut self, value: u8) -> Then {
+    pub(super) fn command(&mut self, value: u8) -> EntryEffect {
         let (status, then) = match (FilterCommand::from_byte(value), self.status) {
-            (FilterCommand::Open, FilterStatus::Closed) => (FilterStatus::WaitForValue, Then::Nothing),
+            (FilterCommand::Open, FilterStatus::Closed) => (FilterStatus::WaitForValue, EntryEffect::Nothing),
             (
                 FilterCommand::Balanced | FilterCommand::Dynamic,
                 FilterStatus::WaitForValue | FilterStatus::WaitForSave,
             ) => {
                 self.chosen = PositionFilter::from_byte(value);
-                (FilterStatus::WaitForSave, Then::Nothing)
+                (FilterStatus::WaitForSave, EntryEffect::Nothing)
             }
-            (FilterCommand::Save, FilterStatus::WaitForSave) => (FilterStatus::Closed, Then::SaveFilter(self.chosen)),
-            _ => return Then::Refused,
+            (FilterCommand::Save, FilterStatus::WaitForSave) => {
+                (FilterStatus::Closed, EntryEffect::SaveFilter(self.chosen))
+            }
+            _ => return EntryEffect::Refused,
         };
         (self.command, self.status) = (value, status);
         then
@@ -133,24 +135,24 @@ impl PresetEntry {
     }
 
     /// Handles a command. `parts` is true if the encoder can preset singleturn and multiturn separately.
-    pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> Then {
+    pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> EntryEffect {
         let then = match (PresetCommand::from_byte(value), self.status) {
             (PresetCommand::Edit, _) => {
                 self.status = PresetStatus::WaitForValue;
-                Then::Nothing
+                EntryEffect::Nothing
             }
             (PresetCommand::Save, PresetStatus::WaitForValue) => {
                 let preset = PresetValue::parse(self.bytes);
                 let fits = u64::from(preset.singleturn()) >> layout.singleturn_bits() == 0
                     && u64::from(preset.multiturn()) >> layout.multiturn_bits() == 0;
-                if fits { Then::SavePreset(preset) } else { Then::Refused }
+                if fits { EntryEffect::SavePreset(preset) } else { EntryEffect::Refused }
             }
-            (PresetCommand::Both, _) => Then::Preset { singleturn: true, multiturn: true },
-            (PresetCommand::Singleturn, _) if parts => Then::Preset { singleturn: true, multiturn: false },
-            (PresetCommand::Multiturn, _) if parts => Then::Preset { singleturn: false, multiturn: true },
-            _ => Then::Refused,
+            (PresetCommand::Both, _) => EntryEffect::Preset { singleturn: true, multiturn: true },
+            (PresetCommand::Singleturn, _) if parts => EntryEffect::Preset { singleturn: true, multiturn: false },
+            (PresetCommand::Multiturn, _) if parts => EntryEffect::Preset { singleturn: false, multiturn: true },
+            _ => EntryEffect::Refused,
         };
-        if then != Then::Refused {
+        if then != EntryEffect::Refused {
             self.command = value;
         }
         then

@@ -54,7 +54,7 @@ impl Flash {
         self.calibrated
     }
 
-    pub const fn cycles(&self) -> u32 {
+    pub const fn write_cycles(&self) -> u32 {
         self.cycles
     }
 }

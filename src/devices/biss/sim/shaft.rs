@@ -4,7 +4,7 @@ use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
 
 /// Number of fractional bits in a step.
-pub(super) const FINE: u8 = 8;
+pub(super) const FRACTIONAL_BITS: u8 = 8;
 
 /// A shaft turning at constant speed, as seen by an encoder with 16 multiturn and 17 singleturn bits.
 #[derive(Clone, Debug)]
@@ -32,56 +32,56 @@ impl Shaft {
     }
 
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        (self.place, self.since) = (self.place(now), now);
+        (self.place, self.since) = (self.steps_at(now), now);
         self.rpm = rpm;
     }
 
     /// Returns the position at a moment, with error and warning cleared.
-    pub(super) fn reading(&self, at: Moment) -> PositionData {
-        let position = (self.integer_steps(at) + self.offset) % self.range();
-        let singleturn = position % self.steps();
-        let multiturn = position / self.steps();
+    pub(super) fn position_at(&self, at: Moment) -> PositionData {
+        let position = (self.integer_steps(at) + self.offset) % self.position_count();
+        let singleturn = position % self.steps_per_turn();
+        let multiturn = position / self.steps_per_turn();
         // Fields are at most 32 bits wide.
         let [singleturn, multiturn] = [singleturn, multiturn].map(|field| u32::try_from(field).unwrap_or(u32::MAX));
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at a moment with [`FINE`] fractional bits. Another encoder on the same shaft needs this
+    /// Returns the position at a moment with [`FRACTIONAL_BITS`] fractional bits. Another encoder on the same shaft needs this
     /// resolution.
-    pub(super) fn fine(&self, at: Moment) -> u64 {
-        let whole = (self.integer_steps(at) + self.offset) % self.range();
+    pub(super) fn fractional_position_at(&self, at: Moment) -> u64 {
+        let whole = (self.integer_steps(at) + self.offset) % self.position_count();
         // The product is at least 0 and below 1 << FINE.
-        let parts = (self.place(at).fract() * f64::from(1_u32 << FINE)) as u64;
-        whole << FINE | parts
+        let parts = (self.steps_at(at).fract() * f64::from(1_u32 << FRACTIONAL_BITS)) as u64;
+        whole << FRACTIONAL_BITS | parts
     }
 
     /// Presets singleturn, multiturn or both to the given values, effective from `at`. `None` leaves a part unchanged.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
-        let now = self.reading(at);
+        let now = self.position_at(at);
         let wanted = PositionData {
             singleturn: singleturn.unwrap_or(now.singleturn),
             multiturn: multiturn.unwrap_or(now.multiturn),
             ..now
         };
-        let range = self.range();
-        self.offset = (self.layout.steps(&wanted) % range + range - self.integer_steps(at)) % range;
+        let range = self.position_count();
+        self.offset = (self.layout.steps_of(&wanted) % range + range - self.integer_steps(at)) % range;
     }
 
-    fn steps(&self) -> u64 {
+    fn steps_per_turn(&self) -> u64 {
         1 << self.layout.singleturn_bits()
     }
 
-    fn range(&self) -> u64 {
-        self.steps() << self.layout.multiturn_bits()
+    fn position_count(&self) -> u64 {
+        self.steps_per_turn() << self.layout.multiturn_bits()
     }
 
     fn integer_steps(&self, at: Moment) -> u64 {
-        self.place(at) as u64 // not negative, below the range
+        self.steps_at(at) as u64 // not negative, below the range
     }
 
-    fn place(&self, at: Moment) -> f64 {
-        let moved = at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * self.steps() as f64;
-        let range = self.range() as f64;
+    fn steps_at(&self, at: Moment) -> f64 {
+        let moved = at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * self.steps_per_turn() as f64;
+        let range = self.position_count() as f64;
         // rem_euclid may round up to the range itself.
         let place = (self.place + moved).rem_euclid(range);
         if place < range { place } else { 0.0 }
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn a_turning_shaft_has_the_expected_position() {
         let mut shaft = Shaft::new(Layout::default(), 0, 60.0);
-        let place = |shaft: &Shaft, ms| (shaft.reading(at(ms)).multiturn, shaft.reading(at(ms)).singleturn);
+        let place = |shaft: &Shaft, ms| (shaft.position_at(at(ms)).multiturn, shaft.position_at(at(ms)).singleturn);
         assert_eq!(place(&shaft, 0), (0, 0));
         assert_eq!(place(&shaft, 1_750), (1, 0x18000));
         shaft.set_rpm(at(1_750), -60.0);
@@ -112,13 +112,13 @@ mod tests {
     fn fine_positions_include_fractions_of_a_step() {
         // At 60 rpm the shaft makes 2^17 steps per second, or 131.072 per millisecond; 0.072 of 256 parts is 18.4.
         let shaft = Shaft::new(Layout::default(), 5, 60.0);
-        assert_eq!((shaft.fine(at(0)), shaft.fine(at(1))), (5 << 8, 136 << 8 | 18));
+        assert_eq!((shaft.fractional_position_at(at(0)), shaft.fractional_position_at(at(1))), (5 << 8, 136 << 8 | 18));
     }
 
     #[test]
     fn a_preset_shifts_singleturn_or_multiturn() {
         let mut shaft = Shaft::new(Layout::default(), 5 << 17 | 0x100, 0.0);
-        let place = |shaft: &Shaft| (shaft.reading(at(9)).multiturn, shaft.reading(at(9)).singleturn);
+        let place = |shaft: &Shaft| (shaft.position_at(at(9)).multiturn, shaft.position_at(at(9)).singleturn);
         shaft.preset(at(0), Some(0x18000), None);
         assert_eq!(place(&shaft), (5, 0x18000));
         shaft.preset(at(0), None, Some(0xFFFF));

@@ -9,7 +9,7 @@ use super::config::Config;
 use super::encoder::Encoder;
 use crate::bits::ByteOrder;
 use crate::buses::ubicom::protocol::{
-    BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, Written, character_bits,
+    BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, WriteReply, character_bits,
 };
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::sim::SimulatedFaults;
@@ -85,13 +85,13 @@ impl UbicomPort {
 
     fn handle_input(&mut self) {
         let Some((at, byte)) = self.to_encoder.pop() else { return };
-        if self.work.is_some() || at <= self.talks_until || !self.encoder.answers(at) {
+        if self.work.is_some() || at <= self.talks_until || !self.encoder.can_access_registers(at) {
             (self.receiver, self.heard) = (Receiver::new(NODE), None);
             return;
         }
         self.receiver.push(&[byte]);
         while let Some(frame) = self.receiver.next_frame() {
-            self.take(at, &frame);
+            self.handle_frame(at, &frame);
         }
         self.heard = self.receiver.is_waiting().then_some(at);
     }
@@ -99,12 +99,12 @@ impl UbicomPort {
     fn handle_line_silence(&mut self, at: Moment) {
         self.heard = None;
         while let Some(frame) = self.receiver.handle_silence() {
-            self.take(at, &frame);
+            self.handle_frame(at, &frame);
         }
     }
 
     /// Accepts a complete frame. Only one request is processed at a time.
-    fn take(&mut self, at: Moment, frame: &[u8]) {
+    fn handle_frame(&mut self, at: Moment, frame: &[u8]) {
         let silent = self.wires.faults.silent_after().is_some_and(|frames| frames <= self.frames);
         self.frames = self.frames.saturating_add(1);
         let request = Frame::parse(frame).ok().and_then(|frame| Request::parse(&frame, self.order).ok());
@@ -113,7 +113,7 @@ impl UbicomPort {
         }
     }
 
-    fn answer(&mut self, at: Moment) {
+    fn send_reply(&mut self, at: Moment) {
         let Some(PendingRequest { request, .. }) = self.work.take() else { return };
         let reply = match request {
             Request::Read { register } => RegisterAddress::from_global(register)
@@ -122,11 +122,11 @@ impl UbicomPort {
             Request::Write { register, value } => {
                 let accepted = RegisterAddress::from_global(register)
                     .is_some_and(|address| self.encoder.write(at, address, value));
-                Some(Reply::Written(if accepted { Written::Acknowledged } else { Written::Refused }))
+                Some(Reply::Written(if accepted { WriteReply::Acknowledged } else { WriteReply::Refused }))
             }
             Request::Position { argument: 0x01 } => {
                 let layout = self.encoder.layout().clone();
-                self.encoder.reading(at).map(|reading| Reply::Position(layout.position_word(&reading)))
+                self.encoder.position_at(at).map(|reading| Reply::Position(layout.position_word(&reading)))
             }
             Request::Position { .. } => None,
         };
@@ -174,7 +174,7 @@ impl VirtualLine for UbicomPort {
 
     fn schedule_event(&mut self, at: Moment, event: Event) {
         match event {
-            Event::EncoderAnswers => self.answer(at),
+            Event::EncoderAnswers => self.send_reply(at),
             Event::EncoderHears => self.handle_input(),
             Event::FrameEnds => self.handle_line_silence(at),
             Event::HostReceives => {

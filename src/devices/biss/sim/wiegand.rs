@@ -71,7 +71,7 @@ impl WiegandState {
 
     /// Adds the revolutions since the previous call at a constant speed. A run ends when it has collected enough
     /// revolutions.
-    pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
+    pub(super) fn update(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
         if !self.is_running() {
             return;
         }
@@ -97,7 +97,7 @@ impl WiegandState {
     }
 
     /// Ends the run because the device mode was left or power was lost. The result is kept until power is lost.
-    pub(super) fn abandon(&mut self) {
+    pub(super) fn abort(&mut self) {
         (self.command, self.status) = (0, WiegandStatus::Stopped);
     }
 }

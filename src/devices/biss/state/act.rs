@@ -18,10 +18,10 @@ use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
 /// Interval between readings of watched registers, which change slowly and delay the position readings.
-const WATCHED_EVERY: Duration = Duration::from_millis(500);
+const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    pub(crate) fn act(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
+    pub(crate) fn handle_action(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
         let services = &mut *context.services;
         match action {
             BissAction::PlanMounting { mut run, motor, data } => {
@@ -36,20 +36,20 @@ impl Encoder {
             }
             BissAction::ReadStatus => self.submit(BissJob::Status, services),
             BissAction::Check => self.submit(BissJob::Check, services),
-            BissAction::Watch(register, on) => self.watch(*register, on),
+            BissAction::Watch(register, on) => self.watch_register(*register, on),
             BissAction::ReadBank(bank) => self.read_bank(bank, services),
             BissAction::SeeBank(bank) => {
                 // A bank is read only once, and only if nothing is running and no stream would be interrupted.
-                let free = self.session.is_ready() && self.streamed().is_none();
+                let free = self.session.is_ready() && self.active_stream().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
                 }
             }
             BissAction::ReadArea(first) => self.read_area(first, services),
-            BissAction::Put { start, bytes } => self.put(start, &bytes, services),
+            BissAction::Put { start, bytes } => self.edit_bytes(start, &bytes, services),
             BissAction::Revert { start, count } => self.memory.revert_range(start, count),
             BissAction::Plan(change) => self.plan(*change, services),
-            BissAction::Answer(task, answer) => self.answer(task, answer),
+            BissAction::Answer(task, answer) => self.answer_task(task, answer),
             BissAction::CloseGuide => self.close_procedure(),
             BissAction::LeadBack => self.submit(BissJob::LeadBack, services),
             BissAction::Turn(rpm) => {
@@ -61,20 +61,21 @@ impl Encoder {
         }
     }
 
-    fn watch(&mut self, register: Register, on: bool) {
-        let mut watched = self.record.watched();
+    fn watch_register(&mut self, register: Register, on: bool) {
+        let mut watched = self.record.watched_registers();
         watched.retain(|own| own.address != register.address);
         if on {
             watched.push(register);
         }
-        self.record.watch(&watched);
+        self.record.set_watched(&watched);
         self.update_watches();
     }
 
     pub(super) fn update_watches(&mut self) {
-        let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
+        let ranges =
+            self.record.watched_registers().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
         if let Some(line) = &self.session.line {
-            line.watch_values(ranges.map(|range| (range, WATCHED_EVERY)).collect());
+            line.watch_values(ranges.map(|range| (range, WATCH_INTERVAL)).collect());
         }
     }
 
@@ -96,37 +97,37 @@ impl Encoder {
     /// Returns whether a newly visible bank should be read. This requires that the bank has not been read, nothing is
     /// running, no stream would be interrupted, and no earlier attempt failed.
     pub fn should_read_bank(&self, group: &Group) -> bool {
-        let free = self.session.is_ready() && self.streamed().is_none();
+        let free = self.session.is_ready() && self.active_stream().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
     /// Returns the part of an area that can be shown. This is the whole area for an encoder, and the part that the file
     /// contains for a profile.
     pub fn visible_area_part(&self, area: &Area) -> Option<Area> {
-        if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
+        if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
     }
 
     /// Returns the reason why an area cannot be edited now, or `None` if it can be.
     pub fn not_editable_reason(&self, area: &Area) -> Option<Text> {
-        if !area.access.writes() {
+        if !area.access.is_writable() {
             return Some(TEXTS.text("data.read_only"));
         }
         // A profile is only a file. The access rights of the encoder do not apply to it.
         (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
     }
 
-    fn put(&mut self, start: RegisterAddress, bytes: &[u8], services: &mut Services) {
+    fn edit_bytes(&mut self, start: RegisterAddress, bytes: &[u8], services: &mut Services) {
         if self.session.is_writing() {
             return self.session.report_rejection(Text::new("session.busy"), services);
         }
         let Some(description) = self.description.clone() else { return };
-        if let Err(error) = self.memory.put(&description, start, bytes) {
+        if let Err(error) = self.memory.edit_bytes(&description, start, bytes) {
             self.session.report_rejection(words::edit_error_text(error), services);
         }
     }
 
     /// Saves a newly read profile to the file for which it was requested.
-    pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
+    pub(super) fn save_profile(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::unsaved_profile_warning(&profile).into_iter().collect();
         self.session.save_read_values(Body::new(profile), edits, remarks, services);

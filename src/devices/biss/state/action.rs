@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::app::DeviceAction;
 use crate::app::studio::SessionId;
 use crate::devices::biss::jobs::Change;
-use crate::devices::biss::procedures::procedure::{Answer, Task};
+use crate::devices::biss::procedures::procedure::{OperatorAnswer, OperatorTask};
 use crate::devices::biss::profile::{MotorSource, MountingSteps};
 use crate::devices::biss::protocol::{Register, RegisterAddress};
 
@@ -39,7 +39,7 @@ pub enum BissAction {
         motor: MotorSource,
         data: Option<SessionId>,
     },
-    Answer(Task, Answer),
+    Answer(OperatorTask, OperatorAnswer),
     CloseGuide,
     LeadBack,
     /// Turns the shaft of the virtual encoder at a speed in revolutions per minute.

@@ -10,7 +10,7 @@ use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol::FORMAT;
-use crate::devices::biss::jobs::check;
+use crate::devices::biss::jobs::check_link;
 use crate::devices::biss::procedures::{
     BusParameters, Echo, FrameParameters, LineParameters, ORDERS, PinParameters, Transport,
 };
@@ -110,12 +110,12 @@ impl FormModel for BissForm {
         } else {
             form.port = target.to_owned();
         }
-        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.fill_entry(name, value));
         form
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        validated_link(self.parameters().build_link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check_link)
     }
 
     fn set_file(&mut self, file: String) {
@@ -129,9 +129,9 @@ impl FormModel for BissForm {
 
 impl BissForm {
     /// Fills in the form field for a parameter. Returns `false` if no field can show the value.
-    fn take(&mut self, name: &str, value: &str) -> bool {
-        if name == SupplyAfterSession::LEFT_ON.0 {
-            self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;
+    fn fill_entry(&mut self, name: &str, value: &str) -> bool {
+        if name == SupplyAfterSession::LEAVE_SUPPLY_ON.0 {
+            self.leave_supply = value == SupplyAfterSession::LEAVE_SUPPLY_ON.1;
             return self.leave_supply;
         }
         match name {
@@ -208,7 +208,7 @@ impl BissForm {
         if self.uses_bus() {
             parameters.add_entered(&Self::bus_entries(), &self.typed);
             if self.leave_supply {
-                parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
+                parameters.set(SupplyAfterSession::LEAVE_SUPPLY_ON.0, SupplyAfterSession::LEAVE_SUPPLY_ON.1);
             }
         } else {
             parameters.add_entered(&PinParameters::entries(), &self.typed);
@@ -233,7 +233,8 @@ impl BissForm {
     fn has_parameter(&self, name: &str) -> bool {
         let kind = if self.uses_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);
-        let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(attachable_kinds()).contains(&name));
+        let (encoder, adapter) =
+            (sim::Config::KEYS.contains(&name), bridge::all_setting_names(attachable_kinds()).contains(&name));
         let of_the_virtual = self.kind == BissLinkKind::Virtual && (encoder || (adapter && self.behind_adapter));
         let elsewhere = own(Transport::ConfigPin) || own(Transport::Adapter) || encoder || adapter || name == BRIDGE.0;
         own(kind) || of_the_virtual || !elsewhere

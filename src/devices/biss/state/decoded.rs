@@ -7,33 +7,33 @@ use super::words;
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::number::decimal_places;
-use crate::devices::biss::protocol::{Decoded, Eds, EdsBank, ProfileId, Register, RegisterAddress, Role};
+use crate::devices::biss::protocol::{DecodedValue, Eds, EdsBank, ProfileId, Register, RegisterAddress, Role};
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
     /// Returns the meaning of a register. Returns `None` if the register was not read or its number needs no
     /// explanation.
-    pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
+    pub fn describe_register(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
         if let Some(text) = register.role.and_then(|role| self.role_meaning(role, bytes)) {
             return Some(text);
         }
         Some(match register.decode(bytes)? {
-            Decoded::Scaled(value) => quantity(value, &register.unit),
-            Decoded::Number(number) if !register.unit.is_empty() => quantity(number as f64, &register.unit),
-            Decoded::Number(_) | Decoded::Hex(_) => return self.data_sheet_meaning(register, bytes),
-            Decoded::Bits(set) if set.is_empty() => TEXTS.text("registers.no_bit"),
-            Decoded::Bits(set) => {
+            DecodedValue::Scaled(value) => quantity_text(value, &register.unit),
+            DecodedValue::Number(number) if !register.unit.is_empty() => quantity_text(number as f64, &register.unit),
+            DecodedValue::Number(_) | DecodedValue::Hex(_) => return self.data_sheet_meaning(register, bytes),
+            DecodedValue::Bits(set) if set.is_empty() => TEXTS.text("registers.no_bit"),
+            DecodedValue::Bits(set) => {
                 let named = |(bit, name): (u8, Option<_>)| {
                     name.map_or_else(|| literal_text(format!("b{bit}")), explained::name)
                 };
                 Text::new("plain.words").with_list("words", set.into_iter().map(named))
             }
-            Decoded::Choice(_, Some(name)) => explained::name(name),
-            Decoded::Choice(_, None) => TEXTS.text("registers.unknown_value"),
-            Decoded::Text(text) => literal_text(text),
+            DecodedValue::Choice(_, Some(name)) => explained::name(name),
+            DecodedValue::Choice(_, None) => TEXTS.text("registers.unknown_value"),
+            DecodedValue::Text(text) => literal_text(text),
         })
     }
 
@@ -66,10 +66,10 @@ impl Encoder {
         let offset = register.address.address();
         let bank = [EdsBank::Common, EdsBank::Encoder]
             .into_iter()
-            .find(|own| !register.name.is_empty() && register.address.bank() == Some(own.number()))?;
+            .find(|own| !register.name.is_empty() && register.address.bank() == Some(own.kit_number()))?;
         if offset == Eds::CHECKSUM_OFFSET {
             let all =
-                self.memory.bytes(RegisterAddress::bank_start(bank.number()), RegisterAddress::BANK_SIZE.into())?;
+                self.memory.bytes(RegisterAddress::bank_start(bank.kit_number()), RegisterAddress::BANK_SIZE.into())?;
             return Some(match Eds::parse(bank, all.try_into().ok()?) {
                 Ok(_) => TEXTS.text("sheet_card.sum"),
                 Err(_) => TEXTS.text("registers.wrong_sum"),
@@ -83,7 +83,7 @@ impl Encoder {
 }
 
 /// Formats a quantity with its unit and at most three decimals.
-fn quantity(value: f64, unit: &str) -> Text {
+fn quantity_text(value: f64, unit: &str) -> Text {
     let value = (value * 1000.0).round() / 1000.0;
     TEXTS.text("registers.quantity").with_number("value", value, decimal_places(value)).with("unit", unit)
 }
@@ -104,26 +104,28 @@ mod tests {
         let group = &encoder.table.groups()[encoder.table.position(at.bank()).unwrap()];
         let row = group.rows().iter().position(|row| row.register.address == at).unwrap();
         let shown = group.entry(row, &encoder.memory).unwrap();
-        encoder.meaning(&shown).map(|text| text.to_string_in(language)).unwrap_or_default()
+        encoder.describe_register(&shown).map(|text| text.to_string_in(language)).unwrap_or_default()
     }
 
     /// Covers every register in reference 4 whose raw number does not explain itself.
     #[test]
     fn every_reference_register_is_decoded() {
         let mut encoder =
-            Encoder::with(Session::for_link(SessionId::default(), "sim:".parse().unwrap(), KindRegistry::NONE));
-        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
-        encoder.describe(Some(Arc::new(kit.clone())));
+            Encoder::from_session(Session::for_link(SessionId::default(), "sim:".parse().unwrap(), KindRegistry::NONE));
+        let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").unwrap().clone();
+        encoder.set_description(Some(Arc::new(kit.clone())));
         for register in kit.registers() {
             let bytes =
                 if register.default.is_empty() { vec![0; register.width.into()] } else { register.default.clone() };
-            encoder.memory.take(register.address, &bytes);
+            encoder.memory.store_bytes(register.address, &bytes);
         }
         for bank in [EdsBank::Common, EdsBank::Encoder] {
-            encoder.memory.take(RegisterAddress::bank_start(bank.number()), &Eds::factory_default(bank).emit());
+            encoder
+                .memory
+                .store_bytes(RegisterAddress::bank_start(bank.kit_number()), &Eds::factory_default(bank).emit());
         }
         for (at, byte) in [("0x66", 0x4B), ("0x68", 0x12), ("0x40", 0x24), ("0x00:0x09", 53)] {
-            encoder.memory.take(at.parse().unwrap(), &[byte]);
+            encoder.memory.store_bytes(at.parse().unwrap(), &[byte]);
         }
         for (at, english, german) in [
             ("0x40", "OEM data", "OEM-Daten"),
@@ -153,7 +155,7 @@ mod tests {
             assert_eq!(meaning_text(&encoder, at, Language::English), english, "{at}");
             assert_eq!(meaning_text(&encoder, at, Language::German), german, "{at}");
         }
-        encoder.memory.take("0x03:0x0A".parse().unwrap(), &[0x0C]);
+        encoder.memory.store_bytes("0x03:0x0A".parse().unwrap(), &[0x0C]);
         assert_eq!(meaning_text(&encoder, "0x03:0x3F", Language::English), "wrong checksum");
     }
 }

@@ -31,7 +31,7 @@ impl HasDraft for Encoder {
     }
 
     fn current_edits(&self) -> Edits {
-        self.memory.edits()
+        self.memory.draft_edits()
     }
 
     fn take_edits(&mut self, edits: Edits) {

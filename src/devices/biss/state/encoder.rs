@@ -3,17 +3,17 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::guide::Guide;
-use super::meaning::Meaning;
+use super::guide::ProcedureRun;
+use super::meaning::FrameDecoder;
 use super::memory::Memory;
-use super::record::{Record, Streamed};
+use super::record::{FrameStream, Record};
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Session, Source};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::Biss;
-use crate::devices::biss::procedures::{Identity, Status, Survey};
+use crate::devices::biss::procedures::{EncoderStatus, Identity, Survey};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::{Description, DeviceMode, Eds, EdsBank, EdsError};
 use crate::devices::biss::state::explain as words;
@@ -22,18 +22,18 @@ use crate::sim::Motor;
 pub struct Encoder {
     pub session: Session<Biss>,
     pub survey: Option<Survey>,
-    pub status: Option<Status>,
+    pub status: Option<EncoderStatus>,
     pub check: Option<Vec<CheckLine>>,
     pub description: Option<Arc<Description>>,
     pub memory: Memory,
     pub table: Table,
     pub record: Record,
     /// The running procedure, or the last one with its result.
-    pub guide: Option<Guide>,
+    pub guide: Option<ProcedureRun>,
     /// Reason why the last data request was refused, if any.
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
-    pub(super) meaning: Meaning,
+    pub(super) meaning: FrameDecoder,
     /// Banks that were read when they became visible, or that could not be read. They are not requested again
     /// automatically.
     pub(super) seen: BTreeSet<Option<u8>>,
@@ -42,7 +42,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    pub(super) fn with(session: Session<Biss>) -> Self {
+    pub(super) fn from_session(session: Session<Biss>) -> Self {
         Encoder {
             session,
             survey: None,
@@ -55,23 +55,23 @@ impl Encoder {
             guide: None,
             refusal: None,
             motor: None,
-            meaning: Meaning::default(),
+            meaning: FrameDecoder::default(),
             seen: BTreeSet::new(),
             read_after: BTreeSet::new(),
         }
     }
 
-    pub(super) fn describe(&mut self, description: Option<Arc<Description>>) {
+    pub(super) fn set_description(&mut self, description: Option<Arc<Description>>) {
         let sheet = self.survey.as_ref().and_then(|survey| survey.identity.data_sheet.as_ref());
         let last = sheet.and_then(|sheet| sheet.common.eds.as_ref().ok()).and_then(Eds::last_user_bank);
-        self.table = description.as_ref().map(|own| Table::of(own, last)).unwrap_or_default();
+        self.table = description.as_ref().map(|own| Table::from_description(own, last)).unwrap_or_default();
         self.description = description;
     }
 
     pub(super) fn load_profile(&mut self, profile: &BissProfile) {
         let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
         for bank in profile.banks().chain(sheets) {
-            bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
+            bank.registers().for_each(|(at, byte)| self.memory.store_bytes(at, &[byte]));
         }
     }
 
@@ -84,7 +84,7 @@ impl Encoder {
     pub(crate) fn edited_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
         for (at, byte) in self.memory.iter() {
-            profile.put(at, byte);
+            profile.set_register(at, byte);
         }
         Some(profile)
     }
@@ -100,15 +100,15 @@ impl Encoder {
         }
         let banks = &self.profile()?.recorded.eds;
         let parsed = |bank: EdsBank| {
-            let listed = banks.iter().find(|listed| listed.bank.number == bank.number())?;
+            let listed = banks.iter().find(|listed| listed.bank.number == bank.kit_number())?;
             Some(Eds::parse(bank, listed.bank.bytes))
         };
         Some([parsed(EdsBank::Common)?, parsed(EdsBank::Encoder)?])
     }
 
     /// Returns the stream that an adapter is sending, or `None` if no adapter is streaming.
-    pub fn streamed(&self) -> Option<&Streamed> {
-        self.record.streamed().filter(|_| self.session.is_polling())
+    pub fn active_stream(&self) -> Option<&FrameStream> {
+        self.record.current_stream().filter(|_| self.session.is_polling())
     }
 
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
@@ -141,11 +141,11 @@ impl Encoder {
             self.record.add_position(position);
         }
         for (at, byte) in registers.iter() {
-            self.memory.take(at, &[byte]);
+            self.memory.store_bytes(at, &[byte]);
         }
         let description = identity.description.clone();
         self.survey = Some(survey);
-        self.describe(Some(description));
+        self.set_description(Some(description));
         if first {
             self.load_draft(services);
         }
@@ -164,12 +164,12 @@ impl Encoder {
 
     /// Returns a message if registers may show values that were never saved. The cause is the device mode of the
     /// encoder, or the mode in which the profile was read.
-    pub fn unsaved(&self) -> Option<Text> {
+    pub fn unsaved_warning(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
             return words::profile_unsaved(profile);
         }
         let mode = self.status.as_ref()?.mode.filter(|mode| *mode != DeviceMode::OPERATION)?;
-        Some(words::unsaved(mode))
+        Some(words::unsaved_warning(mode))
     }
 
     /// Returns whether the identity differs from that of the previously read encoder.

@@ -9,7 +9,7 @@ use crate::app::services::{JobState, Services};
 use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, first};
 use crate::app::{Severity, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep};
-use crate::devices::biss::procedures::{Error, Sample};
+use crate::devices::biss::procedures::{Error, PolledSample};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
@@ -33,7 +33,7 @@ impl Kind for Biss {
     }
 
     fn job_text(job: &BissJob) -> Text {
-        words::job(job)
+        words::job_name(job)
     }
 
     fn writes_memory(job: &BissJob) -> bool {
@@ -54,7 +54,7 @@ impl Kind for Biss {
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {
-        explained::job(error)
+        explained::job_error_texts(error)
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
@@ -72,12 +72,12 @@ impl Encoder {
 }
 
 impl SessionEvents for Encoder {
-    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
-        self.record.add(samples, dropped);
+    fn handle_samples(&mut self, samples: Vec<PolledSample>, dropped: u64) {
+        self.record.add_samples(samples, dropped);
     }
 
     fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
-        self.meaning.of(frame)
+        self.meaning.explain(frame)
     }
 
     fn handle_progress(&mut self, what: JobStep) {
@@ -90,7 +90,7 @@ impl SessionEvents for Encoder {
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
             DeviceMessage::CrcErrors(count) => self.record.add_crc_errors(count),
-            remark => services.notify(Severity::Warning, explained::remark(&remark), None),
+            remark => services.notify(Severity::Warning, explained::message_texts(&remark), None),
         }
     }
 
@@ -106,10 +106,10 @@ impl SessionEvents for Encoder {
                 }
                 self.status = Some(*status);
             }
-            BissOutput::Check(lines) => self.check = Some(explained::check(&lines)),
+            BissOutput::Check(lines) => self.check = Some(explained::check_lines(&lines)),
             BissOutput::Position(reading) => self.record.add_position(reading),
             BissOutput::Registers(read) => {
-                self.memory.take(read.start, &read.bytes);
+                self.memory.store_bytes(read.start, &read.bytes);
                 if read.start.bank().is_some() {
                     self.set_device_mode(read.unsaved);
                 }
@@ -118,10 +118,10 @@ impl SessionEvents for Encoder {
             BissOutput::Area { banks, unsaved } => {
                 self.set_device_mode(unsaved);
                 for bank in banks {
-                    bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
+                    bank.registers().for_each(|(at, byte)| self.memory.store_bytes(at, &[byte]));
                 }
             }
-            BissOutput::Saved(profile) => self.saved(*profile, services),
+            BissOutput::Saved(profile) => self.save_profile(*profile, services),
             BissOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             BissOutput::Committed(committed) => {
                 self.log_outcomes(&committed.written.outcomes, services);

@@ -11,23 +11,23 @@ mod plan;
 mod write;
 
 use crate::devices::biss::state::TEXTS;
-pub use check::check;
+pub use check::check_lines;
 pub use damage::damage_text;
 pub use entry::entry;
 pub use guide::{
-    advice_text, blocker_text, calibration_requirements_text, mode, outcome, procedure, report, step, task,
-    wiegand_requirements_text,
+    advice_text, blocker_text, calibration_requirements_text, mode, outcome_texts, procedure_step_text, procedure_text,
+    report_lines, task_text, wiegand_requirements_text,
 };
 pub use plan::{other_type, plan};
-pub use write::{change, failure, op, preset, wear, weight, written};
+pub use write::{change_text, failure_text, operation_texts, preset, severity_of, wear_warning, written_text};
 
 use crate::app::Text;
 use crate::app::explain::{self as general, link_error_text, not_started_text, syntax_error_text};
-use crate::buses::bridge::state::adapter;
+use crate::buses::bridge::state::adapter_error_text;
 use crate::devices::biss::jobs::{DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Error, RequestedItem};
 use crate::devices::biss::profile::BissProfile;
-use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, LayoutError, Mismatch, Name};
+use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, IdentityMismatch, LayoutError, Name};
 use crate::link::LinkError;
 use crate::store::StoreError;
 
@@ -36,7 +36,7 @@ pub fn name(name: &Name) -> Text {
 }
 
 /// Returns the messages for a job that ended early. Each message may be shown on a separate line.
-pub fn job(error: &JobError) -> Vec<Text> {
+pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
@@ -49,13 +49,13 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// Returns the reason for a lost connection, or `None` if further requests are possible.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
-    lost(error.device()?).map(link_error_text)
+    lost_link(error.device()?).map(link_error_text)
 }
 
-fn lost(error: &Error) -> Option<&LinkError> {
+fn lost_link(error: &Error) -> Option<&LinkError> {
     match error {
         Error::Link(error) => Some(error),
-        Error::Unclear { cause, .. } => lost(cause),
+        Error::Unclear { cause, .. } => lost_link(cause),
         _ => None,
     }
 }
@@ -63,7 +63,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link_error_text(error),
-        Error::Adapter(error) => adapter(error),
+        Error::Adapter(error) => adapter_error_text(error),
         Error::NoReply { requested, tries, echo_heard } => {
             let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
             TEXTS.text(id).with_text("asked", self::item_text(*requested)).with("tries", tries)
@@ -106,7 +106,7 @@ pub fn encoder(error: &Error) -> Text {
         Error::OutOfRange { start, count } => TEXTS.text("biss.out_of_range").with("start", start).with("count", count),
         Error::NoDescription(found) => TEXTS.text("biss.no_description").with("found", found),
         Error::NotIdentified => TEXTS.text("biss.not_identified"),
-        Error::Moving { rpm } => moving(*rpm),
+        Error::Moving { rpm } => moving_text(*rpm),
         Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
         Error::Changed { item } => TEXTS.text("biss.changed").with("item", item),
         Error::OtherReply { requested, reply } => {
@@ -140,14 +140,14 @@ fn layout(error: &LayoutError) -> Text {
 }
 
 /// Returns the warning for a device mode in which registers may show values that were never saved.
-pub fn unsaved(mode: DeviceMode) -> Text {
+pub fn unsaved_warning(mode: DeviceMode) -> Text {
     in_mode("biss.unsaved", mode)
 }
 
 /// Returns a warning if a profile that was just saved may contain values that were never saved in the encoder. Returns
 /// `None` if the encoder was in operation.
 pub fn unsaved_profile_warning(profile: &BissProfile) -> Option<Text> {
-    profile.recorded.device_mode.map(unsaved)
+    profile.recorded.device_mode.map(unsaved_warning)
 }
 
 /// Returns the message for a profile that was read in a device mode, or `None` if the encoder was in operation.
@@ -164,7 +164,7 @@ fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
     TEXTS.text(id).with_text("mode", self::mode(mode))
 }
 
-fn moving(rpm: Option<f64>) -> Text {
+fn moving_text(rpm: Option<f64>) -> Text {
     let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return TEXTS.text("biss.moving") };
     let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };
     TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
@@ -181,7 +181,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
 }
 
 /// Returns the message for an encoder that does not match the closest description.
-pub fn mismatch(mismatch: &Mismatch) -> Text {
+pub fn mismatch_text(mismatch: &IdentityMismatch) -> Text {
     TEXTS
         .text("biss.mismatch")
         .with("found", &mismatch.found)
@@ -190,16 +190,16 @@ pub fn mismatch(mismatch: &Mismatch) -> Text {
 }
 
 /// Returns the texts for a message from a running job.
-pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
+pub fn message_texts(remark: &DeviceMessage) -> Vec<Text> {
     match remark {
         DeviceMessage::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
         DeviceMessage::CrcErrors(count) => vec![TEXTS.text("biss.crc_errors").with("count", count)],
-        DeviceMessage::Descriptions(errors) => errors.iter().map(description).collect(),
+        DeviceMessage::Descriptions(errors) => errors.iter().map(description_error_text).collect(),
     }
 }
 
 /// Returns the message for a user-supplied description that cannot be read or used.
-fn description(error: &StoreError) -> Text {
+fn description_error_text(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<DescriptionError>() {
         Some(DescriptionError { file, line, column, problem: what }) => TEXTS
@@ -214,7 +214,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
         JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),
         JobStep::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
-        JobStep::Operation { progress: news, .. } => step(news.step),
+        JobStep::Operation { progress: news, .. } => procedure_step_text(news.step),
     }
 }
 
@@ -227,7 +227,7 @@ mod tests {
     use super::*;
     use crate::app::Language::{English, German};
     use crate::buses::bridge::procedures::AdapterError;
-    use crate::devices::biss::procedures::Damage;
+    use crate::devices::biss::procedures::ReplyDamage;
     use crate::devices::biss::protocol::{Identity, ProfileId, RegisterAddress};
     use crate::link::LinkErrorKind;
 
@@ -239,7 +239,7 @@ mod tests {
         let cases = [
             (Error::NoReply { requested, tries: 5, echo_heard: false }, vec!["0x24:0x10", "5"]),
             (Error::NoReply { requested, tries: 5, echo_heard: true }, vec!["0x24:0x10", "5"]),
-            (Error::Damaged { requested, tries: 5, cause: Damage::Inconsistent }, vec!["0x24:0x10", "5"]),
+            (Error::Damaged { requested, tries: 5, cause: ReplyDamage::Inconsistent }, vec!["0x24:0x10", "5"]),
             (Error::NeverSilent, vec![]),
             (Error::NoAcknowledge { tries: 5, supply_off: false }, vec!["MA", "SLO"]),
             (Error::NoAcknowledge { tries: 5, supply_off: true }, vec!["voltage="]),
@@ -283,6 +283,6 @@ mod tests {
             assert_eq!(connection_loss_text(&JobError::Device(error)).unwrap().id(), "link.lost");
         }
         assert_eq!(connection_loss_text(&JobError::Device(Error::NeverSilent)), None);
-        assert_eq!(job(&JobError::Device(Error::NeverSilent)).len(), 1);
+        assert_eq!(job_error_texts(&JobError::Device(Error::NeverSilent)).len(), 1);
     }
 }

@@ -19,7 +19,7 @@ impl Default for PresetForm {
 }
 
 impl PresetForm {
-    pub fn of(value: PresetValue, layout: &Layout) -> Self {
+    pub fn from_value(value: PresetValue, layout: &Layout) -> Self {
         let steps = (1_u64 << layout.singleturn_bits()) as f64;
         let degrees = f64::from(value.singleturn()) * 360.0 / steps;
         PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
@@ -29,7 +29,7 @@ impl PresetForm {
     ///
     /// # Errors
     /// Returns a message with the valid range if the entry is invalid.
-    pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
+    pub fn parse_singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = parse_in_range(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
         // The result is less than the step count and fits into 32 bits.
@@ -40,7 +40,7 @@ impl PresetForm {
     ///
     /// # Errors
     /// Returns a message with the valid range if the entry is invalid.
-    pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
+    pub fn parse_multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
         parse_integer(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
@@ -50,7 +50,7 @@ impl PresetForm {
     /// # Errors
     /// Returns a message with the valid range of the first invalid field.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
-        let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
+        let (singleturn, multiturn) = (self.parse_singleturn(layout)?, self.parse_multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))
     }
 }
@@ -72,7 +72,7 @@ mod tests {
         }
         // Angles in the last half step round up to step 0 of the next revolution.
         assert_eq!(form("359.9999", "0").value(&layout).unwrap().singleturn(), 0);
-        assert_eq!(PresetForm::of(PresetValue::new(98_304, 7).unwrap(), &layout), form("270", "7"));
+        assert_eq!(PresetForm::from_value(PresetValue::new(98_304, 7).unwrap(), &layout), form("270", "7"));
     }
 
     #[test]
@@ -86,6 +86,6 @@ mod tests {
         }
         assert_eq!((refused("", "0"), refused("0", "")), ("entry.missing", "entry.missing"));
         let (both, layout) = (form("north", "x"), Layout::default());
-        assert!(both.singleturn(&layout).is_err() && both.multiturn(&layout).is_err(), "each for itself");
+        assert!(both.parse_singleturn(&layout).is_err() && both.parse_multiturn(&layout).is_err(), "each for itself");
     }
 }

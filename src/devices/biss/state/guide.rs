@@ -3,23 +3,24 @@
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
-    Answer, OperatorChannel, OperatorPrompt, Outcome, ProcedureProgress, ProcedureStep, StepDetail, Task, steps_of,
+    OperatorAnswer, OperatorChannel, OperatorPrompt, OperatorTask, Outcome, ProcedureProgress, ProcedureStep,
+    StepDetail, operation_steps,
 };
 use crate::devices::biss::profile::Op;
 
-pub struct Guide {
+pub struct ProcedureRun {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
     /// The interrupted step. The last reported step may be a different one, which belongs to the return to operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
-    skips: Vec<(usize, Task)>,
+    skips: Vec<(usize, OperatorTask)>,
     /// How the procedure ended, or `None` while it is running.
-    pub end: Option<End>,
+    pub end: Option<ProcedureEnd>,
 }
 
 #[derive(Clone, Debug)]
-pub enum End {
+pub enum ProcedureEnd {
     /// The procedure ran to completion, with the result of each operation.
     Done(Vec<Outcome>),
     /// The procedure ended early.
@@ -55,16 +56,16 @@ pub struct GuideStep<'a> {
     pub reached: StepStatus,
 }
 
-impl Guide {
+impl ProcedureRun {
     pub(super) fn new(ops: Vec<Op>) -> Self {
-        Guide { ops, progress: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
+        ProcedureRun { ops, progress: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
     }
 
     pub fn is_running(&self) -> bool {
         self.end.is_none()
     }
 
-    pub fn ops(&self) -> &[Op] {
+    pub fn operations(&self) -> &[Op] {
         &self.ops
     }
 
@@ -73,23 +74,23 @@ impl Guide {
     }
 
     /// Returns the detail of the current step, or `None` if the procedure is not running.
-    pub fn detail(&self) -> Option<&StepDetail> {
+    pub fn step_detail(&self) -> Option<&StepDetail> {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
     pub fn operator_prompt(&self) -> Option<&OperatorPrompt> {
-        match self.detail()? {
+        match self.step_detail()? {
             StepDetail::Demand(demand) => Some(demand),
             _ => None,
         }
     }
 
-    pub(super) fn answer(&mut self, task: Task, answer: Answer) {
+    pub(super) fn answer_task(&mut self, task: OperatorTask, answer: OperatorAnswer) {
         if self.is_running() {
-            if let Some(op) = self.progress.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {
+            if let Some(op) = self.progress.as_ref().map(|news| news.op).filter(|_| answer == OperatorAnswer::Skip) {
                 self.skips.push((op, task));
             }
-            self.seat.answer(task, answer);
+            self.seat.answer_task(task, answer);
         }
     }
 
@@ -98,18 +99,20 @@ impl Guide {
         let mut steps = Vec::new();
         let mut passed = true;
         for (number, op) in self.ops.iter().enumerate() {
-            let all = steps_of(op);
-            let skipped = self.skipped(number, &all);
+            let all = operation_steps(op);
+            let skipped = self.skipped_steps(number, &all);
             for (place, step) in all.into_iter().enumerate() {
                 let is_own = at == Some((number, step));
                 passed &= !is_own && at.is_some_and(|(own, _)| number <= own);
                 let is_skipped = skipped.as_ref().is_some_and(|range| range.contains(&place));
                 let reached = match &self.end {
-                    Some(End::Done(_)) if is_skipped => StepStatus::Skipped,
-                    Some(End::Done(_)) => StepStatus::Done,
-                    Some(End::Failed { cancelled: true, .. }) if is_own => StepStatus::Cancelled,
-                    Some(End::Failed { .. }) if is_own => StepStatus::Failed,
-                    Some(End::Failed { .. }) if self.was_returned_to_operation(number, step) => StepStatus::Done,
+                    Some(ProcedureEnd::Done(_)) if is_skipped => StepStatus::Skipped,
+                    Some(ProcedureEnd::Done(_)) => StepStatus::Done,
+                    Some(ProcedureEnd::Failed { cancelled: true, .. }) if is_own => StepStatus::Cancelled,
+                    Some(ProcedureEnd::Failed { .. }) if is_own => StepStatus::Failed,
+                    Some(ProcedureEnd::Failed { .. }) if self.was_returned_to_operation(number, step) => {
+                        StepStatus::Done
+                    }
                     _ if is_own && self.operator_prompt().is_some() => StepStatus::Waits,
                     _ if is_own => StepStatus::Runs,
                     _ if passed && is_skipped => StepStatus::Skipped,
@@ -124,9 +127,9 @@ impl Guide {
 
     /// Returns the range of skipped steps in an operation. It is taken from the result if available, and otherwise from
     /// the operator's answers.
-    fn skipped(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
+    fn skipped_steps(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
-            Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),
+            Some(ProcedureEnd::Done(outcomes) | ProcedureEnd::Failed { before: outcomes, .. }) => outcomes.as_slice(),
             None => &[],
         };
         let asks = |step: &ProcedureStep| matches!(step, ProcedureStep::Await(_));
@@ -151,7 +154,7 @@ impl Guide {
     /// Returns whether the given step belongs to a return to operation that was completed after an interruption.
     fn was_returned_to_operation(&self, op: usize, step: ProcedureStep) -> bool {
         let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
-        let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
+        let in_operation = matches!(self.end, Some(ProcedureEnd::Failed { may_lead_back: false, .. }));
         step == ProcedureStep::LeadBack && was_reported && in_operation
     }
 }
@@ -159,39 +162,40 @@ impl Guide {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::biss::procedures::procedure::Run;
+    use crate::devices::biss::procedures::procedure::MotorRun;
     use crate::devices::biss::protocol::DeviceMode;
 
     fn step_status(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<StepStatus> {
-        let mut guide = Guide::new(vec![Op::Calibrate]);
+        let mut guide = ProcedureRun::new(vec![Op::Calibrate]);
         reported
             .iter()
             .for_each(|step| guide.set_progress(ProcedureProgress { op: 0, step: *step, detail: StepDetail::Begins }));
         guide.cut = cut;
-        guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
+        guide.end =
+            Some(ProcedureEnd::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()
     }
 
     #[test]
     fn skipped_steps_are_not_marked_done() {
         use StepStatus::{Ahead, Done, Runs, Skipped};
-        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
-        let states = |guide: &Guide| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
+        let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
+        let states = |guide: &ProcedureRun| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
         for (task, after, expected) in [
             (first, None, [Done, Skipped, Skipped, Skipped, Skipped, Skipped, Skipped]),
             (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
         ] {
-            let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
+            let mut guide = ProcedureRun::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
             guide.set_progress(ProcedureProgress {
                 op: 0,
-                step: ProcedureStep::Await(Task::Turn(task)),
+                step: ProcedureStep::Await(OperatorTask::Turn(task)),
                 detail: StepDetail::Begins,
             });
-            guide.answer(Task::Turn(task), Answer::Skip);
-            let next = ProcedureStep::Await(Task::Turn(Run::WiegandClockwise));
+            guide.answer_task(OperatorTask::Turn(task), OperatorAnswer::Skip);
+            let next = ProcedureStep::Await(OperatorTask::Turn(MotorRun::WiegandClockwise));
             guide.set_progress(ProcedureProgress { op: 1, step: next, detail: StepDetail::Begins });
             assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
-            guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
+            guide.end = Some(ProcedureEnd::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
             assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
         }
     }
@@ -199,8 +203,8 @@ mod tests {
     #[test]
     fn an_interrupted_procedure_shows_failed_and_remaining_steps() {
         use StepStatus::{Ahead, Done, Failed};
-        let first = Run::CalibrationCounterclockwise;
-        let (turn, run) = (ProcedureStep::Await(Task::Turn(first)), ProcedureStep::Run(first));
+        let first = MotorRun::CalibrationCounterclockwise;
+        let (turn, run) = (ProcedureStep::Await(OperatorTask::Turn(first)), ProcedureStep::Run(first));
         let told = [ProcedureStep::Conditions, turn, ProcedureStep::Enter(DeviceMode::CALIBRATION), run];
         let led = [&told[..], &[ProcedureStep::LeadBack]].concat();
         assert_eq!(step_status(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
@@ -219,11 +223,11 @@ mod tests {
 
     #[test]
     fn a_cancelled_procedure_has_not_failed() {
-        let mut guide = Guide::new(vec![Op::Calibrate]);
+        let mut guide = ProcedureRun::new(vec![Op::Calibrate]);
         guide.set_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: StepDetail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
-        guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });
+        guide.end = Some(ProcedureEnd::Failed { texts, before, may_lead_back: false, cancelled: true });
         assert_eq!(guide.steps().first().map(|own| own.reached), Some(StepStatus::Cancelled));
     }
 }

@@ -6,7 +6,7 @@ use super::{BissForm, Encoder};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::biss::jobs::{Biss, check, load_descriptions};
+use crate::devices::biss::jobs::{Biss, check_link, load_descriptions};
 use crate::devices::biss::procedures::{BusParameters, FrameParameters, LineParameters, PinParameters};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::Descriptions;
@@ -25,7 +25,7 @@ impl DeviceType for Encoder {
     type Tables = Descriptions;
 
     fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
-        check(url)
+        check_link(url)
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
@@ -37,10 +37,11 @@ impl DeviceType for Encoder {
     }
 
     fn create(session: Session<Biss>, profile: Option<(&BissProfile, Descriptions)>, _: &mut Services) -> Self {
-        let mut encoder = Encoder::with(session);
+        let mut encoder = Encoder::from_session(session);
         if let Some((profile, tables)) = profile {
-            let described = tables.named(&profile.identity.description).or_else(|| tables.iter().last()).cloned();
-            encoder.describe(described.map(Arc::new));
+            let described =
+                tables.find_by_name(&profile.identity.description).or_else(|| tables.iter().last()).cloned();
+            encoder.set_description(described.map(Arc::new));
             encoder.load_profile(profile);
         }
         encoder

@@ -28,8 +28,8 @@ impl Encoder {
                 op.changed_items(&identity.description).iter().map(explain::literal_text).collect::<Vec<_>>()
             }
             op => {
-                let OperationTexts { item, changes } = words::op(op, &identity.layout);
-                changes.into_iter().map(|change| operation(&item, change)).collect()
+                let OperationTexts { item, changes } = words::operation_texts(op, &identity.layout);
+                changes.into_iter().map(|change| operation_text(&item, change)).collect()
             }
         });
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
@@ -38,13 +38,13 @@ impl Encoder {
 
     pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
         for outcome in outcomes {
-            services.log_only(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
+            services.log_only(Severity::Note, words::outcome_texts(outcome), Some(&self.session.name()));
         }
     }
 }
 
 /// Returns the log text for a changed value, with the old and the new value.
-fn operation(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
+fn operation_text(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
         Some(part) => TEXTS.text("log.operation_part").with_text("part", part),

@@ -6,23 +6,23 @@ use crate::devices::biss::procedures::FlagRegister;
 
 /// The validity mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mark {
+pub enum ValidityMark {
     Invalid,
     Warned,
 }
 
 impl Encoder {
     /// Returns the mark on the last position, or `None` if there is no position or it is valid without a warning.
-    pub fn mark(&self) -> Option<Mark> {
+    pub fn position_mark(&self) -> Option<ValidityMark> {
         let reading = self.record.last()?;
         let status = self.status.as_ref();
         let is_set = |own: bool, bits: Option<&FlagRegister>| own || bits.is_some_and(|bits| bits.raw != 0);
         let errors = status.and_then(|own| own.errors.as_ref()).filter(|_| reading.error.is_none());
         let warnings = status.and_then(|own| own.warnings.as_ref()).filter(|_| reading.warning.is_none());
         if is_set(!reading.is_valid(), errors) {
-            Some(Mark::Invalid)
+            Some(ValidityMark::Invalid)
         } else {
-            is_set(reading.warning == Some(true), warnings).then_some(Mark::Warned)
+            is_set(reading.warning == Some(true), warnings).then_some(ValidityMark::Warned)
         }
     }
 }

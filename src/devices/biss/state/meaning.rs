@@ -6,8 +6,8 @@ use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol as bridge;
 use crate::buses::bridge::state::traced as adapter;
-use crate::buses::ubicom::protocol::{Frame, Reply, Request, SYNC, Written};
-use crate::devices::biss::procedures::Damage;
+use crate::buses::ubicom::protocol::{Frame, Reply, Request, SYNC, WriteReply};
+use crate::devices::biss::procedures::ReplyDamage;
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
@@ -15,7 +15,7 @@ use crate::link::{Direction, TraceEntry};
 
 /// A stateful decoder of frames, which must arrive in transmission order.
 #[derive(Debug, Default)]
-pub(super) struct Meaning {
+pub(super) struct FrameDecoder {
     /// Byte order of register numbers, once known.
     pub(super) order: Option<ByteOrder>,
     requested: Option<Request>,
@@ -24,8 +24,8 @@ pub(super) struct Meaning {
     bank: Option<u8>,
 }
 
-impl Meaning {
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
+impl FrameDecoder {
+    pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
         let Some(bytes) = entry.bytes.to_bytes() else {
             return FrameExplanation::from_error(Text::new("trace.hidden"));
         };
@@ -33,12 +33,12 @@ impl Meaning {
             Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
             Direction::Sent => {
                 self.is_pin = false;
-                self.packet(&bytes)
+                self.explain_packet(&bytes)
             }
             Direction::Received if self.is_pin => return self.reply(&bytes),
-            Direction::Received => match adapter::received(&bytes) {
+            Direction::Received => match adapter::explain_received(&bytes) {
                 Some(fault) => return fault,
-                None => self.packet(&bytes),
+                None => self.explain_packet(&bytes),
             },
         };
         meaning.into_iter().collect::<Vec<_>>().into()
@@ -51,7 +51,7 @@ impl Meaning {
         let place = |register| RegisterAddress::from_global(register).map_or_else(String::new, |at| at.to_string());
         Some(match self.requested? {
             Request::Read { register } => TEXTS.text("trace.read").with("address", place(register)),
-            Request::Write { register, value } => written("trace.write", place(register), value),
+            Request::Write { register, value } => written_text("trace.write", place(register), value),
             Request::Position { .. } => Text::new("trace.position"),
         })
     }
@@ -60,30 +60,30 @@ impl Meaning {
     /// follow.
     fn reply(&mut self, bytes: &[u8]) -> FrameExplanation {
         let broken = |damage| FrameExplanation::from_error(words::damage_text(&damage));
-        let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
+        let Ok(frame) = Frame::parse(bytes) else { return broken(ReplyDamage::NoFrame { bytes: bytes.len() }) };
         let Some(requested) = self.requested else { return FrameExplanation::default() };
         let reply = match Reply::parse(&frame, requested.command()) {
             Ok(reply) => reply,
-            Err(error) => return broken(Damage::Reply(error)),
+            Err(error) => return broken(ReplyDamage::Reply(error)),
         };
         self.requested = None;
         let text = match reply {
             Reply::Value(value) => literal_text(format!("0x{value:02X}")),
-            Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
-            Reply::Written(Written::Refused) => {
+            Reply::Written(WriteReply::Acknowledged) => Text::new("trace.taken"),
+            Reply::Written(WriteReply::Refused) => {
                 return FrameExplanation {
                     fault: Some(TraceFault::Reported),
                     ..vec![TEXTS.text("trace.refused")].into()
                 };
             }
-            Reply::Written(Written::Unknown(code)) => literal_text(format!("0x{code:02X}")),
-            Reply::Position(word) => literal_text(format!("0x{:X}", word.word())),
+            Reply::Written(WriteReply::Unknown(code)) => literal_text(format!("0x{code:02X}")),
+            Reply::Position(word) => literal_text(format!("0x{:X}", word.to_u64())),
         };
         vec![text].into()
     }
 
-    fn packet(&mut self, bytes: &[u8]) -> Option<Text> {
-        let packet = adapter::packet(bytes)?;
+    fn explain_packet(&mut self, bytes: &[u8]) -> Option<Text> {
+        let packet = adapter::parse_packet(bytes)?;
         match bridge::Request::parse(&packet) {
             Ok(request) => Some(self.adapter_request_text(&request)),
             Err(_) => adapter::message_text(&packet),
@@ -95,7 +95,7 @@ impl Meaning {
             let at = if address < RegisterAddress::BANK_SIZE {
                 self.bank.and_then(|bank| RegisterAddress::in_bank(bank, address))
             } else {
-                RegisterAddress::direct(address)
+                RegisterAddress::direct_register(address)
             };
             at.map_or_else(|| format!("0x{address:02X}"), |at| at.to_string())
         };
@@ -104,7 +104,7 @@ impl Meaning {
                 TEXTS.text("trace.read").with("address", place(address))
             }
             bridge::Request::BissRegisterWrite { address, value, .. } => {
-                let meaning = written("trace.write", place(address), value);
+                let meaning = written_text("trace.write", place(address), value);
                 if address == RegisterAddress::BANK_SELECT.address() {
                     self.bank = Some(value);
                 }
@@ -115,7 +115,7 @@ impl Meaning {
     }
 }
 
-fn written(id: &'static str, address: String, value: u8) -> Text {
+fn written_text(id: &'static str, address: String, value: u8) -> Text {
     TEXTS.text(id).with("address", address).with("value", format!("0x{value:02X}"))
 }
 
@@ -126,9 +126,9 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    fn decode(meaning: &mut Meaning, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
+    fn decode(meaning: &mut FrameDecoder, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
         let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
-        let said = meaning.of(&TraceEntry { at: Moment::START, direction, bytes });
+        let said = meaning.explain(&TraceEntry { at: Moment::START, direction, bytes });
         let words: Vec<String> = said.meaning.iter().map(|text| text.to_string_in(Language::English)).collect();
         (said.fault, words.join(" "))
     }
@@ -146,7 +146,7 @@ mod tests {
             ("the reply to a write", "80 01 02 01 00 90 EB", Some(TraceFault::Broken), ""),
         ];
         for (label, reply, fault, words) in cases {
-            let mut meaning = Meaning::default();
+            let mut meaning = FrameDecoder::default();
             assert_eq!(decode(&mut meaning, Direction::Sent, request).0, None);
             let told = decode(&mut meaning, Direction::Received, reply);
             assert!(told.0 == fault && told.1.contains(words) && !told.1.is_empty(), "{label}: {told:?}");
@@ -155,7 +155,7 @@ mod tests {
                 assert_eq!(then, (None, "0x4B".to_owned()), "{label}");
             }
         }
-        let mut meaning = Meaning::default();
+        let mut meaning = FrameDecoder::default();
         decode(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
         assert_eq!(decode(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
         // Behind an adapter, a packet with a wrong checksum.

@@ -38,13 +38,13 @@ pub enum MemoryError {
 }
 
 /// Runs of edited bytes, each with its start address, the values in the encoder and the edited values.
-pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
+pub type EditedRuns = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 
 impl Memory {
     /// Stores bytes read from `start` onward. Edits are kept unless they equal the encoder's current values.
-    pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
+    pub fn store_bytes(&mut self, start: RegisterAddress, bytes: &[u8]) {
         self.update_base(|own| {
-            for (at, byte) in (start.global()..).zip(bytes) {
+            for (at, byte) in (start.global_number()..).zip(bytes) {
                 let Some(at) = RegisterAddress::from_global(at) else { break };
                 match own.read.insert(at, *byte) {
                     Some(before) if before != *byte => own.changed.insert(at),
@@ -60,14 +60,14 @@ impl Memory {
     }
 
     /// Returns a register's edited value, or the value read if the register was not edited.
-    pub fn wanted(&self, at: RegisterAddress) -> Option<u8> {
+    pub fn edited_value(&self, at: RegisterAddress) -> Option<u8> {
         self.get(at).or_else(|| self.read(at))
     }
 
     /// Returns `count` bytes as read, or `None` if some of them were not read.
     pub fn bytes(&self, start: RegisterAddress, count: usize) -> Option<Vec<u8>> {
         let place = |at| RegisterAddress::from_global(at).and_then(|at| self.read(at));
-        (start.global()..).take(count).map(place).collect()
+        (start.global_number()..).take(count).map(place).collect()
     }
 
     /// Returns the bytes of a described register as read, or `None` if some of them were not read.
@@ -76,16 +76,16 @@ impl Memory {
     }
 
     /// Returns the bytes of an area, both as read and as edited. Returns `None` if some of them were not read.
-    pub fn area(&self, area: &Area) -> Option<(Vec<u8>, Vec<u8>)> {
-        let places: Vec<RegisterAddress> = places(area).collect();
+    pub fn area_bytes(&self, area: &Area) -> Option<(Vec<u8>, Vec<u8>)> {
+        let places: Vec<RegisterAddress> = area_addresses(area).collect();
         let read = places.iter().map(|at| self.read(*at)).collect::<Option<Vec<u8>>>()?;
-        let wanted = places.iter().map(|at| self.wanted(*at)).collect::<Option<Vec<u8>>>()?;
+        let wanted = places.iter().map(|at| self.edited_value(*at)).collect::<Option<Vec<u8>>>()?;
         Some((read, wanted))
     }
 
     /// Returns the longest run of banks of an area that were read completely, or `None` if there is none. A profile may
     /// contain only some banks of an area.
-    pub fn part(&self, area: &Area) -> Option<Area> {
+    pub fn readable_part(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
             let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::in_bank(bank, offset));
             places.all(|at| at.is_some_and(|at| self.read(at).is_some()))
@@ -115,11 +115,16 @@ impl Memory {
     ///
     /// # Errors
     /// Returns a [`MemoryError`] and changes nothing if the edit is refused.
-    pub fn put(&mut self, description: &Description, start: RegisterAddress, bytes: &[u8]) -> Result<(), MemoryError> {
+    pub fn edit_bytes(
+        &mut self,
+        description: &Description,
+        start: RegisterAddress,
+        bytes: &[u8],
+    ) -> Result<(), MemoryError> {
         let mut wanted = Vec::with_capacity(bytes.len());
-        for (at, byte) in (start.global()..).zip(bytes) {
+        for (at, byte) in (start.global_number()..).zip(bytes) {
             let at = RegisterAddress::from_global(at).ok_or(MemoryError::NoData(start))?;
-            if !description.area_at(at).is_some_and(|area| area.access.writes()) {
+            if !description.area_at(at).is_some_and(|area| area.access.is_writable()) {
                 return Err(MemoryError::NoData(at));
             }
             self.read(at).ok_or(MemoryError::NotRead(at))?;
@@ -131,16 +136,18 @@ impl Memory {
 
     /// Discards the edits of `count` bytes from `start` onward.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
-        let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
-        self.revert_matching(|at| range.contains(&at.global()));
+        let range =
+            start.global_number()..start.global_number().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
+        self.revert_matching(|at| range.contains(&at.global_number()));
     }
 
     /// Returns the runs of edited bytes. Runs do not cross bank boundaries.
-    pub fn changes(&self) -> Runs {
-        let mut runs: Runs = Vec::new();
+    pub fn edited_runs(&self) -> EditedRuns {
+        let mut runs: EditedRuns = Vec::new();
         for (at, byte) in self.iter() {
             let old = self.read(at).unwrap_or(byte);
-            let next = |start: RegisterAddress, count: usize| u8::try_from(count).ok().and_then(|own| start.plus(own));
+            let next =
+                |start: RegisterAddress, count: usize| u8::try_from(count).ok().and_then(|own| start.offset_by(own));
             match runs.last_mut() {
                 Some((start, before, wanted)) if next(*start, wanted.len()) == Some(at) => {
                     before.push(old);
@@ -153,8 +160,8 @@ impl Memory {
     }
 
     /// Returns the edits to store in a draft, as global addresses and bytes.
-    pub fn edits(&self) -> Vec<(u16, u8)> {
-        self.iter().map(|(at, byte)| (at.global(), byte)).collect()
+    pub fn draft_edits(&self) -> Vec<(u16, u8)> {
+        self.iter().map(|(at, byte)| (at.global_number(), byte)).collect()
     }
 
     /// Restores edits from a draft. Once the encoder's values have been read, edits that equal them are dropped.
@@ -165,7 +172,7 @@ impl Memory {
 }
 
 /// Returns the register addresses of an area in ascending order.
-pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
+pub fn area_addresses(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
     area.banks().flat_map(|bank| {
         (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::in_bank(bank, offset))
     })
@@ -178,7 +185,7 @@ mod tests {
     use crate::devices::biss::protocol::Descriptions;
 
     fn kit() -> Description {
-        Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone()
+        Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").unwrap().clone()
     }
 
     fn at(text: &str) -> RegisterAddress {
@@ -188,17 +195,17 @@ mod tests {
     #[test]
     fn an_edit_is_a_difference_from_the_read_value() {
         let mut memory = Memory::default();
-        assert_eq!(memory.put(&kit(), at("0x24:0x10"), &[1]), Err(MemoryError::NotRead(at("0x24:0x10"))));
-        memory.take(at("0x24:0x00"), &[0xFF; 64]);
-        memory.put(&kit(), at("0x24:0x10"), &[1, 0xFF, 3]).unwrap();
-        assert_eq!((memory.wanted(at("0x24:0x10")), memory.read(at("0x24:0x10"))), (Some(1), Some(0xFF)));
-        assert_eq!(memory.edits(), [(0x950, 1), (0x952, 3)]);
+        assert_eq!(memory.edit_bytes(&kit(), at("0x24:0x10"), &[1]), Err(MemoryError::NotRead(at("0x24:0x10"))));
+        memory.store_bytes(at("0x24:0x00"), &[0xFF; 64]);
+        memory.edit_bytes(&kit(), at("0x24:0x10"), &[1, 0xFF, 3]).unwrap();
+        assert_eq!((memory.edited_value(at("0x24:0x10")), memory.read(at("0x24:0x10"))), (Some(1), Some(0xFF)));
+        assert_eq!(memory.draft_edits(), [(0x950, 1), (0x952, 3)]);
         assert!(!memory.is_edited(at("0x24:0x11")));
         memory.undo();
         assert!(!memory.is_dirty() && memory.can_redo());
         memory.redo();
-        memory.take(at("0x24:0x10"), &[1]);
-        assert_eq!(memory.edits(), [(0x952, 3)], "the encoder has it by now");
+        memory.store_bytes(at("0x24:0x10"), &[1]);
+        assert_eq!(memory.draft_edits(), [(0x952, 3)], "the encoder has it by now");
         memory.revert_range(at("0x24:0x12"), 1);
         assert!(!memory.is_dirty());
     }
@@ -206,13 +213,13 @@ mod tests {
     #[test]
     fn only_plain_data_is_edited() {
         let mut memory = Memory::default();
-        memory.take(at("0x40"), &[0; 64]);
-        memory.take(at("0x02:0x00"), &[0; 64]);
+        memory.store_bytes(at("0x40"), &[0; 64]);
+        memory.store_bytes(at("0x02:0x00"), &[0; 64]);
         for text in ["0x6A", "0x02:0x05"] {
-            assert_eq!(memory.put(&kit(), at(text), &[1]), Err(MemoryError::NoData(at(text))));
+            assert_eq!(memory.edit_bytes(&kit(), at(text), &[1]), Err(MemoryError::NoData(at(text))));
         }
-        memory.take(at("0x43:0x3F"), &[0]);
-        assert_eq!(memory.put(&kit(), at("0x43:0x3F"), &[1, 2]), Err(MemoryError::NoData(at("0x44:0x00"))));
+        memory.store_bytes(at("0x43:0x3F"), &[0]);
+        assert_eq!(memory.edit_bytes(&kit(), at("0x43:0x3F"), &[1, 2]), Err(MemoryError::NoData(at("0x44:0x00"))));
         assert!(!memory.is_dirty(), "all or nothing");
     }
 
@@ -221,22 +228,22 @@ mod tests {
         let mut memory = Memory::default();
         let kit = kit();
         let area = kit.area_at(at("0x24:0x00")).unwrap();
-        let part = |memory: &Memory| memory.part(area).map(|own| (own.first, own.last));
-        memory.take(at("0x24:0x01"), &[0; 63]);
+        let part = |memory: &Memory| memory.readable_part(area).map(|own| (own.first, own.last));
+        memory.store_bytes(at("0x24:0x01"), &[0; 63]);
         assert_eq!(part(&memory), None, "not the whole bank");
-        memory.take(at("0x25:0x00"), &[0; 64]);
-        memory.take(at("0x30:0x00"), &[0; 128]);
+        memory.store_bytes(at("0x25:0x00"), &[0; 64]);
+        memory.store_bytes(at("0x30:0x00"), &[0; 128]);
         assert_eq!(part(&memory), Some((0x30, 0x31)));
-        memory.take(at("0x24:0x00"), &[0; 0x20 * 64]);
+        memory.store_bytes(at("0x24:0x00"), &[0; 0x20 * 64]);
         assert_eq!(part(&memory), Some((area.first, area.last)));
     }
 
     #[test]
     fn ranges_end_with_their_bank() {
         let mut memory = Memory::default();
-        memory.take(at("0x04:0x00"), &[0; 128]);
-        memory.put(&kit(), at("0x04:0x3E"), &[1, 2, 3, 4]).unwrap();
-        let runs = memory.changes();
+        memory.store_bytes(at("0x04:0x00"), &[0; 128]);
+        memory.edit_bytes(&kit(), at("0x04:0x3E"), &[1, 2, 3, 4]).unwrap();
+        let runs = memory.edited_runs();
         assert_eq!(runs[0], (at("0x04:0x3E"), vec![0, 0], vec![1, 2]));
         assert_eq!(runs[1], (at("0x05:0x00"), vec![0, 0], vec![3, 4]));
     }
@@ -244,11 +251,11 @@ mod tests {
     #[test]
     fn changes_since_the_previous_reading_are_marked() {
         let mut memory = Memory::default();
-        memory.take(at("0x66"), &[0x4B]);
+        memory.store_bytes(at("0x66"), &[0x4B]);
         assert!(!memory.has_changed(at("0x66")), "nothing to compare with");
-        memory.take(at("0x66"), &[0x4C]);
+        memory.store_bytes(at("0x66"), &[0x4C]);
         assert!(memory.has_changed(at("0x66")));
-        memory.take(at("0x66"), &[0x4C]);
+        memory.store_bytes(at("0x66"), &[0x4C]);
         assert!(!memory.has_changed(at("0x66")));
     }
 }

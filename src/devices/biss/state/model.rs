@@ -16,7 +16,7 @@ impl DeviceModel for Encoder {
 
     fn connect(&mut self, opened: OpenedConnection<Biss>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
-        self.record.begin(&opened.began);
+        self.record.begin_session(&opened.began);
         self.motor = opened.aside.clone();
         self.session.attach_connection(opened, services);
         self.update_watches();
@@ -24,7 +24,7 @@ impl DeviceModel for Encoder {
     }
 
     fn handle_action(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
-        Encoder::act(self, action, context);
+        Encoder::handle_action(self, action, context);
     }
 
     fn handle_result(&mut self, done: Infallible, _services: &mut Services) {

@@ -11,8 +11,8 @@ use crate::app::explain::literal_text;
 use crate::app::recorder::{GroupId, Recorder, Scale, Series};
 use crate::app::track::{DeviceRecorder, PositionSample, PositionScales, Watchable, WatchedValue};
 use crate::app::{Recording, Text};
-use crate::devices::biss::procedures::{ConsecutiveFrames, Error, PositionReading, Sample, WatchedReading};
-use crate::devices::biss::protocol::{Decoded, Register, ValueDecoding};
+use crate::devices::biss::procedures::{ConsecutiveFrames, Error, PolledSample, PositionReading, WatchedReading};
+use crate::devices::biss::protocol::{DecodedValue, Register, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 
 /// A batch of consecutive positions with equal field widths.
@@ -44,11 +44,11 @@ pub struct Record {
     last: Option<PositionReading>,
     crc_errors: u64,
     lost: u64,
-    stream: Option<Streamed>,
+    stream: Option<FrameStream>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Streamed {
+pub struct FrameStream {
     next: u64,
     period_ns: i64,
     pub clock_hz: u32,
@@ -56,19 +56,19 @@ pub struct Streamed {
     pub is_limited: bool,
 }
 
-impl Streamed {
+impl FrameStream {
     pub fn frame_rate_hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
 }
 
 impl Record {
-    pub(super) fn begin(&mut self, began: &Zoned) {
+    pub(super) fn begin_session(&mut self, began: &Zoned) {
         (self.last, self.crc_errors, self.stream) = (None, 0, None);
         self.track.begin_session(began);
     }
 
-    pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
+    pub(super) fn add_samples(&mut self, samples: Vec<PolledSample>, dropped: u64) {
         match self.stream {
             // In a stream, dropped frames are counted by their sequence numbers.
             Some(_) if dropped > 0 => self.track.mark_gap(),
@@ -78,15 +78,15 @@ impl Record {
         let mut batch = Batch::default();
         for sample in samples {
             match sample {
-                Sample::Position(reading) => {
-                    self.observe(&reading, &mut batch);
+                PolledSample::Position(reading) => {
+                    self.add_reading(&reading, &mut batch);
                 }
-                Sample::Missed { at, crc_errors } => {
+                PolledSample::Missed { at, crc_errors } => {
                     self.add_crc_errors(crc_errors);
                     batch.sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 }
-                Sample::Frames(run) => self.add_frames(&run, &mut batch),
-                Sample::Watched(reading) => self.add_watched(&reading),
+                PolledSample::Frames(run) => self.add_frames(&run, &mut batch),
+                PolledSample::Watched(reading) => self.add_watched(&reading),
             }
         }
         self.append(&mut batch);
@@ -94,11 +94,11 @@ impl Record {
 
     pub(super) fn add_position(&mut self, reading: PositionReading) {
         let mut batch = Batch::default();
-        self.observe(&reading, &mut batch);
+        self.add_reading(&reading, &mut batch);
         self.append(&mut batch);
     }
 
-    fn observe(&mut self, reading: &PositionReading, batch: &mut Batch) {
+    fn add_reading(&mut self, reading: &PositionReading, batch: &mut Batch) {
         self.stream = None;
         self.add_crc_errors(reading.crc_errors);
         let widths = Widths::from(reading);
@@ -120,7 +120,7 @@ impl Record {
         }
         self.lost += missing;
         let ConsecutiveFrames { period_ns, clock_hz, is_limited, .. } = *run;
-        self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns, clock_hz, is_limited });
+        self.stream = Some(FrameStream { next: run.first + run.frames.len() as u64, period_ns, clock_hz, is_limited });
         self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
         let (multiturn, singleturn) = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
         let widths = Widths { multiturn, singleturn, is_split_known: run.is_split_known };
@@ -147,7 +147,7 @@ impl Record {
         let before = self.last.as_ref().map(Widths::from);
         // If nothing has been read in this session, the meaning from the previous session is kept.
         let unknown = || self.track.scales().cloned().unwrap_or_else(|| PositionScales::for_steps(None));
-        let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
+        let meaning = batch.widths.or(before).map_or_else(unknown, position_scales);
         self.track.add_positions(&batch.sightings, &meaning);
         *batch = Batch::default();
     }
@@ -159,7 +159,7 @@ impl Record {
     fn add_watched(&mut self, reading: &WatchedReading) {
         let watched = self.track.watched_values().into_iter().find(|own| own.address == reading.range.start());
         let Some(register) = watched else { return };
-        let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
+        let value = reading.value.as_ref().ok().and_then(|bytes| register_value(&register, bytes));
         let never = match &reading.value {
             Err(Error::NoSuchRegister { .. }) => Some(Text::new("recorder.absent")),
             Err(Error::NotWatched { .. }) => Some(TEXTS.text("recorder.data")),
@@ -170,11 +170,11 @@ impl Record {
     }
 
     /// Sets the registers to record along with the position, replacing the previous selection.
-    pub(super) fn watch(&mut self, watched: &[Register]) {
+    pub(super) fn set_watched(&mut self, watched: &[Register]) {
         self.track.set_watched(watched);
     }
 
-    pub fn watched(&self) -> Vec<Register> {
+    pub fn watched_registers(&self) -> Vec<Register> {
         self.track.watched_values()
     }
 
@@ -188,15 +188,15 @@ impl Record {
     }
 
     /// Returns the latest stream. Returns `None` if polling has stopped or positions arrive one by one.
-    pub(super) fn streamed(&self) -> Option<&Streamed> {
+    pub(super) fn current_stream(&self) -> Option<&FrameStream> {
         self.stream.as_ref()
     }
 
-    pub fn positions(&self) -> u64 {
+    pub fn position_count(&self) -> u64 {
         self.track.position_count()
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.track.clear_unless_long();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
     }
@@ -234,7 +234,7 @@ fn position_sample(reading: &PositionReading) -> PositionSample {
 }
 
 /// Returns the meaning of positions with the given multiturn and singleturn widths.
-fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> PositionScales {
+fn position_scales(Widths { multiturn, singleturn, is_split_known }: Widths) -> PositionScales {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {
         return PositionScales::for_steps(range);
@@ -242,10 +242,10 @@ fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Position
     PositionScales::for_steps_per_turn(range, f64::from(singleturn).exp2())
 }
 
-fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
+fn register_value(register: &Register, bytes: &[u8]) -> Option<Value> {
     match register.decode(bytes)? {
-        Decoded::Scaled(value) => Some(Value::Real(value)),
-        _ => register.number(bytes).and_then(|number| i64::try_from(number).ok()).map(Value::Whole),
+        DecodedValue::Scaled(value) => Some(Value::Real(value)),
+        _ => register.to_number(bytes).and_then(|number| i64::try_from(number).ok()).map(Value::Whole),
     }
 }
 
@@ -292,14 +292,17 @@ mod tests {
     fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
-        record.add(vec![Sample::Frames(ConsecutiveFrames { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
+        record.add_samples(
+            vec![PolledSample::Frames(ConsecutiveFrames { frames: vec![Ok(reading)], ..run(0, 1, 0) })],
+            0,
+        );
         let last = record.last().unwrap();
-        assert_eq!((last.raw().to_string(), last.raw().bits), ("024698000".to_owned(), 33));
+        assert_eq!((last.position_word().to_string(), last.position_word().bits), ("024698000".to_owned(), 33));
         assert_eq!((last.error, last.warning), (Some(false), Some(true)));
         let bare = Layout::new(0, 12, false, false, None).unwrap();
         let reading = PositionData { singleturn: 0x00A, ..PositionData::default() };
-        record.add(
-            vec![Sample::Frames(ConsecutiveFrames {
+        record.add_samples(
+            vec![PolledSample::Frames(ConsecutiveFrames {
                 frames: vec![Ok(reading)],
                 layout: Arc::new(bare),
                 ..run(1, 1, 0)
@@ -307,7 +310,7 @@ mod tests {
             0,
         );
         let last = record.last().unwrap();
-        assert_eq!((last.raw().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
+        assert_eq!((last.position_word().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
     }
 
     /// Issue 22.20: a position whose steps per turn are unknown is not split into turns and degrees.
@@ -318,21 +321,23 @@ mod tests {
             let lines = record.recorder().series();
             lines.iter().flat_map(|line| line.scales().iter().map(|scale| scale.unit.id().to_owned())).collect()
         };
-        record.add(vec![Sample::Frames(ConsecutiveFrames { is_split_known: false, ..run(0, 10, 0) })], 0);
-        assert_eq!(record.last().unwrap().angle(), None);
+        record.add_samples(vec![PolledSample::Frames(ConsecutiveFrames { is_split_known: false, ..run(0, 10, 0) })], 0);
+        assert_eq!(record.last().unwrap().angle_degrees(), None);
         assert_eq!(units(&record), ["unit.steps", "unit.steps_per_second", "unit.steps_per_second_squared"]);
-        record.add(vec![Sample::Frames(run(10, 10, 0))], 0);
-        assert!(units(&record).contains(&"unit.degrees".to_owned()) && record.last().unwrap().angle().is_some());
+        record.add_samples(vec![PolledSample::Frames(run(10, 10, 0))], 0);
+        assert!(
+            units(&record).contains(&"unit.degrees".to_owned()) && record.last().unwrap().angle_degrees().is_some()
+        );
     }
 
     #[test]
     fn a_register_without_a_value_reports_the_reason() {
         let descriptions = Descriptions::built_in();
-        let kit = descriptions.named("POSITAL IXARC kit encoder").unwrap();
+        let kit = descriptions.find_by_name("POSITAL IXARC kit encoder").unwrap();
         let register = kit.register_with_role(Role::Temperature).unwrap().clone();
         let address = register.address;
         let mut record = Record::default();
-        record.watch(std::slice::from_ref(&register));
+        record.set_watched(std::slice::from_ref(&register));
         let what = RegisterRange::new(address, 1).unwrap();
         for (error, said) in [
             (Error::NoSuchRegister { address }, Some("recorder.absent")),
@@ -340,7 +345,7 @@ mod tests {
             (Error::NeverSilent, None),
         ] {
             let reading = WatchedReading { at: Moment::START, range: what, value: Err(error) };
-            record.add(vec![Sample::Watched(reading)], 0);
+            record.add_samples(vec![PolledSample::Watched(reading)], 0);
             let line = record.recorder().series().iter().find(|line| line.heading.contains("temperature"));
             assert_eq!(line.unwrap().remark, said.map(|id| TEXTS.text(id)));
         }
@@ -349,21 +354,23 @@ mod tests {
     #[test]
     fn missing_frames_are_counted_at_every_stage() {
         let mut record = Record::default();
-        let add = |record: &mut Record, run: ConsecutiveFrames, dropped| record.add(vec![Sample::Frames(run)], dropped);
+        let add = |record: &mut Record, run: ConsecutiveFrames, dropped| {
+            record.add_samples(vec![PolledSample::Frames(run)], dropped)
+        };
         add(&mut record, run(0, 100, 0), 0);
         assert_eq!(
-            (record.positions(), record.dropped_count(), record.streamed().map(Streamed::frame_rate_hz)),
+            (record.position_count(), record.dropped_count(), record.current_stream().map(FrameStream::frame_rate_hz)),
             (100, 0, Some(20_000.0))
         );
         add(&mut record, run(110, 90, 10), 0);
-        assert_eq!((record.positions(), record.dropped_count()), (190, 10), "at the adapter");
+        assert_eq!((record.position_count(), record.dropped_count()), (190, 10), "at the adapter");
         add(&mut record, run(500, 10, 0), 3);
-        assert_eq!((record.positions(), record.dropped_count()), (200, 310), "nobody took three runs of them");
+        assert_eq!((record.position_count(), record.dropped_count()), (200, 310), "nobody took three runs of them");
         // The frame numbers of another stream start at zero.
         let later = ConsecutiveFrames { at: Moment::from_elapsed(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);
-        assert_eq!((record.positions(), record.dropped_count()), (205, 315));
+        assert_eq!((record.position_count(), record.dropped_count()), (205, 315));
         record.poll(None, false);
-        assert_eq!(record.streamed(), None);
+        assert_eq!(record.current_stream(), None);
     }
 }

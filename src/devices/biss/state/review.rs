@@ -4,7 +4,7 @@ use crate::app::explain::literal_text;
 use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
-use crate::devices::biss::procedures::write::Written;
+use crate::devices::biss::procedures::write::WrittenValues;
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
@@ -14,16 +14,16 @@ pub type ReviewState = review::ReviewState<Biss>;
 
 /// Returns whether an operation is shown step by step, because an operator may be at the motor.
 pub(super) fn is_guided(op: &Op) -> bool {
-    op.turns() || matches!(op, Op::FirePreset { .. })
+    op.needs_motor() || matches!(op, Op::FirePreset { .. })
 }
 
 impl Reviewable for Biss {
     type Change = Change;
     type Prepared = Prepared;
-    type Written = Written;
+    type Written = WrittenValues;
 
     fn change_title(change: &Change) -> Text {
-        words::change(change)
+        words::change_text(change)
     }
 
     fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
@@ -32,7 +32,7 @@ impl Reviewable for Biss {
     }
 
     fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
-        words::op(op, &prepared.identity.layout)
+        words::operation_texts(op, &prepared.identity.layout)
     }
 
     fn skips_mounting_values(prepared: &Prepared) -> bool {
@@ -46,7 +46,7 @@ impl Reviewable for Biss {
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(prepared.other_type.as_ref().map(words::other_type));
-        warnings.extend(words::wear(prepared));
+        warnings.extend(words::wear_warning(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(TEXTS.text("biss_review.table"));
         }
@@ -66,11 +66,11 @@ impl Reviewable for Biss {
     fn requirements(change: &Change, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = Vec::new();
-        if ops.iter().any(Op::turns) {
+        if ops.iter().any(Op::needs_motor) {
             needs.push(TEXTS.text("biss_review.needs_motor"));
         }
         if ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::FirePreset { .. })) {
-            let turns = ops.iter().any(Op::turns);
+            let turns = ops.iter().any(Op::needs_motor);
             let id = if turns { "biss_review.needs_rest" } else { "biss_review.needs_standstill" };
             needs.push(TEXTS.text(id));
         }
@@ -94,8 +94,8 @@ impl Reviewable for Biss {
         .with("limit", WEAR_LIMIT)
     }
 
-    fn written_text(written: &Written) -> Text {
-        words::written(written)
+    fn written_text(written: &WrittenValues) -> Text {
+        words::written_text(written)
     }
 
     fn execution_mode(prepared: &Prepared) -> ExecutionMode {

@@ -42,13 +42,13 @@ pub struct RegisterEntry<'a> {
 
 impl Table {
     /// Creates the table for an encoder. `last` is the last bank according to the data sheet, if known.
-    pub(super) fn of(description: &Description, last: Option<u8>) -> Self {
+    pub(super) fn from_description(description: &Description, last: Option<u8>) -> Self {
         let registers = description.registers().iter().filter_map(|own| own.address.bank());
         let areas = description.areas().iter().map(|area| area.last);
         let described = registers.chain(areas).chain(last).max();
-        let last = described.filter(|last| *last > EdsBank::Encoder.number()).unwrap_or(LAST_BANK);
+        let last = described.filter(|last| *last > EdsBank::Encoder.kit_number()).unwrap_or(LAST_BANK);
         let groups = std::iter::once(None).chain((0..=last).map(Some));
-        Table { groups: groups.map(|bank| Group::of(description, bank)).collect() }
+        Table { groups: groups.map(|bank| Group::from_description(description, bank)).collect() }
     }
 
     pub fn groups(&self) -> &[Group] {
@@ -62,16 +62,19 @@ impl Table {
 }
 
 impl Group {
-    fn of(description: &Description, bank: Option<u8>) -> Self {
+    fn from_description(description: &Description, bank: Option<u8>) -> Self {
         let area = bank.and_then(|bank| description.areas().iter().find(|area| area.contains(bank)));
         let mut rows: Vec<Row> = Vec::new();
-        for at in addresses(bank) {
+        for at in bank_addresses(bank) {
             if rows.last().is_some_and(|row| row.register.contains(at)) {
                 continue;
             }
             let described = description.registers().iter().find(|own| own.address == at).cloned();
             let access = area.map_or(Access::R, |area| area.access);
-            rows.push(Row { register: described.unwrap_or_else(|| plain(at, access)), is_data: area.is_some() });
+            rows.push(Row {
+                register: described.unwrap_or_else(|| undescribed_register(at, access)),
+                is_data: area.is_some(),
+            });
         }
         let name = bank.and_then(|bank| description.bank_name(bank).cloned().or_else(|| standard_bank_name(bank)));
         Group { bank, name, rows }
@@ -82,7 +85,7 @@ impl Group {
     }
 
     pub fn start(&self) -> Option<RegisterAddress> {
-        addresses(self.bank).next()
+        bank_addresses(self.bank).next()
     }
 
     /// Returns whether all readable registers in the group have been read.
@@ -93,12 +96,12 @@ impl Group {
     pub fn entry<'a>(&'a self, row: usize, memory: &Memory) -> Option<RegisterEntry<'a>> {
         let row = self.rows.get(row)?;
         let places = || {
-            let first = row.register.address.global();
+            let first = row.register.address.global_number();
             (first..first + u16::from(row.register.width)).filter_map(RegisterAddress::from_global)
         };
         Some(RegisterEntry {
             row,
-            bytes: places().map(|at| memory.wanted(at)).collect(),
+            bytes: places().map(|at| memory.edited_value(at)).collect(),
             has_changed: places().any(|at| memory.has_changed(at)),
             is_edited: places().any(|at| memory.is_edited(at)),
         })
@@ -113,21 +116,21 @@ impl RegisterEntry<'_> {
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }
 
-    pub fn number(&self) -> Option<u64> {
-        self.row.register.number(self.bytes.as_ref()?)
+    pub fn to_number(&self) -> Option<u64> {
+        self.row.register.to_number(self.bytes.as_ref()?)
     }
 }
 
-fn addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
+fn bank_addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
     let size = RegisterAddress::BANK_SIZE;
     (0..size).filter_map(move |offset| match bank {
         Some(bank) => RegisterAddress::in_bank(bank, offset),
-        None => RegisterAddress::direct(size + offset),
+        None => RegisterAddress::direct_register(size + offset),
     })
 }
 
 /// Creates a register for an undescribed byte.
-fn plain(address: RegisterAddress, access: Access) -> Register {
+fn undescribed_register(address: RegisterAddress, access: Access) -> Register {
     Register {
         address,
         width: 1,
@@ -147,7 +150,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
 fn standard_bank_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()
-        .find(|(own, _)| own.number() == bank)
+        .find(|(own, _)| own.kit_number() == bank)
         .map(|(_, name)| Name::new(name))
 }
 
@@ -158,7 +161,7 @@ mod tests {
 
     fn kit() -> Table {
         let all = Descriptions::built_in();
-        Table::of(all.named("POSITAL IXARC kit encoder").unwrap(), None)
+        Table::from_description(all.find_by_name("POSITAL IXARC kit encoder").unwrap(), None)
     }
 
     /// According to appendix 9.1 of the manual, there are 68 banks with 64 registers each, and 64 direct registers.
@@ -183,9 +186,9 @@ mod tests {
         let serial = direct.rows().iter().position(|row| row.register.name.english() == "serial number").unwrap();
         assert_eq!(direct.entry(serial, &memory).unwrap().bytes, None);
         assert!(!direct.is_read(&memory));
-        memory.take(direct.start().unwrap(), &[7; 64]);
+        memory.store_bytes(direct.start().unwrap(), &[7; 64]);
         let shown = direct.entry(serial, &memory).unwrap();
-        assert_eq!(shown.number(), Some(0x0707_0707));
+        assert_eq!(shown.to_number(), Some(0x0707_0707));
         assert!(direct.is_read(&memory) && !shown.is_edited && !shown.has_changed);
     }
 
@@ -193,7 +196,7 @@ mod tests {
     fn an_encoder_without_a_description_has_its_banks() {
         let all = Descriptions::built_in();
         let unknown = all.iter().find(|own| own.identity().is_none()).unwrap();
-        assert_eq!(Table::of(unknown, None).groups().len(), 69);
-        assert_eq!(Table::of(unknown, Some(0x10)).groups().len(), 18);
+        assert_eq!(Table::from_description(unknown, None).groups().len(), 69);
+        assert_eq!(Table::from_description(unknown, Some(0x10)).groups().len(), 18);
     }
 }

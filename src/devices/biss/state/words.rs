@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
-pub(super) fn job(job: &BissJob) -> Text {
+pub(super) fn job_name(job: &BissJob) -> Text {
     match job {
         BissJob::Survey | BissJob::Identify => Text::new("job.survey"),
         BissJob::Status => TEXTS.text("job.biss_status"),
@@ -23,7 +23,7 @@ pub(super) fn job(job: &BissJob) -> Text {
         BissJob::ReadBank(bank) => TEXTS.text("job.read_bank").with("bank", format!("0x{bank:02X}")),
         BissJob::ReadArea(area) => Text::new("job.read").with_text("item", words::name(&area.name)),
         BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
-        BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
+        BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
         BissJob::Commit(_) => Text::new("job.write"),
         BissJob::LeadBack => Text::new("job.lead_back"),
     }
@@ -45,7 +45,7 @@ pub fn filter(filter: PositionFilter) -> Text {
 }
 
 /// Returns the reason why a data sheet bank is invalid.
-pub fn sheet(error: &EdsError) -> Text {
+pub fn data_sheet_error_text(error: &EdsError) -> Text {
     match error {
         EdsError::Checksum { expected, got, .. } => TEXTS
             .text("sheet_card.bad_sum")
@@ -69,7 +69,7 @@ pub fn eds_value_text(value: EdsValue) -> Text {
         EdsValue::Ticks(ticks) => text("eds.ticks").with("ticks", ticks),
         EdsValue::Adaptive => text("eds.adaptive"),
         EdsValue::NoLimit => text("eds.no_limit"),
-        EdsValue::Kelvin(kelvin) => literal_text(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
+        EdsValue::Kelvin(kelvin) => literal_text(format!("{kelvin} K  {} °C", value.to_celsius().unwrap_or_default())),
         EdsValue::Polynomial(0) => text("eds.no_crc"),
         EdsValue::Polynomial(polynomial) => literal_text(format!("0x{polynomial:X}")),
         EdsValue::Profile(profile) => literal_text(profile),
@@ -96,12 +96,12 @@ pub(super) fn explained_value_text(value: EdsValue) -> Option<Text> {
 
 /// Returns the name of a data sheet field as used in the manual.
 pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
-    let at = RegisterAddress::in_bank(bank.number(), field.offset);
-    let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
+    let at = RegisterAddress::in_bank(bank.kit_number(), field.offset);
+    let described = at.zip(KIT_DESCRIPTION.as_ref()).and_then(|(at, kit)| kit.register_at(at));
     described.map_or_else(|| literal_text(field.name), |register| words::name(&register.name))
 }
 
 /// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages, and these
 /// fields are the same in every data sheet.
-static KIT: LazyLock<Option<Description>> =
+static KIT_DESCRIPTION: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

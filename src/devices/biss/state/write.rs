@@ -4,14 +4,14 @@
 use std::time::Duration;
 
 use super::encoder::Encoder;
-use super::guide::{End, Guide};
+use super::guide::{ProcedureEnd, ProcedureRun};
 use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, EarlyEnd, HasMemory, HasProfile, KnownProfile, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
-use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, UnattendedOperator};
-use crate::devices::biss::procedures::{Error, profile_of};
+use crate::devices::biss::procedures::procedure::{Failure, OperatorAnswer, OperatorTask, UnattendedOperator};
+use crate::devices::biss::procedures::{Error, create_profile};
 use crate::devices::biss::profile::{
     Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type,
 };
@@ -29,9 +29,9 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    pub(super) fn answer(&mut self, task: Task, answer: Answer) {
+    pub(super) fn answer_task(&mut self, task: OperatorTask, answer: OperatorAnswer) {
         if let Some(guide) = &mut self.guide {
-            guide.answer(task, answer);
+            guide.answer_task(task, answer);
         }
     }
 
@@ -43,7 +43,7 @@ impl Encoder {
 
     /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
     pub(super) fn mark_returned_to_operation(&mut self) {
-        if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
+        if let Some(ProcedureRun { end: Some(ProcedureEnd::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
             *may_lead_back = false;
         }
     }
@@ -54,7 +54,7 @@ impl Encoder {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
             EarlyEnd::Lost => None,
         };
-        if !self.guide.as_ref().is_some_and(Guide::is_running) {
+        if !self.guide.as_ref().is_some_and(ProcedureRun::is_running) {
             return false;
         }
         if error.is_some_and(JobInterruption::has_begun) {
@@ -72,7 +72,7 @@ impl Encoder {
         };
         let cancelled = matches!(error, Some(JobError::Interrupted { interrupted, .. })
             if matches!(interrupted.cause, Failure::Device(Error::Cancelled)));
-        guide.end = Some(End::Failed { texts: texts.to_vec(), before, may_lead_back, cancelled });
+        guide.end = Some(ProcedureEnd::Failed { texts: texts.to_vec(), before, may_lead_back, cancelled });
         true
     }
 }
@@ -83,7 +83,7 @@ impl HasMemory for Encoder {
             let range = RegisterRange::new(start, u8::try_from(bytes.len()).ok()?)?;
             Some((range, bytes))
         };
-        self.memory.is_dirty().then(|| Change::Write(self.memory.changes().into_iter().filter_map(edit).collect()))
+        self.memory.is_dirty().then(|| Change::Write(self.memory.edited_runs().into_iter().filter_map(edit).collect()))
     }
 
     fn is_for_other_device(&self, change: &Change) -> bool {
@@ -101,16 +101,16 @@ impl HasMemory for Encoder {
     }
 
     fn commit_job(&mut self, agreed: ApprovedPlanOf<Biss>) -> BissJob {
-        commit(agreed, OperatorPresence::Unattended(UNATTENDED))
+        commit_job(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
     /// Starts a write. If the write needs an operator at the motor, it is displayed step by step.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.approve_plan(shown) else { return };
         let ops = &agreed.prepared.plan.ops;
-        let guide = ops.iter().any(is_guided).then(|| Guide::new(ops.clone()));
+        let guide = ops.iter().any(is_guided).then(|| ProcedureRun::new(ops.clone()));
         let job = match &guide {
-            Some(guide) => commit(agreed, OperatorPresence::Attended(guide.seat.clone())),
+            Some(guide) => commit_job(agreed, OperatorPresence::Attended(guide.seat.clone())),
             None => self.commit_job(agreed),
         };
         if self.begin_write(job, services) && guide.is_some() {
@@ -120,17 +120,17 @@ impl HasMemory for Encoder {
 
     fn schedule_rereads(&mut self) {
         let ops: &[Op] = match (&self.guide, self.session.review.as_ref().map(|review| &review.state)) {
-            (Some(guide), _) if guide.is_running() => guide.ops(),
+            (Some(guide), _) if guide.is_running() => guide.operations(),
             (_, Some(ReviewState::Writing(prepared))) => &prepared.plan.ops,
             _ => return,
         };
-        let banks = ops.iter().flat_map(Op::ranges).filter_map(|range| range.start().bank());
+        let banks = ops.iter().flat_map(Op::register_ranges).filter_map(|range| range.start().bank());
         self.read_after.extend(banks);
     }
 
     fn handle_executed_plan(&mut self, committed: &Committed, _: &mut Services) {
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
-            guide.end = Some(End::Done(committed.written.outcomes.clone()));
+            guide.end = Some(ProcedureEnd::Done(committed.written.outcomes.clone()));
         }
     }
 
@@ -141,7 +141,7 @@ impl HasMemory for Encoder {
     fn discard_device_data(&mut self) {
         (self.survey, self.status, self.check, self.guide, self.refusal) = (None, None, None, None, None);
         self.memory.clear();
-        self.record.forget();
+        self.record.clear();
         self.seen.clear();
         self.read_after.clear();
     }
@@ -159,20 +159,20 @@ impl HasProfile for Encoder {
     fn last_read_profile(&self) -> Option<KnownProfile> {
         let survey = self.survey.as_ref()?;
         let (mut data, mut missing) = (Vec::new(), Vec::new());
-        for area in survey.identity.description.areas().iter().filter(|area| area.access.reads()) {
+        for area in survey.identity.description.areas().iter().filter(|area| area.access.is_readable()) {
             let bank = |number| {
                 let bytes = self.memory.bytes(RegisterAddress::bank_start(number), Bank::SIZE);
                 bytes.and_then(|bytes| Some(Bank { number, bytes: bytes.try_into().ok()? }))
             };
             match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
-                Some(banks) => data.push(DataImage::of(area, banks)),
+                Some(banks) => data.push(DataImage::new(area, banks)),
                 None => missing.push(words::name(&area.name)),
             }
         }
         if !missing.is_empty() {
             return Some(Err(missing));
         }
-        let profile = profile_of(survey, data, survey.status.non_operational_mode());
+        let profile = create_profile(survey, data, survey.status.non_operational_mode());
         let remarks = unsaved_edits_remark(self.memory.count())
             .into_iter()
             .chain(words::unsaved_profile_warning(&profile))
@@ -186,6 +186,6 @@ impl HasProfile for Encoder {
     }
 }
 
-fn commit(agreed: ApprovedPlanOf<Biss>, attendance: OperatorPresence) -> BissJob {
+fn commit_job(agreed: ApprovedPlanOf<Biss>, attendance: OperatorPresence) -> BissJob {
     BissJob::Commit(Box::new(Commit { agreed, attendance }))
 }

@@ -6,7 +6,7 @@ use crate::app::Action;
 use crate::app::connect::ConnectDialog as Dialog;
 use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissLinkKind};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{dropdown, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
@@ -42,7 +42,7 @@ impl TypedConnectForm for BissConnectForm {
             BissLinkKind::Bus => Some("connect.biss_bus_words"),
         };
         if let Some(words) = words {
-            paragraph(ui, theme.caption(say(theme, words)));
+            paragraph(ui, theme.caption(translate(theme, words)));
         }
         ui.add_space(theme.space.between);
         match form.kind {
@@ -61,52 +61,52 @@ impl TypedConnectForm for BissConnectForm {
             }
         }
         if form.uses_bus() {
-            entries_ui(ui, theme, say, BissForm::bus_entries(), &mut form.typed);
+            entries_ui(ui, theme, translate, BissForm::bus_entries(), &mut form.typed);
         }
         if form.kind != BissLinkKind::Replay && expandable_ui(ui, theme, more) {
             if !form.uses_bus() {
                 let (baud, others) = BissForm::pin_entries();
                 for own in baud {
-                    let word = say(theme, own.label);
+                    let word = translate(theme, own.label);
                     entry(ui, theme, &word, |ui| {
                         field(ui, theme, &word, &own, &mut form.typed);
                         parity(ui, theme, &mut form.parity);
                     });
                 }
-                entries_ui(ui, theme, say, others, &mut form.typed);
-                let word = say(theme, "connect.biss_order");
+                entries_ui(ui, theme, translate, others, &mut form.typed);
+                let word = translate(theme, "connect.biss_order");
                 entry(ui, theme, &word, |ui| {
                     let orders = [
                         (None, "connect.biss_order_auto"),
                         (Some(ByteOrder::LowFirst), "connect.biss_order_low"),
                         (Some(ByteOrder::HighFirst), "connect.biss_order_high"),
                     ];
-                    dropdown(ui, &word, &mut form.order, orders.map(|(order, id)| (order, say(theme, id))));
+                    dropdown(ui, &word, &mut form.order, orders.map(|(order, id)| (order, translate(theme, id))));
                 });
                 echo_ui(ui, theme, &mut form.echo);
             }
             let (frame, line) = BissForm::common_entries();
-            entry(ui, theme, &say(theme, "connect.biss_frame"), |ui| {
-                entry_row(ui, theme, say, frame, &mut form.typed);
+            entry(ui, theme, &translate(theme, "connect.biss_frame"), |ui| {
+                entry_row(ui, theme, translate, frame, &mut form.typed);
             });
-            paragraph(ui, theme.caption(say(theme, "connect.biss_frame_words")));
+            paragraph(ui, theme.caption(translate(theme, "connect.biss_frame_words")));
             if form.uses_bus() {
                 supply_choice_ui(ui, theme, &mut form.leave_supply);
             }
-            entries_ui(ui, theme, say, line, &mut form.typed);
+            entries_ui(ui, theme, translate, line, &mut form.typed);
         }
     }
 }
 
 fn connection_point_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
-    let word = say(theme, "connect.biss_reached");
+    let word = translate(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
-        dropdown(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, say(theme, id))));
+        dropdown(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, translate(theme, id))));
     });
 }
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     connection_point_ui(ui, theme, form);
-    entries_ui(ui, theme, say, BissForm::virtual_device_entries(), &mut form.typed);
+    entries_ui(ui, theme, translate, BissForm::virtual_device_entries(), &mut form.typed);
 }

@@ -5,8 +5,8 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio};
 use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, places};
-use crate::devices::biss::views::say;
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, area_addresses};
+use crate::devices::biss::views::translate;
 use crate::ui::controls::{empty_placeholder, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexAddresses, HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
@@ -28,7 +28,7 @@ pub(super) fn page_ui(
     let areas = encoder.description.as_ref().map(|own| own.areas()).unwrap_or_default();
     let Some(area) = areas.get(view.area).or_else(|| areas.first()) else {
         let words = if encoder.description.is_some() { "data.none" } else { "registers.nothing" };
-        empty_placeholder(ui, theme, &say(theme, words), None);
+        empty_placeholder(ui, theme, &translate(theme, words), None);
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
@@ -46,8 +46,8 @@ pub(super) fn page_ui(
         }
         // An area that has not been read has this button in the middle.
         let (ready, is_read) =
-            (encoder.session.is_ready(), shown.as_ref().is_some_and(|own| encoder.memory.area(own).is_some()));
-        if is_read && enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "data.read")).clicked() {
+            (encoder.session.is_ready(), shown.as_ref().is_some_and(|own| encoder.memory.area_bytes(own).is_some()));
+        if is_read && enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "data.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
         }
         let shown = shown.as_ref().unwrap_or(area);
@@ -59,14 +59,14 @@ pub(super) fn page_ui(
         ui.label(theme.caption(theme.format_text(&text)));
     });
     ui.add_space(theme.space.inside);
-    match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
+    match shown.and_then(|own| encoder.memory.area_bytes(&own).zip(Some(own))) {
         Some(((read, wanted), own)) => area_bytes_ui(ui, theme, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
-            empty_placeholder(ui, theme, &say(theme, "data.not_in_profile"), None);
+            empty_placeholder(ui, theme, &translate(theme, "data.not_in_profile"), None);
         }
         None => {
-            let read = (icons::ARROW_CLOCKWISE, say(theme, "data.read"), encoder.session.is_ready());
-            if empty_placeholder(ui, theme, &say(theme, "data.not_read"), Some((read.0, &read.1, read.2))) {
+            let read = (icons::ARROW_CLOCKWISE, translate(theme, "data.read"), encoder.session.is_ready());
+            if empty_placeholder(ui, theme, &translate(theme, "data.not_read"), Some((read.0, &read.1, read.2))) {
                 actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
             }
         }
@@ -115,7 +115,7 @@ fn area_bytes_ui(
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.move_to_change(wanted);
     }
-    let start = |offset: usize| -> Option<RegisterAddress> { places(area).nth(offset) };
+    let start = |offset: usize| -> Option<RegisterAddress> { area_addresses(area).nth(offset) };
     for edit in edits {
         let id = encoder.session.id;
         let own = |action| Action::device(id, action);

@@ -8,7 +8,7 @@ use crate::devices::biss::procedures::{FlagRegister, FrameSource, Identity};
 use crate::devices::biss::profile::ProfileIdentity;
 use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, words};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with_trailing, empty_placeholder, enabled_button, encoder_page, paragraph, row};
 use crate::ui::{Theme, icons};
@@ -72,8 +72,13 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(or_none(serial.trim().to_owned())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
     row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware)));
-    row(ui, theme, &say(theme, "biss_card.profile"), theme.monospace(identity.kind.profile.to_string()));
-    row(ui, theme, &say(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.kind.device_id)));
+    row(ui, theme, &translate(theme, "biss_card.profile"), theme.monospace(identity.kind.profile.to_string()));
+    row(
+        ui,
+        theme,
+        &translate(theme, "biss_card.device_id"),
+        theme.monospace(crate::bits::hex(&identity.kind.device_id)),
+    );
     manufacturer_ui(ui, theme, identity.kind.manufacturer);
     let layout = &identity.layout;
     let widths = TEXTS
@@ -81,7 +86,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
         .with("multiturn", layout.multiturn_bits())
         .with("singleturn", layout.singleturn_bits())
         .with("bits", layout.bits());
-    row(ui, theme, &say(theme, "biss_card.frame"), theme.format_text(&widths));
+    row(ui, theme, &translate(theme, "biss_card.frame"), theme.format_text(&widths));
     let source = match identity.source {
         FrameSource::DataSheet => "biss_card.from_sheet",
         FrameSource::Description => "biss_card.from_description",
@@ -89,44 +94,44 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
         FrameSource::Checksum => "biss_card.from_checksum",
         FrameSource::Assumed => "biss_card.assumed",
     };
-    row(ui, theme, "", theme.caption(say(theme, source)));
+    row(ui, theme, "", theme.caption(translate(theme, source)));
     if !identity.source.is_known() {
-        paragraph(ui, theme.caption(say(theme, "biss_card.give_frame")));
+        paragraph(ui, theme.caption(translate(theme, "biss_card.give_frame")));
     }
     if let Some(adapter) = &identity.adapter {
         let words = format!("{} {} · {}", adapter.name, adapter.firmware, adapter.serial);
-        row(ui, theme, &say(theme, "biss_card.adapter"), words);
+        row(ui, theme, &translate(theme, "biss_card.adapter"), words);
     }
     if let Some(mismatch) = &identity.mismatch {
-        let text = explained::mismatch(mismatch);
+        let text = explained::mismatch_text(mismatch);
         paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
     }
 }
 
 fn profile_identity_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
-    let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
+    let or_none = |text: String| if text.is_empty() { translate(theme, "biss_card.not_in_profile") } else { text };
     row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
     row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware)));
-    row(ui, theme, &say(theme, "biss_card.profile"), theme.monospace(identity.profile_id.to_string()));
-    row(ui, theme, &say(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.device_id)));
+    row(ui, theme, &translate(theme, "biss_card.profile"), theme.monospace(identity.profile_id.to_string()));
+    row(ui, theme, &translate(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.device_id)));
     manufacturer_ui(ui, theme, identity.manufacturer);
     if let Some(singleturn) = identity.singleturn_bits {
         let widths = TEXTS
             .text("biss_card.position_widths")
             .with("multiturn", identity.multiturn_bits.unwrap_or_default())
             .with("singleturn", singleturn);
-        row(ui, theme, &say(theme, "biss_card.frame"), theme.format_text(&widths));
+        row(ui, theme, &translate(theme, "biss_card.frame"), theme.format_text(&widths));
     }
     let Some(profile) = encoder.profile() else { return };
     if let Some(filter) = profile.filter {
-        row(ui, theme, &say(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
+        row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
     }
 }
 
 fn manufacturer_ui(ui: &mut Ui, theme: &Theme, code: [u8; 2]) {
     let words = format!("{}  {}", crate::bits::hex(&code), code.escape_ascii());
-    row(ui, theme, &say(theme, "biss_card.manufacturer"), theme.monospace(words));
+    row(ui, theme, &translate(theme, "biss_card.manufacturer"), theme.monospace(words));
 }
 
 fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -138,7 +143,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
     };
     card_with_trailing(ui, theme, "status_card.title", read, |ui| {
         let Some(status) = &encoder.status else {
-            ui.label(theme.label(say(theme, "biss_status.nothing")));
+            ui.label(theme.label(translate(theme, "biss_status.nothing")));
             return;
         };
         let palette = theme.palette;
@@ -146,28 +151,28 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
         if none && (status.errors.is_some() || status.warnings.is_some()) {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
-                ui.label(say(theme, "biss_status.good"));
+                ui.label(translate(theme, "biss_status.good"));
             });
         }
         bits(ui, theme, status.errors.as_ref(), icons::X_CIRCLE, palette.bad);
         bits(ui, theme, status.warnings.as_ref(), icons::WARNING, palette.warn);
         if let Some(celsius) = status.celsius {
             let words = format!("{} °C", theme.format_number(celsius, 0));
-            row(ui, theme, &say(theme, "biss_status.temperature"), theme.monospace(words));
+            row(ui, theme, &translate(theme, "biss_status.temperature"), theme.monospace(words));
         }
         if let Some(mode) = status.mode {
-            row(ui, theme, &say(theme, "biss_status.mode"), theme.format_text(&explained::mode(mode)));
+            row(ui, theme, &translate(theme, "biss_status.mode"), theme.format_text(&explained::mode(mode)));
         }
         if let Some(filter) = status.filter {
-            row(ui, theme, &say(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
+            row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
             let words = theme.format_text(&explained::preset(value, layout.singleturn_bits()));
-            row(ui, theme, &say(theme, "biss_status.preset"), theme.monospace(words));
+            row(ui, theme, &translate(theme, "biss_status.preset"), theme.monospace(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {
-            paragraph(ui, RichText::new(say(theme, "biss_status.open")).color(palette.warn));
+            paragraph(ui, RichText::new(translate(theme, "biss_status.open")).color(palette.warn));
         }
     });
 }
@@ -189,9 +194,10 @@ fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&FlagRegister>, icon: &str, col
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
             ui.label(theme.monospace(format!("b{bit}")));
-            let name = name
-                .as_ref()
-                .map_or_else(|| say(theme, "biss_status.unknown_bit"), |own| theme.format_text(&explained::name(own)));
+            let name = name.as_ref().map_or_else(
+                || translate(theme, "biss_status.unknown_bit"),
+                |own| theme.format_text(&explained::name(own)),
+            );
             paragraph(ui, name);
         });
     }

@@ -7,7 +7,7 @@ use crate::app::{Action, DeviceCommand};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::devices::biss::state::{Encoder, TEXTS};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::controls::{enabled_button, folding_card_with_trailing, paragraph, row};
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
 use crate::ui::{Theme, icons};
@@ -16,23 +16,23 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
     let Some(identity) = encoder.identity() else { return };
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "frame_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "frame_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::ReadPosition));
         }
     };
     folding_card_with_trailing(ui, theme, TEXTS.text("frame_card.title"), read, |ui| {
         let reading = encoder.record.last();
-        let (fields, bits) = strip(theme, &identity.layout, reading);
-        let label = say(theme, "frame_card.title");
+        let (fields, bits) = frame_fields(theme, &identity.layout, reading);
+        let label = translate(theme, "frame_card.title");
         frame_strip(ui, theme, &FrameStrip { label: &label, fields: &fields, bits: &bits });
         if let Some(reading) = reading {
-            row(ui, theme, &theme.translate("live.raw"), theme.monospace(theme.format_word(reading.raw())));
+            row(ui, theme, &theme.translate("live.raw"), theme.monospace(theme.format_word(reading.position_word())));
             if let Some(frame) = reading.frame {
-                row(ui, theme, &say(theme, "frame_card.frame"), theme.monospace(theme.format_word(frame)));
+                row(ui, theme, &translate(theme, "frame_card.frame"), theme.monospace(theme.format_word(frame)));
             }
         }
         if reading.is_some_and(|reading| reading.frame.is_none()) {
-            paragraph(ui, theme.caption(say(theme, "frame_card.pin")));
+            paragraph(ui, theme.caption(translate(theme, "frame_card.pin")));
         }
         let errors = encoder.record.crc_errors();
         if errors > 0 {
@@ -52,7 +52,11 @@ fn transmitted_data(reading: &PositionReading) -> PositionData {
 }
 
 /// Returns the fields of a frame and their bits. Over the configuration pin only the position is transmitted.
-fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (Vec<StripField>, Vec<Option<bool>>) {
+fn frame_fields(
+    theme: &Theme,
+    layout: &Layout,
+    reading: Option<&PositionReading>,
+) -> (Vec<StripField>, Vec<Option<bool>>) {
     let mut fields = Vec::new();
     let mut bits = Vec::new();
     let mut add = |field: StripField, value: Option<u64>| {
@@ -80,7 +84,8 @@ fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (
     }
     if is_split_known && layout.singleturn_bits() > 0 {
         let steps = reading.map(|own| u64::from(own.steps));
-        let value = reading.map(|own| format!("{} °", theme.format_number(own.degrees(), 3))).unwrap_or_default();
+        let value =
+            reading.map(|own| format!("{} °", theme.format_number(own.degrees_in_turn(), 3))).unwrap_or_default();
         add(StripField { value, ..field("ST", layout.singleturn_bits(), 1) }, steps);
     }
     if reading.is_some_and(|own| own.frame.is_none()) {

@@ -73,7 +73,7 @@ fn read_refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
 }
 
 fn unsaved_warning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let Some(why) = encoder.unsaved() else { return };
+    let Some(why) = encoder.unsaved_warning() else { return };
     ui.horizontal_top(|ui| {
         ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
         paragraph(ui, theme.format_text(&why));
@@ -150,7 +150,7 @@ impl TypedDeviceView for BissView {
     ) {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
         // Progress is shown step by step below. The bar explains the effect of cancelling.
-        let instead = is_led.then(|| say(theme, "guide.cancel_note"));
+        let instead = is_led.then(|| translate(theme, "guide.cancel_note"));
         status_line::running_ui(ui, theme, device, instead, actions);
     }
 
@@ -164,6 +164,6 @@ impl TypedDeviceView for BissView {
 }
 
 /// Returns a label from the BiSS or common catalogue, in the window's language.
-pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::Action;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::sim::Motor;
 use crate::ui::controls::{enabled_button, folding_card, paragraph};
 use crate::ui::{Theme, icons};
@@ -38,7 +38,7 @@ pub(super) fn motor_running_note_ui(ui: &mut Ui, theme: &Theme, encoder: &Encode
         let text = TEXTS.text(id).with_number("rpm", motor.rpm().abs(), 0);
         ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
         ui.label(theme.format_text(&text));
-        if enabled_button(ui, true, icons::STOP, &say(theme, "motor_card.stop")).clicked() {
+        if enabled_button(ui, true, icons::STOP, &translate(theme, "motor_card.stop")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::Turn(0.0)));
         }
     });

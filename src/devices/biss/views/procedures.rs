@@ -11,7 +11,7 @@ use crate::devices::biss::profile::{MotorSource, MountingSteps, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PositionFilter, ProcedureKind};
 use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::controls::{
     button_with_reason, card, empty_placeholder, enabled_button, folding_card, labelled_entry, options, paragraph, row,
     show_error_below, two_columns,
@@ -42,11 +42,11 @@ pub(super) fn page_ui(
         return;
     }
     let Some(description) = encoder.description.as_ref().filter(|_| encoder.session.phase != Phase::Offline) else {
-        empty_placeholder(ui, theme, &say(theme, "procedures.nothing"), None);
+        empty_placeholder(ui, theme, &translate(theme, "procedures.nothing"), None);
         return;
     };
     if description.procedures().is_empty() {
-        empty_placeholder(ui, theme, &say(theme, "procedures.none"), None);
+        empty_placeholder(ui, theme, &translate(theme, "procedures.none"), None);
         return;
     }
     left_state_ui(ui, theme, encoder, actions);
@@ -92,7 +92,7 @@ struct Mounting<'v> {
 fn stored(encoder: &Encoder) -> PresetForm {
     let value = encoder.survey.as_ref().and_then(|survey| survey.preset);
     let layout = encoder.identity().map(|identity| &identity.layout);
-    value.zip(layout).map(|(value, layout)| PresetForm::of(value, layout)).unwrap_or_default()
+    value.zip(layout).map(|(value, layout)| PresetForm::from_value(value, layout)).unwrap_or_default()
 }
 
 fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -119,20 +119,20 @@ fn mounting_ui(
     actions: &mut Vec<Action>,
 ) {
     card(ui, theme, TEXTS.text("mounting_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "mounting_card.words")));
+        paragraph(ui, theme.label(translate(theme, "mounting_card.words")));
         ui.add_space(theme.space.inside);
-        ui.label(say(theme, "mounting_card.motor"));
+        ui.label(translate(theme, "mounting_card.motor"));
         let sources = [
-            (Some(MotorSource::Other), say(theme, "mounting_card.other")),
-            (Some(MotorSource::ThisEncoder), say(theme, "mounting_card.this_encoder")),
+            (Some(MotorSource::Other), translate(theme, "mounting_card.other")),
+            (Some(MotorSource::ThisEncoder), translate(theme, "mounting_card.this_encoder")),
         ];
-        options(ui, &say(theme, "mounting_card.motor"), own.motor, sources);
+        options(ui, &translate(theme, "mounting_card.motor"), own.motor, sources);
         let refused = *own.motor == Some(MotorSource::ThisEncoder);
         if refused {
-            paragraph(ui, RichText::new(say(theme, "mounting_card.refused")).color(theme.palette.bad));
+            paragraph(ui, RichText::new(translate(theme, "mounting_card.refused")).color(theme.palette.bad));
         }
         ui.add_space(theme.space.between);
-        ui.label(say(theme, "mounting_card.what"));
+        ui.label(translate(theme, "mounting_card.what"));
         procedure_checkbox_ui(
             ui,
             theme,
@@ -144,16 +144,17 @@ fn mounting_ui(
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
                 theme.add_gap(ui);
-                ui.checkbox(own.save_result, say(theme, "mounting_card.save"));
+                ui.checkbox(own.save_result, translate(theme, "mounting_card.save"));
             });
         });
-        ui.checkbox(own.with_preset, say(theme, "mounting_card.preset"));
+        ui.checkbox(own.with_preset, translate(theme, "mounting_card.preset"));
         data_profile_choice_ui(ui, theme, studio, own.data);
         ui.add_space(theme.space.between);
         let wish = requested_procedures(encoder, own);
         let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
-        if button_with_reason(ui, theme, &allowed, icons::LIST_CHECKS, &say(theme, "mounting_card.review")).clicked()
+        if button_with_reason(ui, theme, &allowed, icons::LIST_CHECKS, &translate(theme, "mounting_card.review"))
+            .clicked()
             && let Ok(run) = wish
         {
             let motor = own.motor.unwrap_or(MotorSource::Other);
@@ -164,7 +165,7 @@ fn mounting_ui(
 }
 
 fn procedure_checkbox_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
-    ui.checkbox(on, say(theme, id));
+    ui.checkbox(on, translate(theme, id));
     ui.horizontal_top(|ui| {
         theme.add_gap(ui);
         paragraph(ui, theme.caption(theme.format_text(words)));
@@ -204,8 +205,8 @@ fn data_profile_choice_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mu
         *data = None;
     }
     if profiles.is_empty() {
-        ui.add_enabled(false, egui::Checkbox::new(&mut false, say(theme, "mounting_card.data")))
-            .on_disabled_hover_text(say(theme, "mounting_card.no_profile"));
+        ui.add_enabled(false, egui::Checkbox::new(&mut false, translate(theme, "mounting_card.data")))
+            .on_disabled_hover_text(translate(theme, "mounting_card.no_profile"));
         return;
     }
     for profile in profiles {
@@ -219,13 +220,17 @@ fn data_profile_choice_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mu
 
 fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetForm, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("preset_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "preset_card.words")));
+        paragraph(ui, theme.label(translate(theme, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
         // Only the first error is shown. It names its field.
-        show_error_below(ui, theme, form.singleturn(layout).err().or(form.multiturn(layout).err()).as_ref());
+        show_error_below(
+            ui,
+            theme,
+            form.parse_singleturn(layout).err().or(form.parse_multiturn(layout).err()).as_ref(),
+        );
         let value = form.value(layout);
         // The encoder uses the saved value and not the value in the fields.
         let saved = encoder.survey.as_ref().and_then(|survey| survey.preset);
@@ -233,7 +238,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
         ui.horizontal_wrapped(|ui| {
-            let word = say(theme, "preset_card.store");
+            let word = translate(theme, "preset_card.store");
             if enabled_button(ui, ready && value.is_ok(), icons::FLOPPY_DISK, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, plan(value.ok(), None)));
             }
@@ -241,17 +246,17 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         ui.add_space(theme.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
             let words = theme.format_text(&explained::preset(stored, layout.singleturn_bits()));
-            row(ui, theme, &say(theme, "preset_card.stored"), theme.monospace(words));
+            row(ui, theme, &translate(theme, "preset_card.stored"), theme.monospace(words));
         }
         let fire_words = if is_saved { "preset_card.fire_words" } else { "preset_card.save_first" };
-        paragraph(ui, theme.label(say(theme, fire_words)));
+        paragraph(ui, theme.label(translate(theme, fire_words)));
         ui.horizontal_wrapped(|ui| {
             for (parts, id) in [
                 (PresetParts::Both, "preset_card.both"),
                 (PresetParts::Singleturn, "preset_card.singleturn"),
                 (PresetParts::Multiturn, "preset_card.multiturn"),
             ] {
-                if enabled_button(ui, ready && is_saved, icons::TARGET, &say(theme, id)).clicked() {
+                if enabled_button(ui, ready && is_saved, icons::TARGET, &translate(theme, id)).clicked() {
                     actions.push(Action::device(encoder.session.id, plan(None, Some(parts))));
                 }
             }
@@ -265,7 +270,7 @@ fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
         return;
     }
     folding_card(ui, theme, TEXTS.text("filter_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "filter_card.words")));
+        paragraph(ui, theme.label(translate(theme, "filter_card.words")));
         let own = encoder.status.as_ref().and_then(|status| status.filter);
         for (filter, hint) in
             [(PositionFilter::Balanced, "filter_card.balanced"), (PositionFilter::Dynamic, "filter_card.dynamic")]
@@ -281,7 +286,7 @@ fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                     let change = Box::new(Change::SelectFilter(filter));
                     actions.push(Action::device(encoder.session.id, Biss::Plan(change)));
                 }
-                ui.label(theme.caption(say(theme, hint)));
+                ui.label(theme.caption(translate(theme, hint)));
             });
         }
     });

@@ -6,7 +6,7 @@ use crate::app::{Action, DeviceCommand, PendingEdits, Text};
 use crate::devices::biss::protocol::{Access, Name, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Group, RegisterEntry, TEXTS};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_menu};
 use crate::ui::widgets::{
     RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable,
@@ -21,8 +21,8 @@ pub(super) struct RegistersUiState {
 }
 
 /// Width of the bank list. On a page narrower than `BESIDE`, a drop-down above the table replaces the list.
-const BANKS: f32 = 176.0;
-const BESIDE: f32 = 860.0;
+const BANK_LIST_WIDTH: f32 = 176.0;
+const MIN_TWO_COLUMN_WIDTH: f32 = 860.0;
 
 pub(super) fn page_ui(
     ui: &mut Ui,
@@ -33,31 +33,36 @@ pub(super) fn page_ui(
 ) {
     if encoder.description.is_none() {
         let read = (icons::ARROW_CLOCKWISE, theme.translate("memory.read"), encoder.session.is_readable());
-        if empty_placeholder(ui, theme, &say(theme, "registers.nothing"), Some((read.0, &read.1, read.2))) {
+        if empty_placeholder(ui, theme, &translate(theme, "registers.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
     }
-    let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(theme, encoder, own)).collect();
+    let groups: Vec<RegisterGroup> =
+        encoder.table.groups().iter().map(|own| register_group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
         // Users look at one bank at a time, and most often at the direct registers.
         (1..groups.len()).for_each(|at| view.table.set_folded(at, true));
     }
-    let beside = ui.available_width() >= BESIDE;
+    let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     super::messages_ui(ui, theme, encoder, actions);
     header_ui(ui, theme, encoder, (&groups, beside), view, actions);
     ui.add_space(theme.space.inside);
     let height = ui.available_height();
     if !beside {
-        table(ui, theme, encoder, &groups, height, view, actions);
+        table_ui(ui, theme, encoder, &groups, height, view, actions);
         return;
     }
     ui.horizontal_top(|ui| {
-        ui.allocate_ui_with_layout(egui::vec2(BANKS, height), egui::Layout::top_down(egui::Align::Min), |ui| {
-            ui.set_min_width(BANKS);
-            bank_list_ui(ui, theme, encoder, &groups, view);
-        });
-        ui.vertical(|ui| table(ui, theme, encoder, &groups, height, view, actions));
+        ui.allocate_ui_with_layout(
+            egui::vec2(BANK_LIST_WIDTH, height),
+            egui::Layout::top_down(egui::Align::Min),
+            |ui| {
+                ui.set_min_width(BANK_LIST_WIDTH);
+                bank_list_ui(ui, theme, encoder, &groups, view);
+            },
+        );
+        ui.vertical(|ui| table_ui(ui, theme, encoder, &groups, height, view, actions));
     });
 }
 
@@ -72,7 +77,7 @@ fn header_ui(
     let mut at = view.table.selected_group().unwrap_or_default();
     ui.horizontal(|ui| {
         if !beside {
-            let label = say(theme, "registers.bank");
+            let label = translate(theme, "registers.bank");
             if dropdown(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
                 view.table.select(RegisterLocation { group: at, row: 0 });
             }
@@ -88,9 +93,9 @@ fn header_ui(
             let words = format!("{} {problem}", icons::WARNING_CIRCLE);
             ui.add(egui::Label::new(RichText::new(words).color(theme.palette.bad)).truncate());
         } else if encoder.memory.is_dirty() {
-            ui.add(egui::Label::new(theme.caption(say(theme, "registers.edited"))).truncate());
-        } else if !encoder.record.watched().is_empty() && encoder.session.is_polling() {
-            ui.add(egui::Label::new(theme.caption(say(theme, "registers.watching"))).truncate());
+            ui.add(egui::Label::new(theme.caption(translate(theme, "registers.edited"))).truncate());
+        } else if !encoder.record.watched_registers().is_empty() && encoder.session.is_polling() {
+            ui.add(egui::Label::new(theme.caption(translate(theme, "registers.watching"))).truncate());
         }
     });
 }
@@ -112,12 +117,12 @@ fn watch_selection_ui(
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));
     let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
-    let watched = encoder.record.watched();
+    let watched = encoder.record.watched_registers();
     if let Some(row) = row {
         let on = watched.iter().any(|own| own.address == row.register.address);
         let word = TEXTS.text(if on { "registers.unwatch" } else { "registers.watch" });
         let word = theme.format_text(&word.with("address", row.register.address));
-        let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
+        let button = enabled_button(ui, row.register.access.is_readable() && !row.is_data, icons::EYE, &word);
         if button.on_hover_text(theme.format_text(&words::name(&row.register.name))).clicked() {
             let register = Box::new(row.register.clone());
             actions.push(Action::device(encoder.session.id, Biss::Watch(register, !on)));
@@ -146,7 +151,7 @@ fn bank_list_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[Registe
             let ink = if own.is_read(&encoder.memory) { theme.palette.text } else { theme.palette.muted };
             let text = RichText::new(&title).color(ink);
             let button = egui::Button::selectable(selected == Some(at), (text, egui::Atom::grow()));
-            let response = ui.add(button.truncate().min_size(egui::vec2(BANKS - 16.0, 24.0)));
+            let response = ui.add(button.truncate().min_size(egui::vec2(BANK_LIST_WIDTH - 16.0, 24.0)));
             if response.on_hover_text(&title).clicked() {
                 view.table.select(RegisterLocation { group: at, row: 0 });
             }
@@ -154,7 +159,7 @@ fn bank_list_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[Registe
     });
 }
 
-fn table(
+fn table_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -163,7 +168,7 @@ fn table(
     view: &mut RegistersUiState,
     actions: &mut Vec<Action>,
 ) {
-    let none = say(theme, "registers.elsewhere");
+    let none = translate(theme, "registers.elsewhere");
     let row = |place: RegisterLocation| {
         let shown = encoder.table.groups().get(place.group).and_then(|own| own.entry(place.row, &encoder.memory));
         shown.map(|own| register_row(theme, encoder, &own, &none)).unwrap_or_default()
@@ -198,20 +203,20 @@ fn table(
     }
 }
 
-fn group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGroup {
+fn register_group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
-        (None, _) => say(theme, "registers.direct"),
+        (None, _) => translate(theme, "registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
         (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", theme.format_text(&words::name(name))),
     };
-    let note = if own.is_read(&encoder.memory) { String::new() } else { say(theme, "registers.not_read") };
+    let note = if own.is_read(&encoder.memory) { String::new() } else { translate(theme, "registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
 }
 
 fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
     let name = if register.name.is_empty() {
-        say(theme, "registers.byte")
+        translate(theme, "registers.byte")
     } else {
         theme.format_text(&words::name(&register.name))
     };
@@ -221,8 +226,8 @@ fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, els
         address: register.address.to_string(),
         name,
         value: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
-        decimal: shown.number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
-        meaning: encoder.meaning(shown).map(|own| theme.format_text(&own)).unwrap_or_default(),
+        decimal: shown.to_number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
+        meaning: encoder.describe_register(shown).map(|own| theme.format_text(&own)).unwrap_or_default(),
         access: match register.access {
             Access::R => "R",
             Access::W => "W",
@@ -233,7 +238,7 @@ fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, els
         differs: shown.differs_from_factory_default(),
         changed: shown.has_changed,
         edited: shown.is_edited,
-        cost: (!register.saves.is_empty()).then(|| say(theme, "registers.cost")),
+        cost: (!register.saves.is_empty()).then(|| translate(theme, "registers.cost")),
         read_only: (!shown.row.is_data).then(|| elsewhere.to_owned()),
         fields: fields(theme, shown),
         ..RegisterRow::default()
@@ -242,7 +247,7 @@ fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, els
 
 fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     let ValueDecoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
-    let number = shown.number();
+    let number = shown.to_number();
     let bit = |(bit, name): &(u8, Name)| {
         let is_set = number.map(|number| number >> bit & 1 == 1);
         RegisterBits {
@@ -250,7 +255,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
             name: theme.format_text(&words::name(name)),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
-                .map(|set| say(theme, if set { "registers.set" } else { "registers.clear" }))
+                .map(|set| translate(theme, if set { "registers.set" } else { "registers.clear" }))
                 .unwrap_or_default(),
             lit: is_set == Some(true),
         }

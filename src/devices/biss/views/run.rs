@@ -4,16 +4,18 @@ use egui::{RichText, Ui};
 
 use super::motor;
 use crate::app::{Action, Severity};
-use crate::devices::biss::procedures::procedure::{Advice, Answer, OperatorPrompt, Run, StepDetail, Task};
+use crate::devices::biss::procedures::procedure::{
+    MotorRun, OperatorAdvice, OperatorAnswer, OperatorPrompt, OperatorTask, StepDetail,
+};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
-use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, StepStatus, TEXTS};
-use crate::devices::biss::views::say;
+use crate::devices::biss::state::{BissAction as Biss, Encoder, ProcedureEnd, ProcedureRun, StepStatus, TEXTS};
+use crate::devices::biss::views::translate;
 use crate::ui::controls::{card, labelled_button, paragraph, severity};
 use crate::ui::widgets::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 use crate::ui::{Theme, icons};
 
-pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
+pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &ProcedureRun, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     // The view scrolls to the result once it is available.
     let is_over = guide.end.is_some();
@@ -23,7 +25,7 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
     }
     ui.data_mut(|data| data.insert_temp(seen, is_over));
     if let Some(end) = &guide.end {
-        end_ui(ui, theme, encoder, guide.ops(), end, actions);
+        end_ui(ui, theme, encoder, guide.operations(), end, actions);
         theme.add_gap(ui);
     }
     if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
@@ -31,27 +33,30 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
         theme.add_gap(ui);
     }
     card(ui, theme, TEXTS.text("guide.title"), |ui| {
-        let list: Vec<StepRow> =
-            guide.steps().iter().map(|own| step(theme, guide, own.op, own.is_first, own.step, own.reached)).collect();
+        let list: Vec<StepRow> = guide
+            .steps()
+            .iter()
+            .map(|own| step_row(theme, guide, own.op, own.is_first, own.step, own.reached))
+            .collect();
         let demand = guide.operator_prompt();
         let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.format_text(&says::blocker_text(*own)));
-        let word = say(
+        let word = translate(
             theme,
             match demand.map(|own| own.task) {
-                Some(Task::Stand | Task::StandAtPlace) => "guide.go_on",
+                Some(OperatorTask::Stand | OperatorTask::StandAtPlace) => "guide.go_on",
                 _ => "guide.start",
             },
         );
         let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
-        let skip = say(theme, "guide.skip");
+        let skip = translate(theme, "guide.skip");
         let model = Steps { steps: &list, start, skip: demand.map(|_| skip.as_str()) };
         let event = steps(ui, theme, &model);
         match (event, demand) {
             (Some(StepsEvent::Start), Some(own)) => {
-                actions.push(Action::device(id, Biss::Answer(own.task, Answer::Go)));
+                actions.push(Action::device(id, Biss::Answer(own.task, OperatorAnswer::Go)));
             }
             (Some(StepsEvent::Skip), Some(own)) => {
-                actions.push(Action::device(id, Biss::Answer(own.task, Answer::Skip)));
+                actions.push(Action::device(id, Biss::Answer(own.task, OperatorAnswer::Skip)));
             }
             _ => {}
         }
@@ -59,16 +64,16 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
 }
 
 #[allow(clippy::too_many_arguments, reason = "a step is told what it is of")]
-fn step(
+fn step_row(
     theme: &Theme,
-    guide: &Guide,
+    guide: &ProcedureRun,
     op: &Op,
     is_first: bool,
     own: crate::devices::biss::procedures::procedure::ProcedureStep,
     reached: StepStatus,
 ) -> StepRow {
-    let what = theme.format_text(&says::step(own));
-    let title = if is_first { format!("{} · {what}", theme.format_text(&says::procedure(op))) } else { what };
+    let what = theme.format_text(&says::procedure_step_text(own));
+    let title = if is_first { format!("{} · {what}", theme.format_text(&says::procedure_text(op))) } else { what };
     let (state, word) = match reached {
         StepStatus::Done => (StepState::Done, "guide.done"),
         StepStatus::Waits => (StepState::Waiting, "guide.waits"),
@@ -78,11 +83,11 @@ fn step(
         StepStatus::Cancelled => (StepState::Skipped, "guide.cancelled"),
         StepStatus::Ahead => (StepState::ToCome, "guide.ahead"),
     };
-    let mut step = StepRow { title, state, word: say(theme, word), ..StepRow::default() };
-    match (reached, guide.detail()) {
+    let mut step = StepRow { title, state, word: translate(theme, word), ..StepRow::default() };
+    match (reached, guide.step_detail()) {
         (StepStatus::Waits, Some(StepDetail::Demand(demand))) => {
             // The recommended speed is marked on the gauges, which stay in place.
-            let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
+            let lasting = demand.advice.iter().filter(|own| !matches!(own, OperatorAdvice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.format_text(&says::advice_text(*own))).collect();
             step.note = notes.join("\n");
             step.gauges = speed_gauges(theme, demand);
@@ -102,7 +107,7 @@ fn step(
 
 /// Returns the gauges shown while the operator turns the motor. Their marks are the limits for the start of the run.
 fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
-    let Task::Turn(run) = demand.task else { return Vec::new() };
+    let OperatorTask::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
     if let Some(fluctuation) = run.max_fluctuation() {
         let unit = theme.translate("unit.revolutions_per_minute");
@@ -110,7 +115,7 @@ fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
         let accepted =
             run.accepted_fluctuation(demand.motion.map_or(run.recommended_range().midpoint(), |own| own.rpm));
         gauges.push(Gauge {
-            name: say(theme, "guide.fluctuation"),
+            name: translate(theme, "guide.fluctuation"),
             value: spread,
             shown: spread.map(|spread| format!("±{} {unit}", theme.format_number(spread, 1))).unwrap_or_default(),
             allowed: 0.0..=accepted,
@@ -123,7 +128,7 @@ fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
         let celsius = demand.celsius.map(f64::from);
         let (coldest, warmest) = (*OperatorPrompt::CELSIUS.start(), *OperatorPrompt::CELSIUS.end());
         gauges.push(Gauge {
-            name: say(theme, "biss_status.temperature"),
+            name: translate(theme, "biss_status.temperature"),
             value: celsius,
             shown: celsius.map(|celsius| format!("{} °C", theme.format_number(celsius, 0))).unwrap_or_default(),
             allowed: f64::from(coldest)..=f64::from(warmest),
@@ -135,9 +140,10 @@ fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
     gauges
 }
 
-fn speed(theme: &Theme, run: Run, demand: &OperatorPrompt) -> Gauge {
+fn speed(theme: &Theme, run: MotorRun, demand: &OperatorPrompt) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
-    let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended_range());
+    let (allowed, accepted, best) =
+        (run.allowed_speeds(), run.allowed_speeds().with_tolerance(), run.recommended_range());
     // Standstill is shown as 0 regardless of sign.
     let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
     let is_best = best != allowed;
@@ -148,7 +154,7 @@ fn speed(theme: &Theme, run: Run, demand: &OperatorPrompt) -> Gauge {
         .with_number("best", best.midpoint(), 0);
     let unit = theme.translate("unit.revolutions_per_minute");
     Gauge {
-        name: say(theme, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
+        name: translate(theme, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
         value: rpm,
         shown: rpm.map(|rpm| format!("{} {unit}", theme.format_number(rpm, 1))).unwrap_or_default(),
         allowed: accepted.least..=accepted.greatest,
@@ -158,43 +164,43 @@ fn speed(theme: &Theme, run: Run, demand: &OperatorPrompt) -> Gauge {
     }
 }
 
-fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, actions: &mut Vec<Action>) {
+fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &ProcedureEnd, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let title = match end {
-        End::Done(_) => "guide.report",
-        End::Failed { .. } => "guide.ended_early",
+        ProcedureEnd::Done(_) => "guide.report",
+        ProcedureEnd::Failed { .. } => "guide.ended_early",
     };
     card(ui, theme, TEXTS.text(title), |ui| {
         let outcomes = match end {
-            End::Done(outcomes) => outcomes,
-            End::Failed { before, .. } => before,
+            ProcedureEnd::Done(outcomes) => outcomes,
+            ProcedureEnd::Failed { before, .. } => before,
         };
-        if let End::Failed { texts, .. } = end {
-            texts.iter().for_each(|text| line_ui(ui, theme, says::weight(text), &theme.format_text(text)));
+        if let ProcedureEnd::Failed { texts, .. } = end {
+            texts.iter().for_each(|text| line_ui(ui, theme, says::severity_of(text), &theme.format_text(text)));
         }
         let lines: Vec<(Severity, String)> = ops
             .iter()
             .zip(outcomes)
-            .flat_map(|(op, own)| says::report(op, own))
+            .flat_map(|(op, own)| says::report_lines(op, own))
             .map(|(severity, text)| (severity, theme.format_text(&text)))
             .collect();
         lines.iter().for_each(|(severity, words)| line_ui(ui, theme, *severity, words));
         if encoder.motor.is_some() {
             motor::motor_running_note_ui(ui, theme, encoder, actions);
-        } else if ops.iter().any(Op::turns) {
-            line_ui(ui, theme, Severity::Note, &say(theme, "guide.stop_motor"));
+        } else if ops.iter().any(Op::needs_motor) {
+            line_ui(ui, theme, Severity::Note, &translate(theme, "guide.stop_motor"));
         }
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
-            if let End::Failed { may_lead_back: true, .. } = end {
+            if let ProcedureEnd::Failed { may_lead_back: true, .. } = end {
                 super::return_to_operation_ui(ui, theme, encoder, actions);
             }
-            if !lines.is_empty() && labelled_button(ui, icons::COPY, &say(theme, "guide.copy_report")).clicked() {
-                let head = format!("{}\n{}\n", encoder.session.name(), say(theme, "guide.report"));
+            if !lines.is_empty() && labelled_button(ui, icons::COPY, &translate(theme, "guide.copy_report")).clicked() {
+                let head = format!("{}\n{}\n", encoder.session.name(), translate(theme, "guide.report"));
                 let lines: Vec<&str> = lines.iter().map(|(_, words)| words.as_str()).collect();
                 ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
             }
-            if labelled_button(ui, icons::CHECK, &say(theme, "guide.close")).clicked() {
+            if labelled_button(ui, icons::CHECK, &translate(theme, "guide.close")).clicked() {
                 actions.push(Action::device(id, Biss::CloseGuide));
             }
         });

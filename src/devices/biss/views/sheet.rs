@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::devices::biss::protocol::{Eds, EdsBank, EdsError};
 use crate::devices::biss::state::{Encoder, TEXTS, words};
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::{Theme, icons};
 
@@ -31,7 +31,10 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
     let eds = match sheet {
         Ok(eds) => eds,
         Err(why) => {
-            paragraph(ui, RichText::new(theme.format_text(&words::sheet(why))).color(theme.palette.bad));
+            paragraph(
+                ui,
+                RichText::new(theme.format_text(&words::data_sheet_error_text(why))).color(theme.palette.bad),
+            );
             return;
         }
     };
@@ -40,7 +43,7 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
             let at = ui.label(theme.monospace(format!("0x{:02X}", field.offset)).color(theme.palette.muted));
-            ui.add_space((OFFSET - at.rect.width()).max(0.0));
+            ui.add_space((OFFSET_WIDTH - at.rect.width()).max(0.0));
             let room = (ui.available_width() * 0.58).floor();
             ui.allocate_ui_with_layout(egui::vec2(room, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_min_width(room);
@@ -51,8 +54,8 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
     }
     ui.horizontal(|ui| {
         ui.label(RichText::new(icons::CHECK_CIRCLE).color(theme.palette.good));
-        ui.label(theme.caption(say(theme, "sheet_card.sum")));
+        ui.label(theme.caption(translate(theme, "sheet_card.sum")));
     });
 }
 
-const OFFSET: f32 = 40.0;
+const OFFSET_WIDTH: f32 = 40.0;

@@ -3,12 +3,12 @@
 use egui::Ui;
 
 use crate::devices::biss::state::TEXTS;
-use crate::devices::biss::views::say;
+use crate::devices::biss::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::wiring::wires_ui;
 
-const PIN: f32 = 84.0;
+const PIN_WIDTH: f32 = 84.0;
 
 /// Pins of the JST BM08B-GHS connector and their signals (manual 2).
 const PINS: [(&str, &str); 8] = [
@@ -25,25 +25,25 @@ const PINS: [(&str, &str); 8] = [
 const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"];
 
 /// Card width from which the pins are shown in two columns.
-const BESIDE: f32 = 640.0;
+const MIN_TWO_COLUMN_WIDTH: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
-        if ui.available_width() < BESIDE {
-            wires_ui(ui, theme, &TEXTS, PIN, &PINS);
+        if ui.available_width() < MIN_TWO_COLUMN_WIDTH {
+            wires_ui(ui, theme, &TEXTS, PIN_WIDTH, &PINS);
         } else {
             let (left, right) = PINS.split_at(PINS.len() / 2);
             two_columns(
                 ui,
                 theme,
                 (),
-                |ui, ()| wires_ui(ui, theme, &TEXTS, PIN, left),
-                |ui, ()| wires_ui(ui, theme, &TEXTS, PIN, right),
+                |ui, ()| wires_ui(ui, theme, &TEXTS, PIN_WIDTH, left),
+                |ui, ()| wires_ui(ui, theme, &TEXTS, PIN_WIDTH, right),
             );
         }
         ui.add_space(theme.space.inside);
         for note in NOTES {
-            paragraph(ui, theme.caption(say(theme, note)));
+            paragraph(ui, theme.caption(translate(theme, note)));
         }
     });
 }

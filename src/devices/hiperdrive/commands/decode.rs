@@ -72,8 +72,8 @@ fn lines(readings: &[WordMeaning]) -> DecodedBytes {
 /// matching length are always process data.
 fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::all_with_length(bytes.len()).next().is_some();
-    let packet =
-        ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());
+    let packet = ethernet_ip::explain_packet(bytes, Device::Known(parameter_words))
+        .filter(|_| !fits || known.direction.is_none());
     if let Some(explained) = packet {
         let mut explained = explained?;
         if let Some((data, to_target)) = explained.data.take() {

@@ -56,7 +56,7 @@ pub fn discover(
 /// Parses a discovery reply, or returns `None` if the packet is not a discovery reply.
 fn answer(packet: &[u8]) -> Option<IdentityItem> {
     let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
-    match frame.body().ok()? {
+    match frame.parse_body().ok()? {
         Body::List(items) => items.identity().cloned(),
         _ => None,
     }

@@ -150,7 +150,7 @@ impl<'a> Master<'a> {
     /// value yet. A parameter that triggers an action is never sent twice.
     ///
     /// # Errors
-    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything. Returns
+    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::ShaftMotion`] without sending anything. Returns
     /// [`Error::Refuses`] or [`Error::Refused`] if the device refuses the value, or an error if the exchange fails.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
@@ -158,7 +158,7 @@ impl<'a> Master<'a> {
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let requested = RequestedItem::Set(number);
-        let request = Request::set(number.class(), 1, number.attribute(), data);
+        let request = Request::set_attribute(number.class(), 1, number.attribute(), data);
         let once = RetryPolicy::Never { takes: row.takes(wanted, self.station.known.topology) };
         let mut tries = 0;
         loop {
@@ -208,7 +208,11 @@ impl<'a> Master<'a> {
         (class, attribute): (u16, u16),
         data: Vec<u8>,
     ) -> Result<(), Error> {
-        self.request(requested, &Request::set(class, 1, attribute, data), RetryPolicy::Never { takes: Some(STORES) })?;
+        self.request(
+            requested,
+            &Request::set_attribute(class, 1, attribute, data),
+            RetryPolicy::Never { takes: Some(STORES) },
+        )?;
         Ok(())
     }
 
@@ -235,7 +239,7 @@ impl<'a> Master<'a> {
             let session = master.session()?;
             let items = ItemList([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
             let body = Body::Data { interface: 0, timeout_s: 0, items };
-            let frame = Frame { session, data: body.emit(), ..Frame::unconnected(session, [0; 8], Vec::new()) };
+            let frame = Frame { session, data: body.emit(), ..Frame::unconnected_message(session, [0; 8], Vec::new()) };
             Ok(match master.exchange(frame, repeats)? {
                 Ok(frame) => judge(request, &frame),
                 Err(trouble) => Err(trouble),
@@ -266,7 +270,7 @@ impl<'a> Master<'a> {
     /// Returns an error if the exchange fails.
     pub fn unregister(&mut self) -> Result<(), Error> {
         let Some(session) = self.station.session.take() else { return Ok(()) };
-        let bytes = Frame::unregister(session).emit();
+        let bytes = Frame::unregister_session(session).emit();
         let now = self.line.now();
         Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
     }
@@ -343,7 +347,7 @@ impl<'a> Master<'a> {
                         self.line.show(now, MaskedBytes::clear(&answer.emit()));
                         self.station.record_reply(u64::from_le_bytes(answer.context), now);
                         let recorded = self.station.recorded && answer.command == frame.command;
-                        if !recorded && !answer.answers(&frame) {
+                        if !recorded && !answer.is_reply_to(&frame) {
                             self.station.late += 1;
                         } else if answer.status == EncapsulationStatus::OK || has_session(&answer) {
                             return Ok(Ok(answer));
@@ -362,7 +366,7 @@ impl<'a> Master<'a> {
             }
             let now = self.line.now();
             if now >= deadline {
-                let bytes = self.station.receiver.pending();
+                let bytes = self.station.receiver.pending_len();
                 self.trace_unparsed_bytes();
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
@@ -387,7 +391,7 @@ fn has_session(answer: &Frame) -> bool {
 }
 
 fn judge(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), ExchangeError> {
-    let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
+    let Body::Data { items, .. } = frame.parse_body()? else { return Err(Damage::Empty.into()) };
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
     let services = (request.service.code(), reply.service.code());
     match services {

@@ -249,7 +249,7 @@ fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSe
         let before = master.attribute(requested, ConfigurationControl::CLASS, attribute)?;
         let before = ConfigurationControl::parse(&before);
         let before = before.map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })?;
-        set_network(master, attribute, before.with(to.source).emit().to_vec())?;
+        set_network(master, attribute, before.with_source(to.source).emit().to_vec())?;
     }
     if from.interface != to.interface {
         set_network(master, InterfaceConfiguration::ATTRIBUTE, to.interface.emit())?;

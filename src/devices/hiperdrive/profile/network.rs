@@ -26,7 +26,7 @@ pub fn plan_network(
 ) -> Result<HiperdrivePlan, PlanError> {
     let mut to = wanted.clone();
     match to.source {
-        AddressSource::Stored => to.interface.check()?,
+        AddressSource::Stored => to.interface.check_reachable()?,
         AddressSource::Bootp | AddressSource::Dhcp => to.interface = now.interface.clone(),
         AddressSource::Unknown(source) if to.source != now.source => return Err(PlanError::Source(source)),
         AddressSource::Unknown(_) => to.interface = now.interface.clone(),

@@ -1,5 +1,5 @@
 //! Motion of the drives requested in the window: the held button, the running action, and the outcome of the last one.
-//! The dead-man control behind [`Motion`] alone decides what is sent to a drive. This module refreshes its requests and
+//! The dead-man control behind [`ShaftMotion`] alone decides what is sent to a drive. This module refreshes its requests and
 //! ends them at once when required.
 //!
 //! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. A

@@ -78,7 +78,7 @@ impl Form {
             name_servers: [address("hd_net.name_server", first)?, address("hd_net.name_server", second)?],
             domain: self.domain.trim().to_owned(),
         };
-        interface.check().map_err(|why| refused(&why))?;
+        interface.check_reachable().map_err(|why| refused(&why))?;
         Ok(NetworkSettings { source: self.source, interface })
     }
 }

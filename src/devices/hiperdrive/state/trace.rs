@@ -41,7 +41,7 @@ impl FrameDecoder {
         if frame.command != Command::SEND_RR_DATA {
             return name.into();
         }
-        let body = match frame.body() {
+        let body = match frame.parse_body() {
             Ok(body) => body,
             Err(error) if is_reply => return broken(error),
             Err(_) => return name.into(),
@@ -75,7 +75,7 @@ impl FrameDecoder {
 
     /// Returns the latest request that the frame answers, and forgets it.
     fn take_request(&mut self, reply: &Frame) -> Option<Request> {
-        let index = self.requests.iter().position(|(request, _)| reply.answers(request))?;
+        let index = self.requests.iter().position(|(request, _)| reply.is_reply_to(request))?;
         self.requests.remove(index).map(|(_, request)| request)
     }
 }
@@ -97,12 +97,12 @@ fn reported_fault(text: Text) -> FrameExplanation {
 }
 
 fn parameter_of(request: &Request) -> Option<ParameterNumber> {
-    ParameterNumber::from_attribute(request.class()?, request.path.number(LogicalKind::Attribute)?)
+    ParameterNumber::from_attribute(request.class_id()?, request.path.first_value(LogicalKind::Attribute)?)
 }
 
 fn request_texts(request: &Request) -> Vec<Text> {
     let Some(number) = parameter_of(request) else {
-        return vec![literal_text(request.service.name(request.class()).unwrap_or_default())];
+        return vec![literal_text(request.service.name(request.class_id()).unwrap_or_default())];
     };
     let is_set = request.service == Service::SET;
     let id = if is_set { "hd_asked.set" } else { "hd_asked.parameter" };

@@ -19,7 +19,7 @@ parameters! {
 pub struct AttachableEncoder;
 
 impl AttachableKind for AttachableEncoder {
-    fn keys(&self) -> &'static [&'static str] {
+    fn setting_names(&self) -> &'static [&'static str] {
         Settings::KEYS
     }
 
@@ -30,11 +30,11 @@ impl AttachableKind for AttachableEncoder {
 }
 
 impl SerialDevice for Bus {
-    fn duplicate(&self) -> Box<dyn SerialDevice> {
+    fn clone_device(&self) -> Box<dyn SerialDevice> {
         Box::new(self.clone())
     }
 
-    fn turn(&mut self, now: Moment, rpm: f64) {
+    fn turn_shaft(&mut self, now: Moment, rpm: f64) {
         if let Some(encoder) = self.encoder_mut(0) {
             encoder.set_rpm(now, rpm);
         }

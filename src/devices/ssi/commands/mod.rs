@@ -129,7 +129,7 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Servab
         None => AttachableEncoder::DELIVERED,
     };
     // The encoder replaces the one with the factory settings, which is configured with the same keys.
-    let others = attachable_kinds().iter().copied().filter(|device| device.keys() != encoder.keys());
+    let others = attachable_kinds().iter().copied().filter(|device| device.setting_names() != encoder.setting_names());
     let devices: Vec<&dyn AttachableKind> = [&encoder as &dyn AttachableKind].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(adapter))

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::station::{Identity, Supply};
 use super::{ClockSettings, Error, Station, Words};
-use crate::buses::bridge::procedures::flow::{SampleStream, Streamed};
+use crate::buses::bridge::procedures::flow::{SampleStream, StreamKind};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
 use crate::buses::bridge::protocol::{Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags, StreamData};
 use crate::link::Ctx;
@@ -40,9 +40,9 @@ impl<'a> Master<'a> {
     /// error of the connection.
     pub fn hello(&mut self) -> Result<Identity, Error> {
         self.stop_word_stream()?;
-        self.repeated(|master| master.adapter().hello())?;
-        let Some(hello) = self.station.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
-        if !hello.capabilities.has(Capabilities::SSI) {
+        self.repeated(|master| master.adapter().read_identity())?;
+        let Some(hello) = self.station.adapter.identity().cloned() else { return Err(AdapterError::Silent.into()) };
+        if !hello.capabilities.contains(Capabilities::SSI) {
             return Err(AdapterError::NoSsi { name: hello.name }.into());
         }
         self.switch_on()?;
@@ -96,8 +96,8 @@ impl<'a> Master<'a> {
     /// As for [`hello`](Self::hello) when the stream is started. Later, errors of the adapter end the stream, whereas
     /// it continues after a cancellation.
     pub fn words(&mut self, period_us: u32) -> Result<Words, Error> {
-        let streamed = Streamed::Ssi { period_us };
-        if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
+        let streamed = StreamKind::Ssi { period_us };
+        if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {
             self.hello()?;
             self.begin(streamed)?;
         }
@@ -128,9 +128,9 @@ impl<'a> Master<'a> {
         self.station.asked = 0;
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
         let shielded = self.line.ignore_cancellation(true);
-        let ended = flow.end(&mut self.adapter());
+        let ended = flow.stop(&mut self.adapter());
         self.line.ignore_cancellation(shielded);
-        match SampleStream::ended(ended) {
+        match SampleStream::is_stopped(ended) {
             Ok(true) => Ok(()),
             Ok(false) => {
                 self.station.forget_settings();
@@ -153,7 +153,7 @@ impl<'a> Master<'a> {
         }
         self.line.ignore_cancellation(true);
         self.stop_word_stream()?;
-        Ok(self.adapter().leave_supply()?)
+        Ok(self.adapter().switch_off_after_session()?)
     }
 
     fn now(&self) -> Moment {
@@ -166,7 +166,7 @@ impl<'a> Master<'a> {
 
     fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
-        let measured = self.repeated(|master| master.adapter().supply(Supply::voltage(millivolt)))?;
+        let measured = self.repeated(|master| master.adapter().switch_supply_on(Supply::voltage(millivolt)))?;
         self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
@@ -182,7 +182,7 @@ impl<'a> Master<'a> {
         let clock_hz = clock_hz.min(fastest);
         let request = Request::SsiConfig { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE };
         self.station.set = None;
-        let answered = self.repeated(|master| master.adapter().ask(&request))?;
+        let answered = self.repeated(|master| master.adapter().send_request(&request))?;
         let Reply::SsiConfig { clock_hz } = answered.reply else {
             return Err(other(&request, &answered.reply));
         };
@@ -198,21 +198,21 @@ impl<'a> Master<'a> {
     }
 
     fn read_single_word(&mut self) -> Result<(u64, Moment), Failure> {
-        let answered = self.adapter().ask(&Request::SsiRead)?;
+        let answered = self.adapter().send_request(&Request::SsiRead)?;
         let Reply::SsiRead { t_us, raw } = answered.reply else {
-            return Err(AdapterError::other(Request::SsiRead.operation(), &answered.reply).into());
+            return Err(AdapterError::unexpected_reply(Request::SsiRead.operation(), &answered.reply).into());
         };
         Ok((raw, self.station.adapter.local_time_of(t_us, &answered)))
     }
 
-    fn begin(&mut self, streamed: Streamed) -> Result<(), Error> {
+    fn begin(&mut self, streamed: StreamKind) -> Result<(), Error> {
         let after = self.station.streamed_until;
         let mut may_run = false;
         let flow = self.repeated(|master| {
             if std::mem::replace(&mut may_run, true) {
-                master.adapter().ask(&Request::SsiStream { period_us: 0 })?;
+                master.adapter().send_request(&Request::SsiStream { period_us: 0 })?;
             }
-            SampleStream::begin(&mut master.adapter(), streamed, after)
+            SampleStream::start(&mut master.adapter(), streamed, after)
         });
         self.station.flow = Some(flow.map_err(|error| self.handle_possible_reset(error))?);
         Ok(())
@@ -261,5 +261,5 @@ impl<'a> Master<'a> {
 }
 
 fn other(request: &Request, reply: &Reply) -> Error {
-    AdapterError::other(request.operation(), reply).into()
+    AdapterError::unexpected_reply(request.operation(), reply).into()
 }

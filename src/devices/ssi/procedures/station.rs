@@ -24,7 +24,7 @@ parameters! {
         pub pause_us: u16 = 200, "pause" => WholeNumbers(Quantity::Microseconds, 1..=u16::MAX);
         /// Supply voltage in millivolts that the adapter provides to the encoder, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE)), "connect.voltage" like "";
-        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;
+        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::KEYWORDS;
     }
 }
 
@@ -119,13 +119,13 @@ impl Station {
         let mut station = Station::new(link.margin.unwrap_or(margin));
         (station.asking.clock_hz, station.asking.pause_us) = (link.clock_hz, link.pause_us);
         station.supply = link.millivolt.map(|millivolt| Supply { millivolt, measured: None });
-        station.adapter.leave_supply(link.after);
+        station.adapter.set_supply_after_session(link.after);
         Ok(station)
     }
 
     /// Discards all data about the adapter. It is then identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
-        self.adapter.forget();
+        self.adapter.forget_identity();
         self.flow = None;
         self.forget_settings();
     }

@@ -40,7 +40,7 @@ impl AttachableEncoder {
 }
 
 impl AttachableKind for AttachableEncoder {
-    fn keys(&self) -> &'static [&'static str] {
+    fn setting_names(&self) -> &'static [&'static str] {
         Settings::KEYS
     }
 

@@ -45,11 +45,11 @@ impl FrameSender {
 }
 
 impl SsiDevice for FrameSender {
-    fn duplicate(&self) -> Box<dyn SsiDevice> {
+    fn clone_device(&self) -> Box<dyn SsiDevice> {
         Box::new(self.clone())
     }
 
-    fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8) {
+    fn word_at(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8) {
         let frame = self.frame(place, at);
         self.transferred = Some(at);
         (frame, self.encoder.layout.clocks())

@@ -69,7 +69,7 @@ fn invalid_values_are_reported() {
 proptest! {
     #[test]
     fn no_value_panics(key in 0..2_usize, value in ".*") {
-        let _ = AttachableEncoder::DELIVERED.attach_device(&[(AttachableEncoder::DELIVERED.keys()[key].to_owned(), value)]);
+        let _ = AttachableEncoder::DELIVERED.attach_device(&[(AttachableEncoder::DELIVERED.setting_names()[key].to_owned(), value)]);
     }
 }
 

@@ -105,8 +105,8 @@ impl SsiForm {
 
     /// Fills in the entry for a parameter. Returns `false` if the form has no such entry.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        if name == SupplyAfterSession::LEFT_ON.0 {
-            self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;
+        if name == SupplyAfterSession::LEAVE_SUPPLY_ON.0 {
+            self.leave_supply = value == SupplyAfterSession::LEAVE_SUPPLY_ON.1;
             return self.leave_supply;
         }
         self.typed.fill_entry(&self.entries(), name, value)
@@ -126,9 +126,13 @@ impl SsiForm {
         let mut parameters = Parameters::default();
         parameters.add_entered(&self.entries(), &self.typed);
         if self.leave_supply {
-            parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
+            parameters.set(SupplyAfterSession::LEAVE_SUPPLY_ON.0, SupplyAfterSession::LEAVE_SUPPLY_ON.1);
         }
-        parameters.add_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(attachable_kinds())));
+        parameters.add_remaining(
+            &self.rest,
+            is_virtual,
+            (LinkParameters::KEYS, &bridge::all_setting_names(attachable_kinds())),
+        );
         parameters
     }
 }

@@ -9,7 +9,7 @@ mod refused;
 
 use crate::app::Text;
 use crate::app::explain::link_error_text;
-use crate::buses::bridge::state::adapter;
+use crate::buses::bridge::state::adapter_error_text;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
     Advice, ClassEvidence, Code, CountedFinding, FrameFinding, GrayCoverage, Layout, Meaning, Open, Range,
@@ -26,7 +26,7 @@ pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
 pub fn job(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link_error_text(error),
-        JobError::Adapter(error) => adapter(error),
+        JobError::Adapter(error) => adapter_error_text(error),
         JobError::Cancelled => Text::new("encoder.cancelled"),
     }]
 }

@@ -8,11 +8,11 @@ use crate::link::{Direction, TraceEntry};
 pub(super) fn meaning(entry: &TraceEntry) -> FrameExplanation {
     let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::from_error(Text::new("trace.hidden")) };
     if entry.direction == Direction::Received
-        && let Some(fault) = traced::received(&bytes)
+        && let Some(fault) = traced::explain_received(&bytes)
     {
         return fault;
     }
-    let packet = traced::packet(&bytes);
+    let packet = traced::parse_packet(&bytes);
     let meaning = packet.and_then(|packet| match Request::parse(&packet) {
         Ok(request) => Some(traced::request_text(&request)),
         Err(_) => traced::message_text(&packet),

@@ -123,7 +123,7 @@ impl Dial {
 }
 
 impl AttachableKind for DialSettings {
-    fn keys(&self) -> &'static [&'static str] {
+    fn setting_names(&self) -> &'static [&'static str] {
         &["rpm", "seed", "fault"]
     }
 
@@ -140,15 +140,15 @@ impl AttachableKind for DialSettings {
 }
 
 impl BissDevice for Dial {
-    fn duplicate(&self) -> Box<dyn BissDevice> {
+    fn clone_device(&self) -> Box<dyn BissDevice> {
         Box::new(Dial { motor: Motor::with_speed(self.motor.rpm()), ..*self })
     }
 
-    fn frame(&mut self, at: Moment) -> Option<(u64, u8)> {
+    fn frame_at(&mut self, at: Moment) -> Option<(u64, u8)> {
         self.steps(at).map(|steps| (steps << 6, 41))
     }
 
-    fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
+    fn shaft_position(&mut self, at: Moment) -> Option<(u64, u64)> {
         self.steps(at).map(|steps| (steps, Self::PER_TURN))
     }
 
@@ -175,7 +175,7 @@ impl BissDevice for Dial {
         self.ready.is_some()
     }
 
-    fn answers(&mut self, now: Moment) -> bool {
+    fn can_access_registers(&mut self, now: Moment) -> bool {
         self.steps(now).is_some()
     }
 
@@ -194,7 +194,7 @@ impl BissDevice for Dial {
 }
 
 impl AttachableKind for SsiTestEncoder {
-    fn keys(&self) -> &'static [&'static str] {
+    fn setting_names(&self) -> &'static [&'static str] {
         &[]
     }
 
@@ -204,11 +204,11 @@ impl AttachableKind for SsiTestEncoder {
 }
 
 impl SsiDevice for SsiTestEncoder {
-    fn duplicate(&self) -> Box<dyn SsiDevice> {
+    fn clone_device(&self) -> Box<dyn SsiDevice> {
         Box::new(SsiTestEncoder)
     }
 
-    fn word(&mut self, _: Moment, (steps, per_turn): (u64, u64)) -> (u64, u8) {
+    fn word_at(&mut self, _: Moment, (steps, per_turn): (u64, u64)) -> (u64, u8) {
         (steps / (per_turn >> 13) % (1 << 25), 25)
     }
 }

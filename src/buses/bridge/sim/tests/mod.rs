@@ -9,7 +9,7 @@ use host::SsiTestEncoder;
 pub(crate) use host::{BISS, Dial, Host, SSI};
 
 use crate::buses::bridge::protocol::*;
-use crate::buses::bridge::sim::{Adapter, keys};
+use crate::buses::bridge::sim::{Adapter, all_setting_names};
 use crate::sim::ByteDevice;
 use crate::sim::setting::query_pairs;
 use crate::units::Moment;
@@ -18,7 +18,7 @@ use crate::units::Moment;
 fn the_adapter_identifies_itself() {
     let mut host = Host::with("");
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
-    assert_eq!(hello.capabilities.word(), 0b1111);
+    assert_eq!(hello.capabilities.to_bits(), 0b1111);
     assert_eq!((hello.max_clock_hz, hello.max_sample_hz), (10_000_000, 1_000_000));
     host.refuses(Request::Supply { on: true, millivolt: 8000 }, ErrorCode::NOT_SUPPORTED);
     host.refuses(Request::UartConfig { baud: 9600, parity: 2, turnaround_us: 0 }, ErrorCode::NOT_SUPPORTED);
@@ -109,7 +109,7 @@ fn analog_samples_match_the_virtual_encoder() {
     let mut continuity = Continuity::at_start();
     let mut samples = Vec::new();
     for data in packets {
-        assert_eq!(continuity.follow(&data), PacketGap::None);
+        assert_eq!(continuity.gap_before(&data), PacketGap::None);
         let StreamData::Analog(data) = data else { panic!("{data:?}") };
         samples.extend(data.samples);
     }
@@ -153,7 +153,7 @@ fn without_a_biss_encoder_the_adapter_has_a_shaft() {
     host.receive(host.now + Duration::from_millis(100));
     assert_eq!(word(&mut host).1, still);
     assert_eq!(host.adapter.motor().rpm(), 0.0);
-    assert!(keys(&[&SsiTestEncoder]).contains(&"rpm"));
+    assert!(all_setting_names(&[&SsiTestEncoder]).contains(&"rpm"));
     assert!(Adapter::from_pairs(&query_pairs("rpm=x"), &[&SsiTestEncoder]).is_err());
 }
 
@@ -186,7 +186,7 @@ fn all_encoders_share_one_shaft() {
 fn the_supply_can_be_switched() {
     let mut host = Host::with("supply=switched");
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
-    assert!(hello.capabilities.has(Capabilities::SUPPLY) && !hello.capabilities.has(Capabilities::SUPPLIED));
+    assert!(hello.capabilities.contains(Capabilities::SUPPLY) && !hello.capabilities.contains(Capabilities::SUPPLY_ON));
     host.ask(BISS);
     let status = |host: &mut Host| match host.ask(Request::BissRead) {
         Some(Message::Reply(Reply::BissRead { status, .. })) => status,
@@ -201,7 +201,7 @@ fn the_supply_can_be_switched() {
     assert_eq!(status(&mut host), BissStatus::OK);
     // Issue 22.16: another host sends HELLO, which does not change the supply and reports it.
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
-    assert!(hello.capabilities.has(Capabilities::SUPPLIED));
+    assert!(hello.capabilities.contains(Capabilities::SUPPLY_ON));
     assert_eq!(status(&mut host), BissStatus::OK);
     let off = Reply::Supply { on: false, millivolt: 0, milliampere: 0 };
     host.expect(Request::Supply { on: false, millivolt: 5000 }, off);
@@ -240,9 +240,9 @@ fn unfetched_samples_are_lost_and_reported() {
         (|data| matches!(data, StreamData::Analog(_)), 10_000),
     ] {
         let own: Vec<&StreamData> = packets.iter().filter(|data| is_own(data)).collect();
-        let samples: usize = own.iter().map(|data| data.extent().1).sum();
+        let samples: usize = own.iter().map(|data| data.sample_range().1).sum();
         assert!((rate * 9 / 10..=rate * 11 / 10).contains(&samples), "{samples}");
-        let lost: Vec<u16> = own.iter().map(|data| data.extent().2).filter(|lost| *lost > 0).collect();
+        let lost: Vec<u16> = own.iter().map(|data| data.sample_range().2).filter(|lost| *lost > 0).collect();
         assert!(lost.len() == 1 && usize::from(lost[0]) > 8 * rate.min(8_000), "{lost:?}");
     }
 }

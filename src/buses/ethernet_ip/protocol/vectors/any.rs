@@ -7,7 +7,7 @@ use super::{OWNER, SESSION, open};
 
 /// Runs every parser on arbitrary bytes.
 fn read_all(bytes: &[u8]) {
-    let _ = Frame::parse(bytes).map(|frame| frame.body().map(|body| body.emit()));
+    let _ = Frame::parse(bytes).map(|frame| frame.parse_body().map(|body| body.emit()));
     let _ = ItemList::parse(bytes).map(|items| items.emit());
     let _ = Request::parse(bytes).map(|request| request.emit());
     let _ = Reply::parse(bytes).map(|reply| reply.emit());
@@ -21,15 +21,15 @@ fn read_all(bytes: &[u8]) {
 }
 
 /// Returns valid packets from which invalid ones are derived.
-fn good() -> Vec<Vec<u8>> {
-    let frame = Frame::unconnected(SESSION, [1; 8], open().request().emit());
+fn valid_packets() -> Vec<Vec<u8>> {
+    let frame = Frame::unconnected_message(SESSION, [1; 8], open().request().emit());
     let packet = IoPacket { connection: 1, sequence: 2, count: 3, header: Some(RunIdleHeader::RUN), data: vec![0; 16] };
     vec![frame.emit(), frame.data.clone(), open().request().emit(), open().request().data, packet.emit()]
 }
 
 #[test]
 fn truncated_packets_are_refused() {
-    let [frame, _, _, forward, packet] = good().try_into().unwrap();
+    let [frame, _, _, forward, packet] = valid_packets().try_into().unwrap();
     (0..frame.len()).for_each(|end| assert!(Frame::parse(&frame[..end]).is_err(), "{end}"));
     (0..forward.len()).for_each(|end| assert!(ForwardOpen::parse(&forward[..end]).is_err(), "{end}"));
     (0..packet.len())
@@ -49,7 +49,7 @@ proptest! {
 
     #[test]
     fn damaged_bytes_never_panic(which in 0usize..5, at: prop::sample::Index, byte: u8, end: prop::sample::Index) {
-        let mut bytes = good().remove(which);
+        let mut bytes = valid_packets().remove(which);
         let length = bytes.len();
         bytes[at.index(length)] = byte;
         read_all(&bytes);
@@ -77,7 +77,7 @@ proptest! {
         code in 0u8..0x80, class: u16, instance: u16, status: u8, extended: Vec<u16>, data: Vec<u8>
     ) {
         let service = Service::new(code).unwrap();
-        let request = Request { service, path: EPath::instance(class, instance), data: data.clone() };
+        let request = Request { service, path: EPath::to_instance(class, instance), data: data.clone() };
         prop_assert_eq!(Request::parse(&request.emit()), Ok(request));
         let reply = Reply { service, status: GeneralStatus::new(status), extended, data };
         prop_assert_eq!(Reply::parse(&reply.emit()), Ok(reply));
@@ -98,7 +98,7 @@ proptest! {
             to_originator_interval_us: intervals[1],
             to_originator: NetworkParameters::from_word(parameters[1]),
             transport: Transport::from_byte(transport),
-            path: EPath::assemblies(104, 100, 101),
+            path: EPath::to_assemblies(104, 100, 101),
         };
         prop_assert_eq!(ForwardOpen::parse(&asked.request().data), Ok(asked.clone()));
         let _ = (asked.timeout.duration(), asked.to_target_timeout());

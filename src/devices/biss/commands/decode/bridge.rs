@@ -2,7 +2,7 @@
 
 use serde_json::Map;
 
-use super::{form, position};
+use super::{form_map, position};
 use crate::bits::{hex, hex_compact};
 use crate::buses::bridge::protocol::{
     AnalogData, BissData, BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet,
@@ -10,32 +10,32 @@ use crate::buses::bridge::protocol::{
 };
 use crate::cli::decode::FrameExplanation;
 
-pub(super) fn explain(bytes: &[u8]) -> Vec<FrameExplanation> {
+pub(super) fn explain_packet(bytes: &[u8]) -> Vec<FrameExplanation> {
     if bytes.iter().all(|byte| *byte == 0) {
         let why = "no bridge packet: only zeros, which end one".to_owned();
         return vec![FrameExplanation {
             shown: hex(bytes),
             compact: hex_compact(bytes),
             meaning: Err(why),
-            more: form("bridge"),
+            more: form_map("bridge"),
         }];
     }
     let packets = bytes.split(|byte| *byte == 0).filter(|stuffed| !stuffed.is_empty());
     packets
         .map(|stuffed| {
             let meaning = match Packet::parse(stuffed) {
-                Ok(packet) => meaning(&packet),
+                Ok(packet) => explain_message(&packet),
                 Err(PacketError::Crc { expected, got }) => {
                     Err(format!("CRC-16 of the bridge packet is {got:04X} where {expected:04X} was expected"))
                 }
                 Err(error) => Err(format!("no bridge packet: {error}")),
             };
-            FrameExplanation { shown: hex(stuffed), compact: hex_compact(stuffed), meaning, more: form("bridge") }
+            FrameExplanation { shown: hex(stuffed), compact: hex_compact(stuffed), meaning, more: form_map("bridge") }
         })
         .collect()
 }
 
-fn meaning(packet: &Packet) -> Result<Vec<String>, String> {
+fn explain_message(packet: &Packet) -> Result<Vec<String>, String> {
     let unknown = |error: BodyError| format!("a bridge packet that this program does not know: {error}");
     let seq = packet.seq;
     if packet.op & Operation::REPLY_BIT == 0 {
@@ -47,14 +47,14 @@ fn meaning(packet: &Packet) -> Result<Vec<String>, String> {
     match Message::parse(packet) {
         Ok(Message::Reply(reply)) => {
             let mut lines = vec![format!("reply to request {seq}: {}", name(reply.operation()))];
-            lines.extend(answered(&reply)?);
+            lines.extend(explain_reply(&reply)?);
             Ok(lines)
         }
         Ok(Message::Error { op, code, text }) => {
             let of = Operation::from_byte(op).map_or_else(|| format!("operation 0x{op:02X}"), |op| name(op).to_owned());
-            Ok(vec![format!("refusal of request {seq}: {of}"), format!("{}: {text}", refusal(code))])
+            Ok(vec![format!("refusal of request {seq}: {of}"), format!("{}: {text}", explain_rejection(code))])
         }
-        Ok(Message::Data(data)) => streamed(seq, &data),
+        Ok(Message::Data(data)) => explain_stream(seq, &data),
         Err(error) => Err(unknown(error)),
     }
 }
@@ -109,7 +109,7 @@ fn request_text(request: &Request) -> Option<String> {
     })
 }
 
-fn answered(reply: &Reply) -> Result<Vec<String>, String> {
+fn explain_reply(reply: &Reply) -> Result<Vec<String>, String> {
     let switch = |on: bool| if on { "on" } else { "off" };
     Ok(match reply {
         Reply::Hello(hello) => hello_reply_lines(hello),
@@ -117,16 +117,16 @@ fn answered(reply: &Reply) -> Result<Vec<String>, String> {
             vec![format!("{}, {millivolt} mV, {milliampere} mA", switch(*on))]
         }
         Reply::SsiConfig { clock_hz } | Reply::BissConfig { clock_hz } => vec![format!("{clock_hz} Hz")],
-        Reply::SsiRead { t_us, raw } => vec![format!("{:.6} s: 0x{raw:X}", seconds(*t_us))],
+        Reply::SsiRead { t_us, raw } => vec![format!("{:.6} s: 0x{raw:X}", to_seconds(*t_us))],
         Reply::SsiStream { period_us } | Reply::BissStream { period_us } => vec![format!("every {period_us} µs")],
-        Reply::BissRead { t_us, status, raw } => frame(seconds(*t_us), *status, *raw)?,
+        Reply::BissRead { t_us, status, raw } => explain_frame(to_seconds(*t_us), *status, *raw)?,
         Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value } => vec![format!("value 0x{value:02X}")],
         Reply::AnalogConfig { sample_hz, full_scale_microvolt, bits } => {
             vec![format!("{sample_hz} samples a second, full scale {full_scale_microvolt} µV, {bits} bits")]
         }
         Reply::AnalogStream { on } => vec![switch(*on).to_owned()],
         Reply::UartConfig { baud } => vec![format!("{baud} bit/s")],
-        Reply::UartTransfer { t_us, rx } => vec![format!("{:.6} s: received {}", seconds(*t_us), hex(rx))],
+        Reply::UartTransfer { t_us, rx } => vec![format!("{:.6} s: received {}", to_seconds(*t_us), hex(rx))],
     })
 }
 
@@ -140,7 +140,7 @@ fn hello_reply_lines(hello: &Hello) -> Vec<String> {
         (Capabilities::SUPPLY, "switched supply"),
     ];
     let can: Vec<&str> =
-        can.into_iter().filter(|(one, _)| hello.capabilities.has(*one)).map(|(_, name)| name).collect();
+        can.into_iter().filter(|(one, _)| hello.capabilities.contains(*one)).map(|(_, name)| name).collect();
     vec![
         format!("{}, serial number {}, firmware {}", hello.name, hello.serial, hello.firmware),
         format!("can: {}", can.join(", ")),
@@ -149,10 +149,10 @@ fn hello_reply_lines(hello: &Hello) -> Vec<String> {
 }
 
 /// Describes a frame that an adapter has read. The CRC is checked by the host.
-fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
+fn explain_frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {
-            let lines = position::meaning(raw, &mut Map::new())
+            let lines = position::explain_fields(raw, &mut Map::new())
                 .map_err(|why| format!("at {t_s:.6} s, frame 0x{raw:011X}: {why}"))?;
             return Ok(std::iter::once(format!("{t_s:.6} s: 0x{raw:011X}")).chain(lines).collect());
         }
@@ -164,13 +164,14 @@ fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> 
     Ok(vec![format!("{t_s:.6} s: {bad} (status {})", status.byte())])
 }
 
-fn streamed(seq: u8, data: &StreamData) -> Result<Vec<String>, String> {
-    let (first, count, lost) = data.extent();
+fn explain_stream(seq: u8, data: &StreamData) -> Result<Vec<String>, String> {
+    let (first, count, lost) = data.sample_range();
     let head = |what: &str, t0_us: u64| {
         let lost = if lost > 0 { format!(", {lost} lost before them") } else { String::new() };
-        format!("stream packet {seq}: {count} {what} from number {first} on, from {:.6} s{lost}", seconds(t0_us))
+        format!("stream packet {seq}: {count} {what} from number {first} on, from {:.6} s{lost}", to_seconds(t0_us))
     };
-    let time = |t0_us: u64, period_us: u32, at: u64| seconds(t0_us.saturating_add(at.saturating_mul(period_us.into())));
+    let time =
+        |t0_us: u64, period_us: u32, at: u64| to_seconds(t0_us.saturating_add(at.saturating_mul(period_us.into())));
     Ok(match data {
         StreamData::Ssi(SsiData { t0_us, period_us, values, .. }) => {
             let words =
@@ -180,7 +181,7 @@ fn streamed(seq: u8, data: &StreamData) -> Result<Vec<String>, String> {
         StreamData::Biss(BissData { t0_us, period_us, values, .. }) => {
             let mut lines = vec![head("BiSS frames", *t0_us)];
             for ((status, raw), at) in values.iter().zip(0..) {
-                lines.extend(frame(time(*t0_us, *period_us, at), *status, *raw)?);
+                lines.extend(explain_frame(time(*t0_us, *period_us, at), *status, *raw)?);
             }
             lines
         }
@@ -191,7 +192,7 @@ fn streamed(seq: u8, data: &StreamData) -> Result<Vec<String>, String> {
     })
 }
 
-fn refusal(code: ErrorCode) -> String {
+fn explain_rejection(code: ErrorCode) -> String {
     match code {
         ErrorCode::NOT_SUPPORTED => "not supported".to_owned(),
         ErrorCode::BAD_ARGUMENT => "bad argument".to_owned(),
@@ -203,6 +204,6 @@ fn refusal(code: ErrorCode) -> String {
     }
 }
 
-fn seconds(microseconds: u64) -> f64 {
+fn to_seconds(microseconds: u64) -> f64 {
     microseconds as f64 / 1e6
 }

@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::form;
+use super::form_map;
 use crate::bits::{hex, hex_compact};
 use crate::buses::ubicom::protocol::PositionWord;
 use crate::cli::decode::FrameExplanation;
@@ -19,42 +19,42 @@ pub(super) const WORD_DIGITS: usize = 9;
 pub(super) fn decode_bytes(bytes: &[u8]) -> Option<FrameExplanation> {
     let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
     let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;
-    fits.then(|| FrameExplanation { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
+    fits.then(|| FrameExplanation { compact: hex_compact(bytes), ..explain_frame(raw, hex(bytes)) })
 }
 
 /// Decodes a frame. `shown` is its original notation.
-pub(super) fn explain(raw: u64, shown: String) -> FrameExplanation {
-    let mut more = form("position frame");
-    let meaning = meaning(raw, &mut more);
+pub(super) fn explain_frame(raw: u64, shown: String) -> FrameExplanation {
+    let mut more = form_map("position frame");
+    let meaning = explain_fields(raw, &mut more);
     FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
 pub(super) fn explain_position_word(raw: u64, shown: String) -> FrameExplanation {
     let layout = Layout::default();
-    let mut more = form("position word");
+    let mut more = form_map("position word");
     let bits = layout.multiturn_bits() + layout.singleturn_bits();
     let meaning = match PositionWord::new(raw).and_then(|word| layout.decode_position(word)) {
-        Some(reading) => Ok(vec![place(&layout, &reading, raw, &mut more)]),
+        Some(reading) => Ok(vec![describe_position(&layout, &reading, raw, &mut more)]),
         None => Err(format!("the position word of this encoder has {bits} bits, this one more")),
     };
     FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
 /// Describes turns, steps and angle, and adds them to the JSON.
-fn place(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
-    let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees(reading));
+fn describe_position(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
+    let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees_of(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
     more.extend(pairs.map(|(key, value)| (key.to_owned(), value)));
     format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
 }
 
 /// Returns one line per field, or the reason why the bits are not a valid frame.
-pub(super) fn meaning(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
+pub(super) fn explain_fields(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
     let layout = Layout::default();
     match layout.parse(raw) {
         Ok(reading) => {
-            let word = layout.steps(&reading);
-            let mut lines = vec![place(&layout, &reading, word, more)];
+            let word = layout.steps_of(&reading);
+            let mut lines = vec![describe_position(&layout, &reading, word, more)];
             let flags = [("error", reading.error), ("warning", reading.warning)];
             more.extend(flags.map(|(key, value)| (key.to_owned(), json!(value))));
             lines.push(match (reading.error, reading.warning) {

@@ -1,25 +1,30 @@
 //! Sequences of UBICOM frames. Register numbers are interpreted low byte first.
 
-use super::form;
+use super::form_map;
 use crate::bits::{ByteOrder, hex, hex_compact};
-use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, Written};
+use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, WriteReply};
 use crate::cli::decode::FrameExplanation;
 use crate::devices::biss::commands::words;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
 /// Decodes frames. `requested` is the request before the frames. It is replaced by the last request among them.
-pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
+pub(super) fn explain_frames(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let mut explained = Vec::new();
     let mut request = *requested;
     let mut rest = bytes;
     while !rest.is_empty() {
-        let (own, more) = rest.split_at_checked(length(rest)).unwrap_or((rest, &[]));
+        let (own, more) = rest.split_at_checked(first_frame_length(rest)).unwrap_or((rest, &[]));
         rest = more;
         let meaning = match Frame::parse(own) {
-            Ok(frame) => meaning(&frame, &mut request),
+            Ok(frame) => explain_payload(&frame, &mut request),
             Err(error) => Err(format!("no UBICOM frame: {error}")),
         };
-        explained.push(FrameExplanation { shown: hex(own), compact: hex_compact(own), meaning, more: form("UBICOM") });
+        explained.push(FrameExplanation {
+            shown: hex(own),
+            compact: hex_compact(own),
+            meaning,
+            more: form_map("UBICOM"),
+        });
     }
     if explained.iter().all(|one| one.meaning.is_ok()) {
         *requested = request;
@@ -28,14 +33,14 @@ pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Fram
 }
 
 /// Returns the length of the first frame in the bytes, according to its header.
-fn length(bytes: &[u8]) -> usize {
+fn first_frame_length(bytes: &[u8]) -> usize {
     match bytes {
         [_, _, _, low, high, ..] => usize::from(u16::from_le_bytes([*low, *high])) + Frame::OVERHEAD,
         _ => bytes.len(),
     }
 }
 
-fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<String>, String> {
+fn explain_payload(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<String>, String> {
     let mut lines = Vec::new();
     if frame.address != NODE {
         lines.push(format!("of node 0x{:02X}, which no encoder has", frame.address));
@@ -61,9 +66,9 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
             Some(Request::Read { register }) => value_description(register, value),
             _ => format!("value 0x{value:02X}"),
         },
-        Reply::Written(Written::Acknowledged) => "written".to_owned(),
-        Reply::Written(Written::Refused) => "refused: not written".to_owned(),
-        Reply::Written(Written::Unknown(byte)) => format!("neither acknowledged nor refused: 0x{byte:02X}"),
+        Reply::Written(WriteReply::Acknowledged) => "written".to_owned(),
+        Reply::Written(WriteReply::Refused) => "refused: not written".to_owned(),
+        Reply::Written(WriteReply::Unknown(byte)) => format!("neither acknowledged nor refused: 0x{byte:02X}"),
         Reply::Position(word) => position_text(word),
     });
     *request = None;
@@ -92,10 +97,10 @@ fn value_description(register: u16, value: u8) -> String {
 fn position_text(word: PositionWord) -> String {
     let layout = Layout::default();
     match layout.decode_position(word) {
-        None => format!("position 0x{:X}, which has more than 33 bits", word.word()),
+        None => format!("position 0x{:X}, which has more than 33 bits", word.to_u64()),
         Some(reading) => {
             let (turns, steps) = (reading.multiturn, reading.singleturn);
-            format!("position: turn {turns}, step {steps} of 131072, {:.6}°", layout.degrees(&reading))
+            format!("position: turn {turns}, step {steps} of 131072, {:.6}°", layout.degrees_of(&reading))
         }
     }
 }

@@ -4,10 +4,10 @@
 
 use std::time::Duration;
 
-use super::{Attempt, ExchangeError, Master, WriteReaction};
+use super::{AttemptResult, ExchangeError, Master, WriteReaction};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, BISS_TIME_OUT_US, Failure, TimedReply};
 use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
-use crate::devices::biss::procedures::error::{Damage, Error, RequestedItem};
+use crate::devices::biss::procedures::error::{Error, ReplyDamage, RequestedItem};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::station::Bus;
 use crate::devices::biss::protocol::{FrameError, RegisterAddress};
@@ -31,22 +31,22 @@ pub(in super::super) enum NoFrame {
 }
 
 impl<'a> Master<'a> {
-    pub(super) fn adapter(&mut self) -> Adapter<'_, 'a> {
+    pub(super) fn adapter_host(&mut self) -> Adapter<'_, 'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
     /// Prepares the bus with the known frame widths. See [`ensure_bus_ready_for`](Self::ensure_bus_ready_for).
     pub(super) fn ensure_bus_ready(&mut self) -> Result<(), Error> {
-        let layout = self.station.frame();
+        let layout = self.station.frame_layout();
         self.ensure_bus_ready_for(layout.data_bits(), layout.crc_bits())
     }
 
     /// Identifies the adapter, switches the encoder's supply on if requested, and configures the bus.
     pub(super) fn ensure_bus_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         self.stop_frame_stream()?;
-        self.adapter().hello()?;
-        let Some(hello) = self.station.adapter.hello() else { return Err(AdapterError::Silent.into()) };
-        if !hello.capabilities.has(Capabilities::BISS) {
+        self.adapter_host().read_identity()?;
+        let Some(hello) = self.station.adapter.identity() else { return Err(AdapterError::Silent.into()) };
+        if !hello.capabilities.contains(Capabilities::BISS) {
             return Err(AdapterError::NoBiss { name: hello.name.clone() }.into());
         }
         let fastest = hello.max_clock_hz;
@@ -63,9 +63,9 @@ impl<'a> Master<'a> {
         }
         let timeout_us = BISS_TIME_OUT_US;
         let request = Request::BissConfig { clock_hz: bus.clock_hz, data_bits, crc_bits, timeout_us };
-        let answered = self.adapter().ask(&request)?;
+        let answered = self.adapter_host().send_request(&request)?;
         let Reply::BissConfig { clock_hz } = answered.reply else {
-            return Err(AdapterError::other(request.operation(), &answered.reply).into());
+            return Err(AdapterError::unexpected_reply(request.operation(), &answered.reply).into());
         };
         (self.station.bus, self.station.actual_clock_hz) = (Some(bus), Some(clock_hz));
         self.station.good_frames = false;
@@ -75,10 +75,12 @@ impl<'a> Master<'a> {
     /// Selects the bank of a register, unless it is known to be selected.
     pub(super) fn select_bank(&mut self, address: RegisterAddress) -> Result<(), Error> {
         let Some(bank) = address.bank() else { return Ok(()) };
-        self.ask(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_bank_once(address))
+        self.request_with_retries(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| {
+            master.select_bank_once(address)
+        })
     }
 
-    fn select_bank_once(&mut self, address: RegisterAddress) -> Attempt<()> {
+    fn select_bank_once(&mut self, address: RegisterAddress) -> AttemptResult<()> {
         let Some(bank) = address.bank() else { return Ok(Ok(())) };
         let now = self.now();
         let fresh = |(own, at): (u8, Moment)| own == bank && now.duration_since(at) < BANK_TRUST;
@@ -92,15 +94,15 @@ impl<'a> Master<'a> {
         })
     }
 
-    pub(super) fn read_bus_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+    pub(super) fn read_bus_once(&mut self, address: RegisterAddress) -> AttemptResult<u8> {
         if let Err(trouble) = self.select_bank_once(address)? {
             return Ok(Err(trouble));
         }
         let request = Request::BissRegisterRead { slave: SLAVE, address: address.address() };
-        let answered = self.adapter().ask(&request).map(Some);
+        let answered = self.adapter_host().send_request(&request).map(Some);
         let value = match self.handle_register_reply(answered)? {
             Ok(Reply::BissRegisterRead { value }) => value,
-            Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
+            Ok(reply) => return Err(AdapterError::unexpected_reply(request.operation(), &reply).into()),
             Err(trouble) => return Ok(Err(trouble)),
         };
         if address == RegisterAddress::BANK_SELECT {
@@ -109,7 +111,7 @@ impl<'a> Master<'a> {
         Ok(Ok(value))
     }
 
-    pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
+    pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<WriteReaction> {
         Ok(match self.write_register_once(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
             // A command register may be cleared as soon as the command is executed (`U`). The status shows the result.
@@ -120,12 +122,12 @@ impl<'a> Master<'a> {
     }
 
     /// Writes a register without retries and returns the value that it reads back.
-    fn write_register_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
+    fn write_register_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
-        let answered = self.adapter().request_once(&request);
+        let answered = self.adapter_host().request_once(&request);
         let reads = match self.handle_register_reply(answered)? {
             Ok(Reply::BissRegisterWrite { value }) => value,
-            Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
+            Ok(reply) => return Err(AdapterError::unexpected_reply(request.operation(), &reply).into()),
             Err(trouble) => return Ok(Err(trouble)),
         };
         if address == RegisterAddress::BANK_SELECT {
@@ -135,7 +137,7 @@ impl<'a> Master<'a> {
     }
 
     /// Evaluates the reply to a register request and updates the cached bank.
-    fn handle_register_reply(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
+    fn handle_register_reply(&mut self, answered: Result<Option<TimedReply>, Failure>) -> AttemptResult<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
                 let now = self.now();
@@ -147,7 +149,7 @@ impl<'a> Master<'a> {
                 ExchangeError::Silence { echo_heard: false }
             }
             Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::WRONG_ANSWER, .. })) => {
-                ExchangeError::Damage(Damage::ControlFrame)
+                ExchangeError::Damage(ReplyDamage::ControlFrame)
             }
             Err(failure) => {
                 self.handle_possible_reset(&failure);
@@ -168,8 +170,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    pub(super) fn read_bus_position_once(&mut self) -> Attempt<PositionReading> {
-        let layout = self.station.frame();
+    pub(super) fn read_bus_position_once(&mut self) -> AttemptResult<PositionReading> {
+        let layout = self.station.frame_layout();
         let (raw, at) = match self.read_frame_once()? {
             Ok(frame) => frame,
             Err(trouble) => return Ok(Err(trouble)),
@@ -185,16 +187,16 @@ impl<'a> Master<'a> {
             Err(FrameError::StuckHigh) => Err(ExchangeError::NoFrame(NoFrame::StuckHigh)),
             Err(cause) => {
                 self.station.crc_errors = self.station.crc_errors.saturating_add(1);
-                Err(ExchangeError::Damage(Damage::Frame(cause)))
+                Err(ExchangeError::Damage(ReplyDamage::Frame(cause)))
             }
         })
     }
 
-    pub(super) fn read_frame_once(&mut self) -> Attempt<(u64, Moment)> {
-        let answered = self.adapter().ask(&Request::BissRead);
+    pub(super) fn read_frame_once(&mut self) -> AttemptResult<(u64, Moment)> {
+        let answered = self.adapter_host().send_request(&Request::BissRead);
         let answered = answered.inspect_err(|failure| self.handle_possible_reset(failure))?;
         let Reply::BissRead { t_us, status, raw } = answered.reply else {
-            return Err(AdapterError::other(Request::BissRead.operation(), &answered.reply).into());
+            return Err(AdapterError::unexpected_reply(Request::BissRead.operation(), &answered.reply).into());
         };
         let no_frame = match status {
             BissStatus::OK => {
@@ -219,11 +221,11 @@ impl<'a> Master<'a> {
         for _ in 0..WRONG_FRAMES {
             match self.read_bus_position_once()? {
                 Ok(reading) => return Ok(reading),
-                Err(ExchangeError::Damage(Damage::Frame(_))) => {}
+                Err(ExchangeError::Damage(ReplyDamage::Frame(_))) => {}
                 Err(_) => return Err(failed),
             }
         }
-        let layout = self.station.frame();
+        let layout = self.station.frame_layout();
         Err(Error::WrongWidths {
             frames: self.station.take_crc_errors(),
             data_bits: layout.data_bits(),
@@ -232,7 +234,7 @@ impl<'a> Master<'a> {
     }
 
     /// Reads a frame after a register gave no reply. The result shows whether the line itself is at fault.
-    pub(super) fn diagnose(&mut self, failed: Error) -> Error {
+    pub(super) fn diagnose_line(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {
             Ok(Err(ExchangeError::NoFrame(cause))) => self.missing_frame_error(cause, tries),
@@ -241,7 +243,8 @@ impl<'a> Master<'a> {
     }
 
     pub(super) fn missing_frame_error(&self, cause: NoFrame, tries: u32) -> Error {
-        let can_switch = self.station.adapter.hello().is_some_and(|hello| hello.capabilities.has(Capabilities::SUPPLY));
+        let can_switch =
+            self.station.adapter.identity().is_some_and(|hello| hello.capabilities.contains(Capabilities::SUPPLY));
         match cause {
             NoFrame::NoAcknowledge => {
                 Error::NoAcknowledge { tries, supply_off: can_switch && self.station.supply.is_none() }

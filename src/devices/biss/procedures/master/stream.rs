@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use super::Master;
 use crate::buses::bridge::procedures::Adapter;
-use crate::buses::bridge::procedures::flow::{SampleStream, Streamed};
+use crate::buses::bridge::procedures::flow::{SampleStream, StreamKind};
 use crate::buses::bridge::protocol::StreamData;
-use crate::devices::biss::procedures::frames::{ConsecutiveFrames, frames};
+use crate::devices::biss::procedures::frames::{ConsecutiveFrames, parse_frames};
 use crate::devices::biss::procedures::station::Transport;
 use crate::devices::biss::procedures::{Error, Station};
 
 /// Interval at which cancellation is checked.
-const SLICE: Duration = Duration::from_millis(20);
+const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 impl Master<'_> {
     /// Returns the next frames of a stream, and starts the stream if necessary. The interval is `period_us`
@@ -23,19 +23,19 @@ impl Master<'_> {
     /// # Errors
     /// Starting a stream returns the same errors as [`position`](Self::position). Later, an error means that the
     /// adapter failed or the job was cancelled. The stream continues after a cancellation.
-    pub fn frames(&mut self, period_us: u32) -> Result<Option<ConsecutiveFrames>, Error> {
+    pub fn next_frames(&mut self, period_us: u32) -> Result<Option<ConsecutiveFrames>, Error> {
         if self.station.transport != Transport::Adapter {
             return Ok(None);
         }
-        let streamed = Streamed::Biss { period_us };
-        if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
+        let streamed = StreamKind::Biss { period_us };
+        if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {
             // This also checks the wiring and the widths.
             self.position()?;
             let after = self.station.streamed_until;
-            self.station.flow = Some(SampleStream::begin(&mut self.adapter(), streamed, after)?);
+            self.station.flow = Some(SampleStream::start(&mut self.adapter_host(), streamed, after)?);
         }
         loop {
-            let until = self.now() + SLICE;
+            let until = self.now() + CANCEL_CHECK_INTERVAL;
             let Station { line: state, adapter, flow, .. } = &mut *self.station;
             let Some(flow) = flow else { return Ok(None) };
             let mut host = Adapter { line: &mut self.line, state, adapter };
@@ -46,9 +46,9 @@ impl Master<'_> {
             if let Some(portion) = portion
                 && let StreamData::Biss(data) = &portion.data
             {
-                let layout = Arc::new(self.station.frame());
+                let layout = Arc::new(self.station.frame_layout());
                 let clock_hz = self.station.actual_clock_hz.unwrap_or(self.station.clock_hz);
-                let frames = frames(&layout, data);
+                let frames = parse_frames(&layout, data);
                 let layout = (layout, self.station.is_split_known());
                 return Ok(Some(ConsecutiveFrames::new(&portion, frames, layout, clock_hz, period_us)));
             }
@@ -62,7 +62,7 @@ impl Master<'_> {
     pub fn stop_frame_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
-        match SampleStream::ended(self.run_uncancellable(|master| flow.end(&mut master.adapter()))) {
+        match SampleStream::is_stopped(self.run_uncancellable(|master| flow.stop(&mut master.adapter_host()))) {
             Ok(true) => Ok(()),
             Ok(false) => {
                 self.station.forget_settings();

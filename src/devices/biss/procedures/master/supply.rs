@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::DeviceMode;
 
 /// Time allowed for a store that a register write may have started. No status shows the end of such a store, and its
 /// duration is not published (`U`).
-const SETTLES: Duration = Duration::from_secs(1);
+const STORE_TIME: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
     pub(super) fn switch_on(&mut self) -> Result<(), Error> {
@@ -18,7 +18,7 @@ impl Master<'_> {
             let has_power = self.has_power();
             self.station.adapter.set_supplied_at_start(has_power);
         }
-        let measured = self.adapter().supply(Supply::voltage(millivolt))?;
+        let measured = self.adapter_host().switch_supply_on(Supply::with_voltage(millivolt))?;
         self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
         // Registers can be read 500 ms after power-up (data sheet, 02:0Eh).
         self.wait(Supply::POWER_UP)
@@ -26,7 +26,7 @@ impl Master<'_> {
 
     /// Returns whether the encoder has power from any supply. An encoder that sends a frame has power.
     fn has_power(&mut self) -> bool {
-        let bits = self.station.frame().bits();
+        let bits = self.station.frame_layout().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));
         matches!(self.read_frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
     }
@@ -36,7 +36,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Returns an error if the adapter fails.
-    pub fn leave_supply(&mut self) -> Result<(), Error> {
+    pub fn switch_off_after_session(&mut self) -> Result<(), Error> {
         if self.station.transport != Transport::Adapter || !self.station.adapter.must_switch_supply_off() {
             return Ok(());
         }
@@ -46,7 +46,7 @@ impl Master<'_> {
                 tracing::warn!("the encoder's supply stays on: it may be storing, calibrating or restarting");
                 return Ok(());
             }
-            Ok(master.adapter().leave_supply()?)
+            Ok(master.adapter_host().switch_off_after_session()?)
         })
     }
 
@@ -59,7 +59,7 @@ impl Master<'_> {
         // earlier.
         let Some(written_at) = self.station.written_at else { return Ok(!self.has_power()) };
         let since = self.now().duration_since(written_at);
-        self.wait(SETTLES.saturating_sub(since))?;
+        self.wait(STORE_TIME.saturating_sub(since))?;
         let Some(lock) = self.station.description.as_ref().and_then(|own| own.lock()) else { return Ok(false) };
         // An encoder that does not reply is calibrating or restarting.
         Ok(self.read(lock.mode_at).map(DeviceMode::new) != Ok(DeviceMode::OPERATION))

@@ -4,12 +4,12 @@
 
 use std::time::Duration;
 
-use super::{Attempt, ExchangeError, Master, WriteReaction};
+use super::{AttemptResult, ExchangeError, Master, WriteReaction};
 use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
-    BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
+    BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, WriteReply, character_bits,
 };
-use crate::devices::biss::procedures::error::{Damage, RequestedItem, requested_register};
+use crate::devices::biss::procedures::error::{ReplyDamage, RequestedItem, requested_register};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
@@ -33,21 +33,21 @@ struct ReceivedBytes {
     raw: Vec<u8>,
     bytes: usize,
     echo_heard: bool,
-    damage: Option<Damage>,
+    damage: Option<ReplyDamage>,
 }
 
 impl Master<'_> {
-    pub(super) fn read_pin_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+    pub(super) fn read_pin_once(&mut self, address: RegisterAddress) -> AttemptResult<u8> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
-        self.read_register_once(address.global(), order)
+        self.read_register_once(address.global_number(), order)
     }
 
     /// Sends a request that reveals the byte order of register numbers.
-    pub(super) fn probe_byte_order_once(&mut self) -> Attempt<u8> {
+    pub(super) fn probe_byte_order_once(&mut self) -> AttemptResult<u8> {
         self.read_register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }
 
-    fn read_register_once(&mut self, register: u16, order: ByteOrder) -> Attempt<u8> {
+    fn read_register_once(&mut self, register: u16, order: ByteOrder) -> AttemptResult<u8> {
         Ok(match self.exchange(Request::Read { register }, order)? {
             Ok(TimedReply { reply: Reply::Value(value), .. }) => Ok(value),
             Ok(TimedReply { reply, .. }) => {
@@ -57,11 +57,11 @@ impl Master<'_> {
         })
     }
 
-    pub(super) fn write_pin_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
+    pub(super) fn write_pin_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<WriteReaction> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
-        Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
-            Ok(TimedReply { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(WriteReaction::Yes),
-            Ok(TimedReply { reply: Reply::Written(Written::Refused), .. }) => Ok(WriteReaction::No(None)),
+        Ok(match self.exchange(Request::Write { register: address.global_number(), value }, order)? {
+            Ok(TimedReply { reply: Reply::Written(WriteReply::Acknowledged), .. }) => Ok(WriteReaction::Yes),
+            Ok(TimedReply { reply: Reply::Written(WriteReply::Refused), .. }) => Ok(WriteReaction::No(None)),
             Ok(TimedReply { reply, .. }) => {
                 return Err(Error::unexpected_reply(RequestedItem::Write(address, value), &reply));
             }
@@ -69,16 +69,16 @@ impl Master<'_> {
         })
     }
 
-    pub(super) fn read_pin_position_once(&mut self) -> Attempt<PositionReading> {
+    pub(super) fn read_pin_position_once(&mut self) -> AttemptResult<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(TimedReply { reply: Reply::Position(word), at }) => (word, at),
             Ok(TimedReply { reply, .. }) => return Err(Error::unexpected_reply(RequestedItem::Position, &reply)),
             Err(trouble) => return Ok(Err(trouble)),
         };
-        let layout = self.station.frame();
+        let layout = self.station.frame_layout();
         let Some(reading) = layout.decode_position(word) else {
             let (multiturn, singleturn) = (layout.multiturn_bits(), layout.singleturn_bits());
-            return Err(Error::TooWide { word: word.word(), multiturn, singleturn });
+            return Err(Error::TooWide { word: word.to_u64(), multiturn, singleturn });
         };
         let is_split_known = self.station.is_split_known();
         Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
@@ -93,7 +93,7 @@ impl Master<'_> {
         format.baud.duration_of_bits(character_bits(format) * count as u64)
     }
 
-    fn exchange(&mut self, request: Request, order: ByteOrder) -> Attempt<TimedReply> {
+    fn exchange(&mut self, request: Request, order: ByteOrder) -> AttemptResult<TimedReply> {
         self.line.begin_exchange(&mut self.station.line, BYTE_TIME_OUT)?;
         let frame = request.emit(order);
         let sent_at = self.now();
@@ -108,10 +108,15 @@ impl Master<'_> {
             echo_heard: false,
             damage: None,
         };
-        self.listen(request, received, deadline)
+        self.receive_reply(request, received, deadline)
     }
 
-    fn listen(&mut self, request: Request, mut received: ReceivedBytes, deadline: Moment) -> Attempt<TimedReply> {
+    fn receive_reply(
+        &mut self,
+        request: Request,
+        mut received: ReceivedBytes,
+        deadline: Moment,
+    ) -> AttemptResult<TimedReply> {
         let gap = BYTE_TIME_OUT + self.station.line.margin;
         let mut last_at = self.now();
         let mut portion = Vec::new();
@@ -122,7 +127,7 @@ impl Master<'_> {
             portion.clear();
             self.line.receive(until, &mut portion)?;
             if portion.is_empty() && !under_way {
-                return Ok(Err(self.give_up(received)));
+                return Ok(Err(self.finish_unanswered(received)));
             }
             if self.now() > deadline + NOISE {
                 return Err(Error::NeverSilent);
@@ -135,9 +140,9 @@ impl Master<'_> {
             received.receiver.push(&portion);
             let next = if portion.is_empty() { Receiver::handle_silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut received.receiver) {
-                if let Some(reply) = self.judge(request, &frame, &mut received) {
+                if let Some(reply) = self.match_reply(request, &frame, &mut received) {
                     let at = last_at - self.time_of_characters(frame.len());
-                    self.understood(&received, &frame, at);
+                    self.record_reply(&received, &frame, at);
                     self.line.show(at, MaskedBytes::clear(&frame));
                     return Ok(Ok(TimedReply { reply, at }));
                 }
@@ -145,7 +150,7 @@ impl Master<'_> {
         }
     }
 
-    fn judge(&self, request: Request, frame: &[u8], received: &mut ReceivedBytes) -> Option<Reply> {
+    fn match_reply(&self, request: Request, frame: &[u8], received: &mut ReceivedBytes) -> Option<Reply> {
         if frame == received.sent {
             received.echo_heard = true;
             return None;
@@ -154,19 +159,21 @@ impl Master<'_> {
         let parsed = Reply::parse(&Frame::parse(frame).ok()?, request.command());
         match parsed {
             // Bytes before the echo belong to the reply to an earlier request.
-            Ok(_) if self.station.line.echo == Echo::On && !received.echo_heard => received.damage = Some(Damage::Echo),
+            Ok(_) if self.station.line.echo == Echo::On && !received.echo_heard => {
+                received.damage = Some(ReplyDamage::Echo)
+            }
             Ok(reply) => return Some(reply),
-            Err(error) => received.damage = Some(Damage::Reply(error)),
+            Err(error) => received.damage = Some(ReplyDamage::Reply(error)),
         }
         None
     }
 
-    fn understood(&mut self, received: &ReceivedBytes, reply: &[u8], at: Moment) {
+    fn record_reply(&mut self, received: &ReceivedBytes, reply: &[u8], at: Moment) {
         let state = &mut self.station.line;
         state.mark_replied();
         state.record_answer_start(at);
         state.echo.store_heard(received.echo_heard);
-        if received.receiver.skipped() > 0 || received.damage.is_some() {
+        if received.receiver.skipped_count() > 0 || received.damage.is_some() {
             // The checksum of this reply is correct, but the line has damaged other bytes.
             state.damaged += 1;
             state.quality.damaged += 1;
@@ -177,7 +184,7 @@ impl Master<'_> {
         }
     }
 
-    fn give_up(&mut self, received: ReceivedBytes) -> ExchangeError {
+    fn finish_unanswered(&mut self, received: ReceivedBytes) -> ExchangeError {
         let broken = received.raw.strip_prefix(&*received.sent).unwrap_or(&received.raw);
         let echo = if received.echo_heard { received.sent.len() } else { 0 };
         let bytes = received.bytes.saturating_sub(echo);
@@ -185,7 +192,7 @@ impl Master<'_> {
         self.line.show(now, MaskedBytes::clear(broken));
         match received.damage {
             Some(damage) => ExchangeError::Damage(damage),
-            None if bytes > 0 => ExchangeError::Damage(Damage::NoFrame { bytes }),
+            None if bytes > 0 => ExchangeError::Damage(ReplyDamage::NoFrame { bytes }),
             None => ExchangeError::Silence { echo_heard: received.echo_heard },
         }
     }

@@ -3,30 +3,30 @@
 
 use std::time::Duration;
 
-use super::guide::{Guide, OperatorDecision, RunProgress};
-use super::{Failure, Motion, Outcome, ProcedureStep, Run, Task};
+use super::guide::{OperatorDecision, ProcedureContext, RunProgress};
+use super::{Failure, MotorRun, OperatorTask, Outcome, ProcedureStep, ShaftMotion};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{
     CalibrationCommand, CalibrationStatus, PositionFilter, Procedure, ProcedureKind, Role, Temperature,
 };
 
 /// Expected duration of a calibration run ("about 5 seconds", manual 6.4).
-const EXPECTED: Duration = Duration::from_secs(5);
+const EXPECTED_DURATION: Duration = Duration::from_secs(5);
 /// Time limit for a run.
-const LIMIT: Duration = Duration::from_secs(20);
+const MAX_DURATION: Duration = Duration::from_secs(20);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationReport {
     /// Temperature of the encoder before the calibration, if known.
     pub celsius: Option<i16>,
-    pub counterclockwise: Option<Motion>,
-    pub clockwise: Option<Motion>,
+    pub counterclockwise: Option<ShaftMotion>,
+    pub clockwise: Option<ShaftMotion>,
 }
 
-impl Guide<'_, '_> {
+impl ProcedureContext<'_, '_> {
     pub(super) fn calibrate(&mut self) -> Result<Outcome, Failure> {
-        let procedure = self.procedure(ProcedureKind::Calibration)?;
-        self.step(ProcedureStep::Conditions);
+        let procedure = self.find_procedure(ProcedureKind::Calibration)?;
+        self.begin_step(ProcedureStep::Conditions);
         if let Some(filter) = self
             .role_address(Role::Filter)
             .filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
@@ -38,17 +38,17 @@ impl Guide<'_, '_> {
             }
         }
         let celsius = match self.role_address(Role::Temperature) {
-            Some(temperature) => Some(Temperature::new(self.master.read(temperature)?).celsius()),
+            Some(temperature) => Some(Temperature::new(self.master.read(temperature)?).to_celsius()),
             None => None,
         };
-        let first = Run::CalibrationCounterclockwise;
-        let OperatorDecision::Go(counterclockwise) = self.attend(Task::Turn(first))? else {
+        let first = MotorRun::CalibrationCounterclockwise;
+        let OperatorDecision::Go(counterclockwise) = self.run_operator_task(OperatorTask::Turn(first))? else {
             return Ok(Outcome::Skipped { after: None });
         };
         self.enter(&procedure)?;
         self.run_calibration(first, &procedure)?;
-        let second = Run::CalibrationClockwise;
-        let OperatorDecision::Go(clockwise) = self.attend(Task::Turn(second))? else {
+        let second = MotorRun::CalibrationClockwise;
+        let OperatorDecision::Go(clockwise) = self.run_operator_task(OperatorTask::Turn(second))? else {
             return Ok(Outcome::Skipped { after: Some(first) });
         };
         self.run_calibration(second, &procedure)?;
@@ -56,8 +56,8 @@ impl Guide<'_, '_> {
     }
 
     /// Performs one calibration run. Cancellation does not interrupt the second run, because that would lose the table.
-    fn run_calibration(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
-        self.step(ProcedureStep::Run(run));
+    fn run_calibration(&mut self, run: MotorRun, procedure: &Procedure) -> Result<(), Failure> {
+        self.begin_step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
         let (command, before, done) = if run.is_clockwise() {
             let (before, done) = (CalibrationStatus::CounterclockwiseDone, CalibrationStatus::ClockwiseDone);
@@ -74,8 +74,8 @@ impl Guide<'_, '_> {
             active: CalibrationStatus::Running.byte(),
             done: done.byte(),
             every: Duration::from_millis(100),
-            expected: EXPECTED,
-            limit: LIMIT,
+            expected: EXPECTED_DURATION,
+            limit: MAX_DURATION,
         };
         let explain =
             |_: &mut Self, status| Ok(Failure::Calibration { run, status: CalibrationStatus::from_byte(status) });

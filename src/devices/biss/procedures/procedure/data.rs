@@ -3,31 +3,33 @@
 //!
 //! [`Master`]: crate::devices::biss::procedures::Master
 
-use super::guide::{Guide, OperatorDecision};
-use super::{Activity, Failure, Outcome, ProcedureStep, StepDetail, Task};
+use super::guide::{OperatorDecision, ProcedureContext};
+use super::{Activity, Failure, OperatorTask, Outcome, ProcedureStep, StepDetail};
 use crate::devices::biss::profile::RegisterChange;
 use crate::devices::biss::protocol::{Area, DataCommand, DataStatus, Procedure, ProcedureKind};
 
-impl Guide<'_, '_> {
+impl ProcedureContext<'_, '_> {
     pub(super) fn store_data(&mut self, area: &Area, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
-        let procedure = self.procedure(ProcedureKind::DataWrite)?;
+        let procedure = self.find_procedure(ProcedureKind::DataWrite)?;
         let open = area.open.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         // The motor must not run (manual 6.5).
-        let OperatorDecision::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
+        let OperatorDecision::Go(_) = self.run_operator_task(OperatorTask::Stand)? else {
+            return Ok(Outcome::Skipped { after: None });
+        };
         self.enter(&procedure)?;
-        self.step(ProcedureStep::Open);
+        self.begin_step(ProcedureStep::Open);
         self.await_status(&procedure, DataStatus::Closed.byte())?;
         self.command(&procedure, open)?;
         self.await_status(&procedure, DataStatus::Open.byte())?;
         self.set_activity(Activity::Entered);
-        self.step(ProcedureStep::Write);
+        self.begin_step(ProcedureStep::Write);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {
-            self.report(StepDetail::Count { done, total });
+            self.report_detail(StepDetail::Count { done, total });
             self.master.write(change.address, change.new)?;
         }
         self.await_status(&procedure, DataStatus::Open.byte())?;
-        self.step(ProcedureStep::Save);
+        self.begin_step(ProcedureStep::Save);
         self.save(&procedure, DataCommand::Save.byte())?;
         // After this point, the result of the store must be reported even after a cancellation.
         self.run_uncancellable(|guide| guide.save_written_data(&procedure, registers))
@@ -36,10 +38,10 @@ impl Guide<'_, '_> {
     fn save_written_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
         self.await_status(procedure, DataStatus::Closed.byte())?;
         self.lead_back()?;
-        self.step(ProcedureStep::ReadBack);
+        self.begin_step(ProcedureStep::ReadBack);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {
-            self.report(StepDetail::Count { done, total });
+            self.report_detail(StepDetail::Count { done, total });
             self.read_back(change.address, change.new)?;
         }
         Ok(Outcome::Stored { registers: total })

@@ -1,6 +1,6 @@
 //! Reasons why a procedure fails.
 
-use super::{Run, StartBlocker, Task};
+use super::{MotorRun, OperatorTask, StartBlocker};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{CalibrationStatus, DeviceMode, ProcedureKind, WiegandStatus};
 use crate::profile::OperationError;
@@ -11,10 +11,10 @@ pub enum Failure {
     #[error(transparent)]
     Device(#[from] Error),
     #[error("the calibration ended with {status}")]
-    Calibration { run: Run, status: CalibrationStatus },
+    Calibration { run: MotorRun, status: CalibrationStatus },
     #[error("the Wiegand test ended with {status}, error code 0x{code:02X}")]
     Wiegand {
-        run: Run,
+        run: MotorRun,
         status: WiegandStatus,
         /// Error code, whose meaning is not published.
         code: u8,
@@ -30,13 +30,13 @@ pub enum Failure {
     Status { kind: ProcedureKind, expected: u8, found: u8 },
     #[error("the run has not ended after {seconds} s")]
     TooLong {
-        run: Run,
+        run: MotorRun,
         /// Time waited, in seconds.
         seconds: u64,
     },
     /// The operator did not fulfil the task in time.
     #[error("the conditions are not met: {blockers:?}")]
-    NotReady { task: Task, blockers: Vec<StartBlocker> },
+    NotReady { task: OperatorTask, blockers: Vec<StartBlocker> },
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified { item: String, expected: String, got: String },

@@ -1,27 +1,27 @@
 //! Selection of a filter (manual 6.6), after which the encoder restarts.
 
-use super::guide::Guide;
+use super::guide::ProcedureContext;
 use super::{Activity, Failure, Outcome, ProcedureStep};
 use crate::devices::biss::protocol::{FilterCommand, FilterStatus, PositionFilter, ProcedureKind, Role};
 
-impl Guide<'_, '_> {
+impl ProcedureContext<'_, '_> {
     pub(super) fn select_filter(&mut self, to: PositionFilter) -> Result<Outcome, Failure> {
-        let procedure = self.procedure(ProcedureKind::FilterSelection)?;
+        let procedure = self.find_procedure(ProcedureKind::FilterSelection)?;
         let in_force = self.role_address(Role::Filter).ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         self.enter(&procedure)?;
-        self.step(ProcedureStep::Open);
+        self.begin_step(ProcedureStep::Open);
         self.await_status(&procedure, FilterStatus::Closed.byte())?;
         self.command(&procedure, FilterCommand::Open.byte())?;
         self.await_status(&procedure, FilterStatus::WaitForValue.byte())?;
         self.set_activity(Activity::Entered);
-        self.step(ProcedureStep::Write);
+        self.begin_step(ProcedureStep::Write);
         self.command(&procedure, to.byte())?;
         self.await_status(&procedure, FilterStatus::WaitForSave.byte())?;
-        self.step(ProcedureStep::Save);
+        self.begin_step(ProcedureStep::Save);
         self.save(&procedure, FilterCommand::Save.byte())?;
         self.run_uncancellable(|guide| {
-            guide.restart()?;
-            guide.step(ProcedureStep::ReadBack);
+            guide.wait_for_restart()?;
+            guide.begin_step(ProcedureStep::ReadBack);
             guide.read_back(in_force, to.byte())?;
             Ok(Outcome::FilterSelected(to))
         })

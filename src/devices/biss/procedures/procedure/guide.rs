@@ -5,11 +5,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::operator::Measured;
+use super::operator::ShaftReading;
 use super::speed_monitor::SpeedMonitor;
 use super::{
-    Activity, Answer, Failure, LeftState, Motion, Operator, OperatorPrompt, ProcedureProgress, ProcedureStep, Run,
-    StepDetail, Task,
+    Activity, Failure, LeftState, MotorRun, Operator, OperatorAnswer, OperatorPrompt, OperatorTask, ProcedureProgress,
+    ProcedureStep, ShaftMotion, StepDetail,
 };
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::protocol::{
@@ -19,28 +19,28 @@ use crate::devices::biss::protocol::{
 /// Time that the encoder needs for a restart, during which nothing is sent to it (data sheet, 02:0Eh).
 const RESTART: Duration = Duration::from_millis(500);
 /// Time limit for a restart.
-const RESTART_PATIENCE: Duration = Duration::from_secs(5);
+const RESTART_TIMEOUT: Duration = Duration::from_secs(5);
 /// Time limit for the silence of a calibrating encoder, which lasts about five seconds (manual 6.4).
-pub(super) const SILENCE: Duration = Duration::from_secs(10);
+pub(super) const SILENCE_LIMIT: Duration = Duration::from_secs(10);
 /// Interval at which a status register is polled.
-const GLANCE: Duration = Duration::from_millis(100);
+const STATUS_POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. At longer intervals, turns of an encoder
 /// without a multiturn would be missed.
 const SAMPLING: Duration = Duration::from_millis(10);
 /// Interval between questions to the operator.
-const ASKING: Duration = Duration::from_millis(200);
+const QUESTION_INTERVAL: Duration = Duration::from_millis(200);
 /// Duration of a motor speed measurement.
-const TURNING: Duration = Duration::from_secs(1);
-const STANDING: Duration = Duration::from_millis(250);
+const SPEED_MEASUREMENT_TIME: Duration = Duration::from_secs(1);
+const STANDSTILL_MEASUREMENT_TIME: Duration = Duration::from_millis(250);
 /// Time limit for the encoder to accept a device mode.
 const MODE: Duration = Duration::from_millis(500);
 /// Time limit for an expected status.
 const STATUS: Duration = Duration::from_secs(5);
 /// Duration of silence after which an encoder is considered to have started calibrating (`U`). A damaged reply causes a
 /// shorter silence.
-const BEGUN: Duration = Duration::from_secs(1);
+const START_SILENCE: Duration = Duration::from_secs(1);
 
-pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
+pub(in crate::devices::biss::procedures) struct ProcedureContext<'g, 'm> {
     pub(super) master: &'g mut Master<'m>,
     pub(super) description: Arc<Description>,
     operator: &'g mut dyn Operator,
@@ -52,7 +52,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
 }
 
 pub(super) struct RunProgress {
-    pub(super) run: Run,
+    pub(super) run: MotorRun,
     pub(super) command: u8,
     pub(super) was: u8,
     pub(super) before: u8,
@@ -65,11 +65,11 @@ pub(super) struct RunProgress {
 
 /// The operator's decision about a task, with the measurement at that time.
 pub(super) enum OperatorDecision {
-    Go(Option<Motion>),
+    Go(Option<ShaftMotion>),
     Skip,
 }
 
-impl<'g, 'm> Guide<'g, 'm> {
+impl<'g, 'm> ProcedureContext<'g, 'm> {
     pub(in crate::devices::biss::procedures) fn new(
         master: &'g mut Master<'m>,
         description: Arc<Description>,
@@ -77,45 +77,54 @@ impl<'g, 'm> Guide<'g, 'm> {
         tell: &'g mut dyn FnMut(ProcedureProgress),
     ) -> Self {
         let standing = LeftState::in_operation(false);
-        Guide { master, description, operator, tell, standing, op: 0, step: ProcedureStep::LeadBack, cycles: 0 }
+        ProcedureContext {
+            master,
+            description,
+            operator,
+            tell,
+            standing,
+            op: 0,
+            step: ProcedureStep::LeadBack,
+            cycles: 0,
+        }
     }
 
-    pub(in crate::devices::biss::procedures) fn master(&mut self) -> &mut Master<'m> {
+    pub(in crate::devices::biss::procedures) fn master_mut(&mut self) -> &mut Master<'m> {
         self.master
     }
 
     /// Records that the encoder was found in operation. `password` tells whether the password is set.
-    pub(in crate::devices::biss::procedures) fn found(&mut self, password: bool) {
+    pub(in crate::devices::biss::procedures) fn set_initial_state(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
 
-    pub(in crate::devices::biss::procedures) fn standing(&self) -> &LeftState {
+    pub(in crate::devices::biss::procedures) fn left_state(&self) -> &LeftState {
         &self.standing
     }
 
     /// Returns the number of persistent writes that were, or may have been, performed.
-    pub(in crate::devices::biss::procedures) fn cycles(&self) -> u64 {
+    pub(in crate::devices::biss::procedures) fn write_cycles(&self) -> u64 {
         self.cycles
     }
 
-    pub(in crate::devices::biss::procedures) fn at(&self) -> ProcedureStep {
+    pub(in crate::devices::biss::procedures) fn current_step(&self) -> ProcedureStep {
         self.step
     }
 
-    pub(in crate::devices::biss::procedures) fn begin(&mut self, op: usize) {
+    pub(in crate::devices::biss::procedures) fn begin_operation(&mut self, op: usize) {
         self.op = op;
     }
 
-    pub(super) fn step(&mut self, step: ProcedureStep) {
+    pub(super) fn begin_step(&mut self, step: ProcedureStep) {
         self.step = step;
-        self.report(StepDetail::Begins);
+        self.report_detail(StepDetail::Begins);
     }
 
-    pub(super) fn report(&mut self, detail: StepDetail) {
+    pub(super) fn report_detail(&mut self, detail: StepDetail) {
         (self.tell)(ProcedureProgress { op: self.op, step: self.step, detail });
     }
 
-    pub(super) fn procedure(&self, kind: ProcedureKind) -> Result<Procedure, Failure> {
+    pub(super) fn find_procedure(&self, kind: ProcedureKind) -> Result<Procedure, Failure> {
         self.description.procedure(kind).copied().ok_or(Failure::NotDescribed { kind })
     }
 
@@ -134,12 +143,13 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// Returns the encoder to operation and clears the password. Sends nothing if the encoder is already in operation.
     pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
-        self.step(ProcedureStep::LeadBack);
+        self.begin_step(ProcedureStep::LeadBack);
         let description = self.description.clone();
         let (master, standing) = (&mut *self.master, &mut self.standing);
         let ended = master.run_uncancellable(|master| {
             if matches!(standing.activity, Activity::Running(run) if run.is_calibration()) {
-                return master.with_reply_timeout(SILENCE, |master| lead_back(master, &description, lock, standing));
+                return master
+                    .with_reply_timeout(SILENCE_LIMIT, |master| lead_back(master, &description, lock, standing));
             }
             lead_back(master, &description, lock, standing)
         });
@@ -148,7 +158,7 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     pub(super) fn enter(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         let mode = DeviceMode::new(procedure.mode);
-        self.step(ProcedureStep::Enter(mode));
+        self.begin_step(ProcedureStep::Enter(mode));
         let Some(lock) = self.description.lock() else { return Err(Failure::NotDescribed { kind: procedure.kind }) };
         unlock(self.master, lock, &mut self.standing)?;
         set_mode(self.master, lock, mode, &mut self.standing)?;
@@ -161,7 +171,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             if self.master.now() >= end {
                 return Err(Failure::Mode { wanted: mode, found });
             }
-            self.master.wait(GLANCE)?;
+            self.master.wait(STATUS_POLL_INTERVAL)?;
         }
     }
 
@@ -207,7 +217,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             if self.master.now() >= end {
                 return Err(Failure::Status { kind: procedure.kind, expected, found });
             }
-            self.master.wait(GLANCE)?;
+            self.master.wait(STATUS_POLL_INTERVAL)?;
         }
     }
 
@@ -237,10 +247,10 @@ impl<'g, 'm> Guide<'g, 'm> {
         let mut begun = false;
         loop {
             let requested = self.master.now();
-            let status = self.master.with_reply_timeout(SILENCE, |master| master.read(procedure.status))?;
+            let status = self.master.with_reply_timeout(SILENCE_LIMIT, |master| master.read(procedure.status))?;
             let elapsed = self.master.now().duration_since(started);
             begun |= status == course.active || status != course.was;
-            begun |= course.run.is_calibration() && self.master.now().duration_since(requested) >= BEGUN;
+            begun |= course.run.is_calibration() && self.master.now().duration_since(requested) >= START_SILENCE;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
                 // Not started yet.
@@ -256,7 +266,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             } else if elapsed >= course.limit {
                 return Err(Failure::TooLong { run: course.run, seconds: elapsed.as_secs() });
             }
-            self.report(StepDetail::Lasts { elapsed, expected: Some(course.expected) });
+            self.report_detail(StepDetail::Lasts { elapsed, expected: Some(course.expected) });
             self.master.wait(course.every)?;
         }
         self.set_activity(Activity::Nothing);
@@ -264,8 +274,8 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 
     /// Waits until an encoder that may be restarting replies again, and reads its state.
-    pub(super) fn restart(&mut self) -> Result<(), Error> {
-        self.step(ProcedureStep::Restart);
+    pub(super) fn wait_for_restart(&mut self) -> Result<(), Error> {
+        self.begin_step(ProcedureStep::Restart);
         self.standing.record_possible_restart();
         let Some(lock) = self.description.lock() else { return Ok(()) };
         let standing = &mut self.standing;
@@ -274,45 +284,51 @@ impl<'g, 'm> Guide<'g, 'm> {
         // The written value is read back, even after cancellation.
         self.master.run_uncancellable(|master| {
             master.wait(RESTART)?;
-            master.with_reply_timeout(RESTART_PATIENCE, |master| look(master, lock, standing))
+            master.with_reply_timeout(RESTART_TIMEOUT, |master| read_mode(master, lock, standing))
         })?;
         Ok(())
     }
 
     /// Gives the operator a task at the motor. Measures repeatedly until the conditions are met and the operator
     /// confirms.
-    pub(super) fn attend(&mut self, task: Task) -> Result<OperatorDecision, Failure> {
-        self.step(ProcedureStep::Await(task));
+    pub(super) fn run_operator_task(&mut self, task: OperatorTask) -> Result<OperatorDecision, Failure> {
+        self.begin_step(ProcedureStep::Await(task));
         let begun = self.master.now();
-        let mut monitor = SpeedMonitor::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
+        let mut monitor = SpeedMonitor::with_window(if matches!(task, OperatorTask::Turn(_)) {
+            SPEED_MEASUREMENT_TIME
+        } else {
+            STANDSTILL_MEASUREMENT_TIME
+        });
         let mut is_told = false;
         loop {
-            let measured = self.measure(task, &mut monitor)?;
+            let measured = self.measure_shaft(task, &mut monitor)?;
             if !is_told {
                 // Answers from before the question was displayed are void.
                 self.operator.on_task_start();
                 is_told = true;
             }
             let demand = OperatorPrompt::new(task, measured, self.master.now().duration_since(begun));
-            self.report(StepDetail::Demand(demand.clone()));
-            match self.operator.attend(&demand) {
-                Answer::Go if demand.is_ready() => return Ok(OperatorDecision::Go(demand.motion)),
-                Answer::Go | Answer::Wait => {}
-                Answer::Skip => return Ok(OperatorDecision::Skip),
-                Answer::Cancel => return Err(Error::Cancelled.into()),
-                Answer::GiveUp => return Err(Failure::NotReady { task, blockers: demand.blockers }),
+            self.report_detail(StepDetail::Demand(demand.clone()));
+            match self.operator.ask(&demand) {
+                OperatorAnswer::Go if demand.is_ready() => return Ok(OperatorDecision::Go(demand.motion)),
+                OperatorAnswer::Go | OperatorAnswer::Wait => {}
+                OperatorAnswer::Skip => return Ok(OperatorDecision::Skip),
+                OperatorAnswer::Cancel => return Err(Error::Cancelled.into()),
+                OperatorAnswer::GiveUp => return Err(Failure::NotReady { task, blockers: demand.blockers }),
             }
         }
     }
 
     /// Reads positions until the next question to the operator. The temperature is also read if the task depends on it.
-    fn measure(&mut self, task: Task, monitor: &mut SpeedMonitor) -> Result<Measured, Failure> {
-        let mut measured = Measured::default();
-        let end = self.master.now() + ASKING;
+    fn measure_shaft(&mut self, task: OperatorTask, monitor: &mut SpeedMonitor) -> Result<ShaftReading, Failure> {
+        let mut measured = ShaftReading::default();
+        let end = self.master.now() + QUESTION_INTERVAL;
         loop {
             // Between the runs of a calibration the encoder may still be silent.
             let reading = match task {
-                Task::Turn(Run::CalibrationClockwise) => self.master.with_reply_timeout(SILENCE, Master::position),
+                OperatorTask::Turn(MotorRun::CalibrationClockwise) => {
+                    self.master.with_reply_timeout(SILENCE_LIMIT, Master::position)
+                }
                 _ => self.master.position(),
             };
             match reading {
@@ -328,22 +344,22 @@ impl<'g, 'm> Guide<'g, 'm> {
             }
             self.master.wait(SAMPLING)?;
         }
-        if let (Task::Turn(run), Some(temperature)) = (task, self.role_address(Role::Temperature))
+        if let (OperatorTask::Turn(run), Some(temperature)) = (task, self.role_address(Role::Temperature))
             && run.is_calibration()
         {
-            measured.celsius = Some(Temperature::new(self.master.read(temperature)?).celsius());
+            measured.celsius = Some(Temperature::new(self.master.read(temperature)?).to_celsius());
         }
         measured.motion = monitor.motion();
         Ok(measured)
     }
 }
 
-fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<DeviceMode, Error> {
+fn read_mode(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<DeviceMode, Error> {
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     let password = master.read(lock.password_at)? != 0;
     *standing = LeftState {
-        mode: super::PossibleValues::known(mode),
-        password: super::PossibleValues::known(password),
+        mode: super::PossibleValues::new(mode),
+        password: super::PossibleValues::new(password),
         activity: standing.activity,
     };
     if standing.is_in_operation() {
@@ -372,7 +388,7 @@ pub(super) fn lead_back(
     lock: Lock,
     standing: &mut LeftState,
 ) -> Result<DeviceMode, Error> {
-    let mode = look(master, lock, standing)?;
+    let mode = read_mode(master, lock, standing)?;
     if mode != DeviceMode::OPERATION {
         end_procedure(master, description, mode)?;
         let ended = set_mode(master, lock, DeviceMode::OPERATION, standing);
@@ -390,7 +406,7 @@ pub(super) fn lead_back(
         standing.password.update_after_write(false, &ended);
         ended?;
     }
-    let stays = look(master, lock, standing)?;
+    let stays = read_mode(master, lock, standing)?;
     if standing.is_in_operation() {
         return Ok(mode);
     }
@@ -403,11 +419,11 @@ fn end_procedure(master: &mut Master<'_>, description: &Description, mode: Devic
     let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };
     match procedure.kind {
         ProcedureKind::Calibration => {
-            let end = master.now() + SILENCE;
+            let end = master.now() + SILENCE_LIMIT;
             while CalibrationStatus::from_byte(master.read(procedure.status)?) == CalibrationStatus::Running
                 && master.now() < end
             {
-                master.wait(GLANCE)?;
+                master.wait(STATUS_POLL_INTERVAL)?;
             }
             Ok(())
         }

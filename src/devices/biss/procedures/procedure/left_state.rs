@@ -1,7 +1,7 @@
 //! The state of an encoder, as far as it is known from its replies. It is reported if the link is lost during a
 //! procedure.
 
-use super::Run;
+use super::MotorRun;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
@@ -21,7 +21,7 @@ pub struct LeftState {
 pub enum Activity {
     /// No activity that a loss of the link would interrupt.
     Nothing,
-    Running(Run),
+    Running(MotorRun),
     /// Values have been entered but not saved, and are discarded when the mode is left or power is lost.
     Entered,
     /// The flash was written, or may have been. Either the old or the new values are stored.
@@ -30,16 +30,16 @@ pub enum Activity {
 }
 
 impl<T: Copy + PartialEq> PossibleValues<T> {
-    pub fn known(value: T) -> Self {
+    pub fn new(value: T) -> Self {
         PossibleValues(vec![value])
     }
 
     /// Returns all possible values in the order in which they would have been reached.
-    pub fn values(&self) -> &[T] {
+    pub fn as_slice(&self) -> &[T] {
         &self.0
     }
 
-    pub fn is(&self, value: T) -> bool {
+    pub fn is_certainly(&self, value: T) -> bool {
         self.0 == [value]
     }
 
@@ -47,7 +47,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         self.0.contains(&value)
     }
 
-    pub fn or(&mut self, value: T) {
+    pub fn add_possible(&mut self, value: T) {
         if !self.may_equal(value) {
             self.0.push(value);
         }
@@ -56,10 +56,10 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
     /// Updates the possible values after a write of `after`. They depend on the result of the write.
     pub(super) fn update_after_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
-            Ok(()) => *self = PossibleValues::known(after),
+            Ok(()) => *self = PossibleValues::new(after),
             // The value was not sent, or not accepted.
             Err(Error::Cancelled | Error::Refused { .. }) => {}
-            Err(_) => self.or(after),
+            Err(_) => self.add_possible(after),
         }
     }
 }
@@ -67,15 +67,15 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
 impl LeftState {
     pub fn in_operation(password: bool) -> Self {
         LeftState {
-            mode: PossibleValues::known(DeviceMode::OPERATION),
-            password: PossibleValues::known(password),
+            mode: PossibleValues::new(DeviceMode::OPERATION),
+            password: PossibleValues::new(password),
             activity: Activity::Nothing,
         }
     }
 
     /// Returns whether the encoder is certainly in operation with the password cleared.
     pub fn is_in_operation(&self) -> bool {
-        self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
+        self.mode.is_certainly(DeviceMode::OPERATION) && self.password.is_certainly(false)
     }
 
     /// Records that a restart command was sent. The encoder may not have received it.
@@ -87,8 +87,8 @@ impl LeftState {
     /// Records that the encoder is out of reach. If it loses power, it starts again in operation with the password
     /// cleared.
     pub(in crate::devices::biss::procedures) fn record_possible_power_loss(&mut self) {
-        self.mode.or(DeviceMode::OPERATION);
-        self.password.or(false);
+        self.mode.add_possible(DeviceMode::OPERATION);
+        self.password.add_possible(false);
     }
 }
 
@@ -100,29 +100,29 @@ mod tests {
     #[test]
     fn an_unanswered_write_leaves_two_possible_states() {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
-        let mut mode = PossibleValues::known(0);
+        let mut mode = PossibleValues::new(0);
         mode.update_after_write(1, &Ok(()));
-        assert!(mode.is(1));
+        assert!(mode.is_certainly(1));
         mode.update_after_write(0, &Err(Error::Cancelled));
-        assert!(mode.is(1), "it was not sent");
+        assert!(mode.is_certainly(1), "it was not sent");
         mode.update_after_write(0, &lost());
-        assert_eq!((mode.values(), mode.is(1)), (&[1, 0][..], false));
+        assert_eq!((mode.as_slice(), mode.is_certainly(1)), (&[1, 0][..], false));
         assert!(mode.may_equal(0) && mode.may_equal(1) && !mode.may_equal(2));
         mode.update_after_write(0, &lost());
-        assert_eq!(mode.values(), [1, 0]);
+        assert_eq!(mode.as_slice(), [1, 0]);
         mode.update_after_write(2, &Ok(()));
-        assert!(mode.is(2));
+        assert!(mode.is_certainly(2));
     }
 
     #[test]
     fn a_possible_restart_leaves_operation_mode_possible() {
         let mut standing = LeftState::in_operation(false);
         assert!(standing.is_in_operation());
-        standing.mode = PossibleValues::known(DeviceMode::PRESET);
-        standing.password = PossibleValues::known(true);
+        standing.mode = PossibleValues::new(DeviceMode::PRESET);
+        standing.password = PossibleValues::new(true);
         standing.record_possible_restart();
-        assert_eq!(standing.mode.values(), [DeviceMode::PRESET, DeviceMode::OPERATION]);
-        assert_eq!(standing.password.values(), [true, false]);
+        assert_eq!(standing.mode.as_slice(), [DeviceMode::PRESET, DeviceMode::OPERATION]);
+        assert_eq!(standing.password.as_slice(), [true, false]);
         assert!(!standing.is_in_operation());
     }
 }

@@ -26,13 +26,14 @@ mod wiegand;
 
 pub use calibration::CalibrationReport;
 pub use failure::Failure;
-pub(super) use guide::Guide;
+pub(super) use guide::ProcedureContext;
 pub use left_state::{Activity, LeftState, PossibleValues};
 pub use operator::{
-    Advice, Answer, Operator, OperatorChannel, OperatorPrompt, Run, SpeedRange, StartBlocker, Task, UnattendedOperator,
+    MotorRun, Operator, OperatorAdvice, OperatorAnswer, OperatorChannel, OperatorPrompt, OperatorTask, SpeedRange,
+    StartBlocker, UnattendedOperator,
 };
-pub use speed_monitor::Motion;
-pub use steps::{ProcedureProgress, ProcedureStep, StepDetail, steps_of};
+pub use speed_monitor::ShaftMotion;
+pub use steps::{ProcedureProgress, ProcedureStep, StepDetail, operation_steps};
 pub use wiegand::WiegandReport;
 
 use super::{Error, Master, PositionReading, identify};
@@ -43,7 +44,7 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, PositionFilter, P
 pub enum Outcome {
     /// The operator skipped the whole procedure, or everything after the first run.
     Skipped {
-        after: Option<Run>,
+        after: Option<MotorRun>,
     },
     /// Registers were written, saved if required, and read back.
     Stored {
@@ -64,8 +65,8 @@ pub enum Outcome {
     Tested(WiegandReport),
 }
 
-impl Guide<'_, '_> {
-    pub(super) fn perform(&mut self, op: &Op) -> Result<Outcome, Failure> {
+impl ProcedureContext<'_, '_> {
+    pub(super) fn execute(&mut self, op: &Op) -> Result<Outcome, Failure> {
         match op {
             Op::StoreData { area, registers } => self.store_data(area, registers),
             Op::StorePreset { to, .. } => self.store_preset(*to),
@@ -74,14 +75,14 @@ impl Guide<'_, '_> {
             Op::Calibrate => self.calibrate(),
             Op::WiegandTest { save } => self.test_wiegand(*save),
             Op::WriteRegister { address, old, new, cycles } => {
-                self.step(ProcedureStep::Write);
+                self.begin_step(ProcedureStep::Write);
                 let ended = self.master.write(*address, *new);
                 if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
                     (0..*cycles).for_each(|_| self.count_write_cycle());
                 }
                 ended?;
                 if old.is_some() {
-                    self.step(ProcedureStep::ReadBack);
+                    self.begin_step(ProcedureStep::ReadBack);
                     self.run_uncancellable(|guide| guide.read_back(*address, *new))?;
                 }
                 Ok(Outcome::Stored { registers: 1 })
@@ -98,12 +99,12 @@ impl Guide<'_, '_> {
 /// Returns an error if the exchange fails or the encoder does not return to operation.
 pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
     if master.station().description.is_none() {
-        master.with_reply_timeout(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;
+        master.with_reply_timeout(guide::SILENCE_LIMIT, |master| master.read(RegisterAddress::BANK_SELECT))?;
         identify(master, types)?;
     }
     let description = master.description()?;
     let Some(lock) = description.lock() else { return Ok(DeviceMode::OPERATION) };
     let mut standing = LeftState::in_operation(false);
     let back = |master: &mut Master<'_>| guide::lead_back(master, &description, lock, &mut standing);
-    master.run_uncancellable(|master| master.with_reply_timeout(guide::SILENCE, back))
+    master.run_uncancellable(|master| master.with_reply_timeout(guide::SILENCE_LIMIT, back))
 }

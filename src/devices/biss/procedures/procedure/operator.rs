@@ -4,10 +4,10 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::Motion;
+use super::ShaftMotion;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Run {
+pub enum MotorRun {
     CalibrationCounterclockwise,
     /// Second calibration run. If it fails, the table is lost.
     CalibrationClockwise,
@@ -24,15 +24,18 @@ pub struct SpeedRange {
 
 impl SpeedRange {
     /// Relative accuracy of a speed measurement.
-    const EXACT: f64 = 0.01;
+    const MEASURING_TOLERANCE: f64 = 0.01;
 
     const fn new(least: f64, greatest: f64) -> Self {
         SpeedRange { least, greatest }
     }
 
     /// Returns the range of accepted speeds, which includes the measuring tolerance.
-    pub fn measured(self) -> Self {
-        SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
+    pub fn with_tolerance(self) -> Self {
+        SpeedRange::new(
+            self.least / (1.0 + Self::MEASURING_TOLERANCE),
+            self.greatest / (1.0 - Self::MEASURING_TOLERANCE),
+        )
     }
 
     pub fn midpoint(self) -> f64 {
@@ -44,23 +47,23 @@ impl SpeedRange {
     }
 }
 
-impl Run {
+impl MotorRun {
     pub const fn is_clockwise(self) -> bool {
-        matches!(self, Run::CalibrationClockwise | Run::WiegandClockwise)
+        matches!(self, MotorRun::CalibrationClockwise | MotorRun::WiegandClockwise)
     }
 
     pub const fn is_calibration(self) -> bool {
-        matches!(self, Run::CalibrationCounterclockwise | Run::CalibrationClockwise)
+        matches!(self, MotorRun::CalibrationCounterclockwise | MotorRun::CalibrationClockwise)
     }
 
     /// Returns the speeds at which the run may be started (manual 6.3 and 6.4).
-    pub const fn allowed(self) -> SpeedRange {
+    pub const fn allowed_speeds(self) -> SpeedRange {
         if self.is_calibration() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
     }
 
     /// Returns the speeds that give the best result (manual 6.4). For the Wiegand test, these are all allowed speeds.
     pub const fn recommended_range(self) -> SpeedRange {
-        if self.is_calibration() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
+        if self.is_calibration() { SpeedRange::new(498.0, 502.0) } else { self.allowed_speeds() }
     }
 
     /// Returns the allowed speed variation of a calibration in revolutions per minute (manual 6.4). Returns `None` for
@@ -73,18 +76,18 @@ impl Run {
     /// on the speed because of the measuring accuracy.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.max_fluctuation() {
-            Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::EXACT,
-            None => rpm.abs() * Self::UNSTEADY,
+            Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::MEASURING_TOLERANCE,
+            None => rpm.abs() * Self::MAX_FLUCTUATION,
         }
     }
 
     /// Speed variation, relative to the speed, above which a motor is not steady (`U`).
-    const UNSTEADY: f64 = 0.05;
+    const MAX_FLUCTUATION: f64 = 0.05;
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Task {
-    Turn(Run),
+pub enum OperatorTask {
+    Turn(MotorRun),
     /// Keep the shaft at rest, because data is not accessed while it turns.
     Stand,
     /// Keep the shaft at rest at the angle that the preset value will be assigned to.
@@ -121,7 +124,7 @@ pub enum StartBlocker {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Advice {
+pub enum OperatorAdvice {
     /// A different or steadier speed would yield a better result.
     Speed { recommended: SpeedRange },
     /// If this run fails, the calibration table is lost (manual 6.4).
@@ -132,14 +135,14 @@ pub enum Advice {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatorPrompt {
-    pub task: Task,
+    pub task: OperatorTask,
     /// Motion of the shaft, or `None` until it has been measured.
-    pub motion: Option<Motion>,
+    pub motion: Option<ShaftMotion>,
     /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
     /// Conditions that currently prevent the start.
     pub blockers: Vec<StartBlocker>,
-    pub advice: Vec<Advice>,
+    pub advice: Vec<OperatorAdvice>,
     pub waited: Duration,
 }
 
@@ -147,43 +150,43 @@ impl OperatorPrompt {
     /// Allowed temperature range for the calibration in degrees Celsius (manual 6.4).
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
     /// Lowest speed considered as turning, in revolutions per minute.
-    const SLOWEST: f64 = 1.0;
+    const MIN_TURNING_RPM: f64 = 1.0;
 
-    pub(super) fn new(task: Task, measured: Measured, waited: Duration) -> Self {
-        let Measured { motion, celsius, marked, unreadable } = measured;
+    pub(super) fn new(task: OperatorTask, measured: ShaftReading, waited: Duration) -> Self {
+        let ShaftReading { motion, celsius, marked, unreadable } = measured;
         let mut blockers = Vec::new();
         let mut advice = Vec::new();
         match (motion, task) {
             _ if unreadable => blockers.push(StartBlocker::NoPosition),
             (None, _) => blockers.push(StartBlocker::Measuring),
-            (Some(motion), Task::Turn(run)) => blockers.extend(Self::motion_blocker(run, motion)),
-            (Some(motion), Task::Stand | Task::StandAtPlace) => {
+            (Some(motion), OperatorTask::Turn(run)) => blockers.extend(Self::motion_blocker(run, motion)),
+            (Some(motion), OperatorTask::Stand | OperatorTask::StandAtPlace) => {
                 blockers.extend((!motion.is_still()).then_some(StartBlocker::Turning { rpm: motion.rpm }));
             }
         }
         if let Some(celsius) = celsius.filter(|celsius| !Self::CELSIUS.contains(celsius)) {
             blockers.push(StartBlocker::Temperature { celsius });
         }
-        if let (Task::Turn(run), Some(motion)) = (task, motion) {
+        if let (OperatorTask::Turn(run), Some(motion)) = (task, motion) {
             let recommended = run.recommended_range();
             let wavers = run.max_fluctuation().is_some_and(|fluctuation| motion.spread > fluctuation);
             let off = !recommended.contains(motion.rpm.abs()) || wavers;
-            advice.extend((run.is_calibration() && off).then_some(Advice::Speed { recommended }));
-            advice.extend(marked.then_some(Advice::Marked));
+            advice.extend((run.is_calibration() && off).then_some(OperatorAdvice::Speed { recommended }));
+            advice.extend(marked.then_some(OperatorAdvice::Marked));
         }
-        if task == Task::Turn(Run::CalibrationClockwise) {
-            advice.push(Advice::TableAtRisk);
+        if task == OperatorTask::Turn(MotorRun::CalibrationClockwise) {
+            advice.push(OperatorAdvice::TableAtRisk);
         }
         OperatorPrompt { task, motion, celsius, blockers, advice, waited }
     }
 
-    fn motion_blocker(run: Run, motion: Motion) -> Option<StartBlocker> {
-        let (rpm, allowed) = (motion.rpm.abs(), run.allowed());
-        if rpm < Self::SLOWEST {
+    fn motion_blocker(run: MotorRun, motion: ShaftMotion) -> Option<StartBlocker> {
+        let (rpm, allowed) = (motion.rpm.abs(), run.allowed_speeds());
+        if rpm < Self::MIN_TURNING_RPM {
             Some(StartBlocker::Standing)
         } else if (motion.rpm > 0.0) != run.is_clockwise() {
             Some(StartBlocker::WrongDirection)
-        } else if !allowed.measured().contains(rpm) {
+        } else if !allowed.with_tolerance().contains(rpm) {
             Some(StartBlocker::Speed { rpm, allowed })
         } else if motion.spread > run.accepted_fluctuation(rpm) {
             Some(StartBlocker::Unsteady { spread: motion.spread })
@@ -199,8 +202,8 @@ impl OperatorPrompt {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Measured {
-    pub(super) motion: Option<Motion>,
+pub(super) struct ShaftReading {
+    pub(super) motion: Option<ShaftMotion>,
     pub(super) celsius: Option<i16>,
     /// Whether positions are marked as invalid.
     pub(super) marked: bool,
@@ -208,7 +211,7 @@ pub(super) struct Measured {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum OperatorAnswer {
     Wait,
     /// Start the run. Valid only if no condition prevents the start.
     Go,
@@ -224,7 +227,7 @@ pub trait Operator {
     fn on_task_start(&mut self) {}
 
     /// Asks the operator for an answer. Called a few times per second, each time with a new measurement.
-    fn attend(&mut self, demand: &OperatorPrompt) -> Answer;
+    fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer;
 }
 
 /// A substitute for an operator. It starts as soon as all conditions are met, and gives up after a time limit.
@@ -235,48 +238,49 @@ pub struct UnattendedOperator {
 
 impl UnattendedOperator {
     /// Additional time allowed for the first measurement.
-    const MEASURING: Duration = Duration::from_secs(5);
+    const FIRST_MEASUREMENT_TIME: Duration = Duration::from_secs(5);
 }
 
 impl Operator for UnattendedOperator {
-    fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
+    fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer {
         let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, StartBlocker::Temperature { .. }));
         // With a measurement, the reason for giving up is more specific.
-        let measures = if demand.blockers == [StartBlocker::Measuring] { Self::MEASURING } else { Duration::ZERO };
+        let measures =
+            if demand.blockers == [StartBlocker::Measuring] { Self::FIRST_MEASUREMENT_TIME } else { Duration::ZERO };
         if demand.is_ready() {
-            Answer::Go
+            OperatorAnswer::Go
         } else if hopeless || demand.waited >= self.patience.saturating_add(measures) {
-            Answer::GiveUp
+            OperatorAnswer::GiveUp
         } else {
-            Answer::Wait
+            OperatorAnswer::Wait
         }
     }
 }
 
 /// A channel for the answers of an operator in another thread. Clones share the channel.
 #[derive(Clone, Debug, Default)]
-pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
+pub struct OperatorChannel(Arc<Mutex<Option<(OperatorTask, OperatorAnswer)>>>);
 
 impl OperatorChannel {
     /// Answers the current task. An answer is ignored if it is for another task or was sent before the task was given.
-    pub fn answer(&self, to: Task, answer: Answer) {
-        *self.slot() = Some((to, answer));
+    pub fn answer_task(&self, to: OperatorTask, answer: OperatorAnswer) {
+        *self.lock_slot() = Some((to, answer));
     }
 
-    fn slot(&self) -> std::sync::MutexGuard<'_, Option<(Task, Answer)>> {
+    fn lock_slot(&self) -> std::sync::MutexGuard<'_, Option<(OperatorTask, OperatorAnswer)>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Operator for OperatorChannel {
     fn on_task_start(&mut self) {
-        *self.slot() = None;
+        *self.lock_slot() = None;
     }
 
-    fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
-        match self.slot().take() {
+    fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer {
+        match self.lock_slot().take() {
             Some((task, answer)) if task == demand.task => answer,
-            _ => Answer::Wait,
+            _ => OperatorAnswer::Wait,
         }
     }
 }
@@ -285,19 +289,19 @@ impl Operator for OperatorChannel {
 mod tests {
     use super::*;
 
-    fn turning(rpm: f64, spread: f64) -> Measured {
-        let motion = Some(Motion { rpm, spread, travel: rpm.abs() / 60.0 });
-        Measured { motion, celsius: Some(30), ..Measured::default() }
+    fn turning(rpm: f64, spread: f64) -> ShaftReading {
+        let motion = Some(ShaftMotion { rpm, spread, travel: rpm.abs() / 60.0 });
+        ShaftReading { motion, celsius: Some(30), ..ShaftReading::default() }
     }
 
-    fn operator_prompt(task: Task, measured: Measured) -> OperatorPrompt {
+    fn operator_prompt(task: OperatorTask, measured: ShaftReading) -> OperatorPrompt {
         OperatorPrompt::new(task, measured, Duration::ZERO)
     }
 
     /// Manual 6.3 and 6.4.
     #[test]
     fn a_start_requires_direction_speed_and_stability() {
-        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
         let allowed = SpeedRange { least: 300.0, greatest: 700.0 };
         let cases = [
             (first, -500.0, 0.0, vec![]),
@@ -311,22 +315,22 @@ mod tests {
             (first, 0.5, 0.0, vec![StartBlocker::Standing]),
             (first, -500.0, 6.9, vec![]),
             (first, -500.0, 7.1, vec![StartBlocker::Unsteady { spread: 7.1 }]),
-            (Run::WiegandClockwise, 500.0, 26.0, vec![StartBlocker::Unsteady { spread: 26.0 }]),
-            (Run::WiegandClockwise, 500.0, 20.0, vec![]),
-            (Run::WiegandClockwise, 499.96, 0.0, vec![]),
-            (Run::WiegandClockwise, 2000.0, 0.0, vec![]),
-            (Run::WiegandClockwise, 2000.04, 0.0, vec![]),
-            (Run::WiegandCounterclockwise, -1000.0, 0.0, vec![]),
-            (Run::WiegandCounterclockwise, 1000.0, 0.0, vec![StartBlocker::WrongDirection]),
+            (MotorRun::WiegandClockwise, 500.0, 26.0, vec![StartBlocker::Unsteady { spread: 26.0 }]),
+            (MotorRun::WiegandClockwise, 500.0, 20.0, vec![]),
+            (MotorRun::WiegandClockwise, 499.96, 0.0, vec![]),
+            (MotorRun::WiegandClockwise, 2000.0, 0.0, vec![]),
+            (MotorRun::WiegandClockwise, 2000.04, 0.0, vec![]),
+            (MotorRun::WiegandCounterclockwise, -1000.0, 0.0, vec![]),
+            (MotorRun::WiegandCounterclockwise, 1000.0, 0.0, vec![StartBlocker::WrongDirection]),
             (
-                Run::WiegandClockwise,
+                MotorRun::WiegandClockwise,
                 450.0,
                 0.0,
                 vec![StartBlocker::Speed { rpm: 450.0, allowed: SpeedRange { least: 500.0, greatest: 2000.0 } }],
             ),
         ];
         for (run, rpm, spread, blockers) in cases {
-            let demand = operator_prompt(Task::Turn(run), turning(rpm, spread));
+            let demand = operator_prompt(OperatorTask::Turn(run), turning(rpm, spread));
             assert_eq!(demand.blockers, blockers, "{run:?} at {rpm}");
             assert_eq!(demand.is_ready(), blockers.is_empty());
         }
@@ -334,33 +338,36 @@ mod tests {
 
     #[test]
     fn temperature_and_missing_positions_block_a_start() {
-        let task = Task::Turn(Run::CalibrationCounterclockwise);
+        let task = OperatorTask::Turn(MotorRun::CalibrationCounterclockwise);
         for (celsius, fits) in [(24, false), (25, true), (40, true), (41, false)] {
-            let measured = Measured { celsius: Some(celsius), ..turning(-500.0, 0.0) };
+            let measured = ShaftReading { celsius: Some(celsius), ..turning(-500.0, 0.0) };
             let expected = if fits { vec![] } else { vec![StartBlocker::Temperature { celsius }] };
             assert_eq!(operator_prompt(task, measured).blockers, expected);
         }
-        assert_eq!(operator_prompt(task, Measured::default()).blockers, [StartBlocker::Measuring]);
-        let unreadable = Measured { unreadable: true, ..Measured::default() };
+        assert_eq!(operator_prompt(task, ShaftReading::default()).blockers, [StartBlocker::Measuring]);
+        let unreadable = ShaftReading { unreadable: true, ..ShaftReading::default() };
         assert_eq!(operator_prompt(task, unreadable).blockers, [StartBlocker::NoPosition]);
     }
 
     #[test]
     fn advice_does_not_block_a_start() {
-        let advice = |run, rpm, spread| operator_prompt(Task::Turn(run), turning(rpm, spread)).advice;
-        let speed = Advice::Speed { recommended: SpeedRange { least: 498.0, greatest: 502.0 } };
-        assert_eq!(advice(Run::CalibrationCounterclockwise, -500.0, 1.9), []);
-        assert_eq!(advice(Run::CalibrationCounterclockwise, -503.0, 0.0), [speed]);
-        assert_eq!(advice(Run::CalibrationCounterclockwise, -500.0, 2.1), [speed]);
-        assert_eq!(advice(Run::CalibrationClockwise, 501.0, 0.0), [Advice::TableAtRisk]);
-        assert_eq!(advice(Run::WiegandClockwise, 1234.0, 9.0), []);
-        let marked = Measured { marked: true, ..turning(1000.0, 0.0) };
-        assert_eq!(operator_prompt(Task::Turn(Run::WiegandClockwise), marked).advice, [Advice::Marked]);
+        let advice = |run, rpm, spread| operator_prompt(OperatorTask::Turn(run), turning(rpm, spread)).advice;
+        let speed = OperatorAdvice::Speed { recommended: SpeedRange { least: 498.0, greatest: 502.0 } };
+        assert_eq!(advice(MotorRun::CalibrationCounterclockwise, -500.0, 1.9), []);
+        assert_eq!(advice(MotorRun::CalibrationCounterclockwise, -503.0, 0.0), [speed]);
+        assert_eq!(advice(MotorRun::CalibrationCounterclockwise, -500.0, 2.1), [speed]);
+        assert_eq!(advice(MotorRun::CalibrationClockwise, 501.0, 0.0), [OperatorAdvice::TableAtRisk]);
+        assert_eq!(advice(MotorRun::WiegandClockwise, 1234.0, 9.0), []);
+        let marked = ShaftReading { marked: true, ..turning(1000.0, 0.0) };
+        assert_eq!(
+            operator_prompt(OperatorTask::Turn(MotorRun::WiegandClockwise), marked).advice,
+            [OperatorAdvice::Marked]
+        );
     }
 
     #[test]
     fn a_turning_shaft_blocks_a_standstill_step() {
-        for task in [Task::Stand, Task::StandAtPlace] {
+        for task in [OperatorTask::Stand, OperatorTask::StandAtPlace] {
             assert_eq!(operator_prompt(task, turning(3.0, 0.0)).blockers, [StartBlocker::Turning { rpm: 3.0 }]);
             assert!(operator_prompt(task, turning(0.0, 0.0)).is_ready());
         }
@@ -369,35 +376,40 @@ mod tests {
     #[test]
     fn an_unattended_run_starts_when_ready_and_times_out() {
         let mut nobody = UnattendedOperator { patience: Duration::from_secs(10) };
-        let task = Task::Turn(Run::WiegandClockwise);
+        let task = OperatorTask::Turn(MotorRun::WiegandClockwise);
         let mut ask =
-            |measured, seconds| nobody.attend(&OperatorPrompt::new(task, measured, Duration::from_secs(seconds)));
-        let fits = Measured { celsius: None, ..turning(1000.0, 0.0) };
-        let stands = Measured { celsius: None, ..turning(0.0, 0.0) };
-        assert_eq!(ask(fits, 0), Answer::Go);
-        assert_eq!((ask(stands, 9), ask(stands, 10)), (Answer::Wait, Answer::GiveUp));
-        assert_eq!(ask(Measured::default(), 11), Answer::Wait, "it ends with a reason");
-        assert_eq!(ask(Measured::default(), 15), Answer::GiveUp, "and not never");
-        assert_eq!(ask(Measured { celsius: Some(50), ..fits }, 0), Answer::GiveUp, "waiting does not cool it");
+            |measured, seconds| nobody.ask(&OperatorPrompt::new(task, measured, Duration::from_secs(seconds)));
+        let fits = ShaftReading { celsius: None, ..turning(1000.0, 0.0) };
+        let stands = ShaftReading { celsius: None, ..turning(0.0, 0.0) };
+        assert_eq!(ask(fits, 0), OperatorAnswer::Go);
+        assert_eq!((ask(stands, 9), ask(stands, 10)), (OperatorAnswer::Wait, OperatorAnswer::GiveUp));
+        assert_eq!(ask(ShaftReading::default(), 11), OperatorAnswer::Wait, "it ends with a reason");
+        assert_eq!(ask(ShaftReading::default(), 15), OperatorAnswer::GiveUp, "and not never");
+        assert_eq!(
+            ask(ShaftReading { celsius: Some(50), ..fits }, 0),
+            OperatorAnswer::GiveUp,
+            "waiting does not cool it"
+        );
     }
 
     #[test]
     fn an_answer_applies_only_to_its_question() {
         let seat = OperatorChannel::default();
         let mut operator = seat.clone();
-        let (first, second) = (Task::Turn(Run::WiegandClockwise), Task::Turn(Run::WiegandCounterclockwise));
-        let mut ask = |task| operator.attend(&operator_prompt(task, Measured::default()));
-        assert_eq!(ask(first), Answer::Wait);
-        seat.answer(first, Answer::Go);
-        assert_eq!(ask(second), Answer::Wait, "pressed too late, for the run before");
-        assert_eq!(ask(first), Answer::Wait, "and it does not wait there");
-        seat.answer(first, Answer::Skip);
-        assert_eq!((ask(first), ask(first)), (Answer::Skip, Answer::Wait));
-        seat.answer(first, Answer::Go);
+        let (first, second) =
+            (OperatorTask::Turn(MotorRun::WiegandClockwise), OperatorTask::Turn(MotorRun::WiegandCounterclockwise));
+        let mut ask = |task| operator.ask(&operator_prompt(task, ShaftReading::default()));
+        assert_eq!(ask(first), OperatorAnswer::Wait);
+        seat.answer_task(first, OperatorAnswer::Go);
+        assert_eq!(ask(second), OperatorAnswer::Wait, "pressed too late, for the run before");
+        assert_eq!(ask(first), OperatorAnswer::Wait, "and it does not wait there");
+        seat.answer_task(first, OperatorAnswer::Skip);
+        assert_eq!((ask(first), ask(first)), (OperatorAnswer::Skip, OperatorAnswer::Wait));
+        seat.answer_task(first, OperatorAnswer::Go);
         operator.on_task_start();
         assert_eq!(
-            operator.attend(&operator_prompt(first, Measured::default())),
-            Answer::Wait,
+            operator.ask(&operator_prompt(first, ShaftReading::default())),
+            OperatorAnswer::Wait,
             "for the same of an operation before"
         );
     }

@@ -1,8 +1,8 @@
 //! Preset. The value is stored, or the current shaft position is set to it. In both cases, the encoder restarts. See
 //! manual 6.7.
 
-use super::guide::{Guide, OperatorDecision};
-use super::{Activity, Failure, Outcome, ProcedureStep, Task};
+use super::guide::{OperatorDecision, ProcedureContext};
+use super::{Activity, Failure, OperatorTask, Outcome, ProcedureStep};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::profile::{PresetParts, RegisterRange};
 use crate::devices::biss::protocol::{
@@ -10,49 +10,49 @@ use crate::devices::biss::protocol::{
 };
 
 /// Reciprocal of the allowed jitter around the new value, in revolutions. The jitter is 0.35°.
-const TREMBLE: u64 = 1024;
+const PRESET_JITTER_DIVISOR: u64 = 1024;
 
-impl Guide<'_, '_> {
+impl ProcedureContext<'_, '_> {
     pub(super) fn store_preset(&mut self, to: PresetValue) -> Result<Outcome, Failure> {
-        let procedure = self.procedure(ProcedureKind::Preset)?;
-        let registers: Vec<(RegisterAddress, u8)> = value_of(&procedure)?.addresses().zip(to.emit()).collect();
+        let procedure = self.find_procedure(ProcedureKind::Preset)?;
+        let registers: Vec<(RegisterAddress, u8)> = value_range(&procedure)?.addresses().zip(to.emit()).collect();
         self.enter(&procedure)?;
-        self.step(ProcedureStep::Open);
+        self.begin_step(ProcedureStep::Open);
         self.command(&procedure, PresetCommand::Edit.byte())?;
         self.await_status(&procedure, PresetStatus::WaitForValue.byte())?;
         self.set_activity(Activity::Entered);
-        self.step(ProcedureStep::Write);
+        self.begin_step(ProcedureStep::Write);
         for (address, byte) in &registers {
             self.master.write(*address, *byte)?;
         }
-        self.step(ProcedureStep::Save);
+        self.begin_step(ProcedureStep::Save);
         self.save(&procedure, PresetCommand::Save.byte())?;
         self.run_uncancellable(|guide| {
-            guide.restart()?;
-            guide.step(ProcedureStep::ReadBack);
+            guide.wait_for_restart()?;
+            guide.begin_step(ProcedureStep::ReadBack);
             for (address, byte) in &registers {
                 guide.read_back(*address, *byte)?;
             }
-            let singleturn_bits = guide.master.station().frame().singleturn_bits();
+            let singleturn_bits = guide.master.station().frame_layout().singleturn_bits();
             Ok(Outcome::PresetStored { value: to, singleturn_bits })
         })
     }
 
     pub(super) fn trigger_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
-        let procedure = self.procedure(ProcedureKind::Preset)?;
-        let OperatorDecision::Go(_) = self.attend(Task::StandAtPlace)? else {
+        let procedure = self.find_procedure(ProcedureKind::Preset)?;
+        let OperatorDecision::Go(_) = self.run_operator_task(OperatorTask::StandAtPlace)? else {
             return Ok(Outcome::Skipped { after: None });
         };
         let from = self.master.position()?;
         self.enter(&procedure)?;
-        self.step(ProcedureStep::Fire);
+        self.begin_step(ProcedureStep::Fire);
         self.save(&procedure, parts.command().byte())?;
         self.run_uncancellable(|guide| {
-            guide.restart()?;
-            guide.step(ProcedureStep::ReadBack);
+            guide.wait_for_restart()?;
+            guide.begin_step(ProcedureStep::ReadBack);
             let to = guide.master.position()?;
             let expected = preset(&from, parts, value);
-            if distance(expected, &to) > ((1_u64 << to.singleturn_bits) / TREMBLE).max(1) {
+            if shortest_distance(expected, &to) > ((1_u64 << to.singleturn_bits) / PRESET_JITTER_DIVISOR).max(1) {
                 return Err(Failure::NotVerified {
                     item: "position".to_owned(),
                     expected: expected.to_string(),
@@ -64,7 +64,7 @@ impl Guide<'_, '_> {
     }
 }
 
-fn value_of(procedure: &Procedure) -> Result<RegisterRange, Failure> {
+fn value_range(procedure: &Procedure) -> Result<RegisterRange, Failure> {
     let range = procedure.data.and_then(|first| RegisterRange::new(first, PresetValue::BYTES));
     range.ok_or(Failure::NotDescribed { kind: procedure.kind })
 }
@@ -77,8 +77,8 @@ fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64
 }
 
 /// Returns the number of steps between two positions along the shorter way.
-fn distance(place: u64, reading: &PositionReading) -> u64 {
-    let bits = u32::from(reading.raw().bits);
+fn shortest_distance(place: u64, reading: &PositionReading) -> u64 {
+    let bits = u32::from(reading.position_word().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);
     let forward = place.wrapping_sub(reading.position()) & mask;
     let backward = reading.position().wrapping_sub(place) & mask;
@@ -116,8 +116,8 @@ mod tests {
 
     #[test]
     fn distance_takes_the_shorter_direction() {
-        assert_eq!(distance(0, &reading(0xFFFF, 0x1FFFF)), 1);
-        assert_eq!(distance(1, &reading(0, 0)), 1);
-        assert_eq!(distance(1 << 32, &reading(0, 0)), 1 << 32);
+        assert_eq!(shortest_distance(0, &reading(0xFFFF, 0x1FFFF)), 1);
+        assert_eq!(shortest_distance(1, &reading(0, 0)), 1);
+        assert_eq!(shortest_distance(1 << 32, &reading(0, 0)), 1 << 32);
     }
 }

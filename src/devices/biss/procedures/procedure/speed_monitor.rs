@@ -18,7 +18,7 @@ pub(super) struct SpeedMonitor {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct ShaftMotion {
     /// Mean speed in revolutions per minute, positive for clockwise rotation, in which positions increase.
     pub rpm: f64,
     /// Maximum deviation from the mean speed in a quarter of the measurement, in revolutions per minute.
@@ -26,12 +26,12 @@ pub struct Motion {
     pub travel: f64,
 }
 
-impl Motion {
+impl ShaftMotion {
     /// Allowed jitter of a shaft at rest, in revolutions (`U`).
-    const STILL: f64 = 1.0 / 8192.0;
+    const REST_JITTER: f64 = 1.0 / 8192.0;
 
     pub fn is_still(&self) -> bool {
-        self.travel <= Self::STILL
+        self.travel <= Self::REST_JITTER
     }
 }
 
@@ -39,13 +39,13 @@ impl SpeedMonitor {
     /// Number of parts of the window in which the speed is evaluated separately.
     const PARTS: i32 = 4;
 
-    pub(super) fn over(window: Duration) -> Self {
+    pub(super) fn with_window(window: Duration) -> Self {
         let window = i64::try_from(window.as_nanos()).unwrap_or(i64::MAX).max(1);
         SpeedMonitor { window, unwrap: None, steps_per_turn: 1.0, places: VecDeque::new() }
     }
 
     pub(super) fn next(&mut self, reading: &PositionReading) {
-        let bits = u32::from(reading.raw().bits);
+        let bits = u32::from(reading.position_word().bits);
         self.steps_per_turn = f64::powi(2.0, reading.singleturn_bits.into());
         let range = 1_i64.checked_shl(bits).filter(|range| *range > 0);
         let unwrap = self.unwrap.get_or_insert_with(|| {
@@ -65,13 +65,13 @@ impl SpeedMonitor {
     }
 
     /// Returns the measurement, or `None` until there are positions for the whole window.
-    pub(super) fn motion(&self) -> Option<Motion> {
+    pub(super) fn motion(&self) -> Option<ShaftMotion> {
         let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
         if last.nanoseconds_since(*first) < self.window {
             return None;
         }
         let places: Vec<(f64, f64)> =
-            self.places.iter().map(|(time, steps)| (time.seconds_since(*first), self.turns(*steps))).collect();
+            self.places.iter().map(|(time, steps)| (time.seconds_since(*first), self.to_turns(*steps))).collect();
         let rpm = slope(&places)? * 60.0;
         let part = last.seconds_since(*first) / f64::from(Self::PARTS);
         let mut spread: f64 = 0.0;
@@ -84,11 +84,11 @@ impl SpeedMonitor {
         }
         let turns = places.iter().map(|(_, turns)| *turns);
         let travel = turns.clone().fold(f64::MIN, f64::max) - turns.fold(f64::MAX, f64::min);
-        Some(Motion { rpm, spread, travel })
+        Some(ShaftMotion { rpm, spread, travel })
     }
 
     /// Converts a number of steps since the first position of the window to revolutions.
-    fn turns(&self, steps: i64) -> f64 {
+    fn to_turns(&self, steps: i64) -> f64 {
         let first = self.places.front().map_or(steps, |(_, first)| *first);
         steps.saturating_sub(first) as f64 / self.steps_per_turn
     }
@@ -130,8 +130,8 @@ mod tests {
     }
 
     /// Measures positions every 20 ms for 1.2 s; `turns` gives the position for a time in seconds.
-    fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> Motion {
-        let mut gauge = SpeedMonitor::over(Duration::from_secs(1));
+    fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> ShaftMotion {
+        let mut gauge = SpeedMonitor::with_window(Duration::from_secs(1));
         for at in (0..=1200).step_by(20) {
             gauge.next(&reading(at, turns(at as f64 / 1000.0), multiturn_bits));
             assert_eq!(gauge.motion().is_some(), at >= 1000, "{at}");
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_gap_restarts_the_measurement() {
-        let mut gauge = SpeedMonitor::over(Duration::from_secs(1));
+        let mut gauge = SpeedMonitor::with_window(Duration::from_secs(1));
         for at in (0..=1000).step_by(20) {
             gauge.next(&reading(at, 0.0, 0));
         }

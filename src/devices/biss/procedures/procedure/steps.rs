@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{OperatorPrompt, Run, Task};
+use super::{MotorRun, OperatorPrompt, OperatorTask};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::protocol::DeviceMode;
 
@@ -10,11 +10,11 @@ use crate::devices::biss::protocol::DeviceMode;
 pub enum ProcedureStep {
     /// Check of the filter, which does not depend on the motor.
     Conditions,
-    Await(Task),
+    Await(OperatorTask),
     Enter(DeviceMode),
     Open,
     Write,
-    Run(Run),
+    Run(MotorRun),
     Results,
     Save,
     Fire,
@@ -48,7 +48,7 @@ pub enum StepDetail {
 
 /// Returns the steps of an operation. A restart also returns the encoder to operation, which is then not a separate
 /// step.
-pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
+pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];
         all.extend(steps);
@@ -63,7 +63,7 @@ pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
                 ProcedureStep::LeadBack,
                 ProcedureStep::ReadBack,
             ];
-            let mut steps = vec![ProcedureStep::Await(Task::Stand)];
+            let mut steps = vec![ProcedureStep::Await(OperatorTask::Stand)];
             steps.extend(entered(DeviceMode::DATA_WRITE, &own));
             steps
         }
@@ -78,7 +78,7 @@ pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
             ],
         ),
         Op::FirePreset { .. } => {
-            let mut steps = vec![ProcedureStep::Await(Task::StandAtPlace)];
+            let mut steps = vec![ProcedureStep::Await(OperatorTask::StandAtPlace)];
             steps.extend(entered(
                 DeviceMode::PRESET,
                 &[ProcedureStep::Fire, ProcedureStep::Restart, ProcedureStep::ReadBack],
@@ -96,24 +96,24 @@ pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
             ],
         ),
         Op::Calibrate => {
-            let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+            let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
             vec![
                 ProcedureStep::Conditions,
-                ProcedureStep::Await(Task::Turn(first)),
+                ProcedureStep::Await(OperatorTask::Turn(first)),
                 ProcedureStep::Enter(DeviceMode::CALIBRATION),
                 ProcedureStep::Run(first),
-                ProcedureStep::Await(Task::Turn(second)),
+                ProcedureStep::Await(OperatorTask::Turn(second)),
                 ProcedureStep::Run(second),
                 ProcedureStep::LeadBack,
             ]
         }
         Op::WiegandTest { save } => {
-            let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
+            let (first, second) = (MotorRun::WiegandClockwise, MotorRun::WiegandCounterclockwise);
             let mut steps = vec![
-                ProcedureStep::Await(Task::Turn(first)),
+                ProcedureStep::Await(OperatorTask::Turn(first)),
                 ProcedureStep::Enter(DeviceMode::WIEGAND_TEST),
                 ProcedureStep::Run(first),
-                ProcedureStep::Await(Task::Turn(second)),
+                ProcedureStep::Await(OperatorTask::Turn(second)),
                 ProcedureStep::Run(second),
                 ProcedureStep::Results,
             ];

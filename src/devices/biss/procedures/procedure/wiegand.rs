@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use super::guide::{Guide, OperatorDecision, RunProgress};
-use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
+use super::guide::{OperatorDecision, ProcedureContext, RunProgress};
+use super::{Activity, Failure, MotorRun, OperatorTask, Outcome, ProcedureStep, ShaftMotion};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
 
@@ -13,25 +13,25 @@ pub struct WiegandReport {
     pub result: WiegandResult,
     /// Whether the result is saved in the encoder. The saved result shows after a restart.
     pub saved: bool,
-    pub clockwise: Option<Motion>,
-    pub counterclockwise: Option<Motion>,
+    pub clockwise: Option<ShaftMotion>,
+    pub counterclockwise: Option<ShaftMotion>,
 }
 
-impl Guide<'_, '_> {
+impl ProcedureContext<'_, '_> {
     pub(super) fn test_wiegand(&mut self, save: bool) -> Result<Outcome, Failure> {
-        let procedure = self.procedure(ProcedureKind::WiegandTest)?;
-        let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
-        let OperatorDecision::Go(clockwise) = self.attend(Task::Turn(first))? else {
+        let procedure = self.find_procedure(ProcedureKind::WiegandTest)?;
+        let (first, second) = (MotorRun::WiegandClockwise, MotorRun::WiegandCounterclockwise);
+        let OperatorDecision::Go(clockwise) = self.run_operator_task(OperatorTask::Turn(first))? else {
             return Ok(Outcome::Skipped { after: None });
         };
         self.enter(&procedure)?;
-        self.collect(first, &procedure, clockwise)?;
-        let OperatorDecision::Go(counterclockwise) = self.attend(Task::Turn(second))? else {
+        self.collect_pulses(first, &procedure, clockwise)?;
+        let OperatorDecision::Go(counterclockwise) = self.run_operator_task(OperatorTask::Turn(second))? else {
             return Ok(Outcome::Skipped { after: Some(first) });
         };
-        self.collect(second, &procedure, counterclockwise)?;
-        self.step(ProcedureStep::Results);
-        let results = procedure.data.and_then(|error| error.plus(1));
+        self.collect_pulses(second, &procedure, counterclockwise)?;
+        self.begin_step(ProcedureStep::Results);
+        let results = procedure.data.and_then(|error| error.offset_by(1));
         let results = results.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         let bytes = self.master.read_consecutive(results, 4)?;
         let Ok(bytes) = <[u8; 4]>::try_from(bytes) else {
@@ -44,8 +44,13 @@ impl Guide<'_, '_> {
         Ok(Outcome::Tested(WiegandReport { result, saved: save, clockwise, counterclockwise }))
     }
 
-    fn collect(&mut self, run: Run, procedure: &Procedure, motion: Option<Motion>) -> Result<(), Failure> {
-        self.step(ProcedureStep::Run(run));
+    fn collect_pulses(
+        &mut self,
+        run: MotorRun,
+        procedure: &Procedure,
+        motion: Option<ShaftMotion>,
+    ) -> Result<(), Failure> {
+        self.begin_step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
         let (command, [before, active, done]) = if run.is_clockwise() {
             let statuses = [WiegandStatus::Stopped, WiegandStatus::Clockwise, WiegandStatus::WaitForDirection];
@@ -55,7 +60,8 @@ impl Guide<'_, '_> {
             (WiegandCommand::StartCounterclockwise, statuses)
         };
         // At the slowest permitted speed, this takes 62 s.
-        let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
+        let rpm =
+            motion.map_or(run.allowed_speeds().least, |motion| motion.rpm.abs()).max(run.allowed_speeds().least / 2.0);
         let expected = Duration::from_secs_f64(f64::from(WiegandResult::REVOLUTIONS) / rpm * 60.0);
         let course = RunProgress {
             run,
@@ -81,7 +87,7 @@ impl Guide<'_, '_> {
     /// Saves the result. Only the status of the encoder confirms this, because the result cannot be read back before a
     /// restart.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
-        self.step(ProcedureStep::Save);
+        self.begin_step(ProcedureStep::Save);
         self.set_activity(Activity::Saving);
         let ended = self.master.write(procedure.command, WiegandCommand::Save.byte());
         if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {

@@ -1,12 +1,12 @@
 //! Single changes and guided runs by case.
 
 use super::*;
-use crate::devices::biss::profile::test_profiles::{areas, profile, set_bank_bytes};
+use crate::devices::biss::profile::test_profiles::{data_areas, profile, set_bank_bytes};
 use crate::devices::biss::protocol::Descriptions;
 use crate::profile::Operation;
 
 fn kit() -> Description {
-    Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone()
+    Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").unwrap().clone()
 }
 
 fn device() -> DeviceState {
@@ -15,7 +15,7 @@ fn device() -> DeviceState {
         identity: profile.identity.clone(),
         filter: profile.filter,
         preset: profile.preset.as_ref().map(|preset| preset.value),
-        areas: areas().to_vec(),
+        areas: data_areas().to_vec(),
         banks: profile.banks().collect(),
     }
 }
@@ -29,14 +29,14 @@ fn edit(place: &str, bytes: &[u8]) -> (RegisterRange, Vec<u8>) {
 }
 
 fn items(plan: &BissPlan) -> Vec<(String, u64)> {
-    plan.ops.iter().map(|op| (op.item(), op.write_cycles())).collect()
+    plan.ops.iter().map(|op| (op.item_name(), op.write_cycles())).collect()
 }
 
 #[test]
 fn edits_of_an_area_need_one_save_and_skip_equal_bytes() {
-    let mut before = Bank::filled(0x24, 0);
+    let mut before = Bank::filled_with(0x24, 0);
     before.bytes[1] = 7;
-    let banks = [before, Bank::filled(0x25, 0), Bank::filled(0x04, 0)];
+    let banks = [before, Bank::filled_with(0x25, 0), Bank::filled_with(0x04, 0)];
     let edits =
         [edit("0x25:0x3F", &[9]), edit("0x24:0x00+3", &[1, 7, 3]), edit("0x24:0x02", &[4]), edit("0x04:0x00", &[0])];
     let plan = plan_edits(&kit(), &banks, &[], &edits).unwrap();
@@ -54,15 +54,15 @@ fn registers_owned_by_a_procedure_are_not_written_directly() {
     for text in
         ["0x6A", "0x6B", "0x00:0x00", "0x00:0x06", "0x00:0x1A", "0x00:0x24", "0x01:0x00", "0x01:0x02", "0x01:0x07"]
     {
-        assert_eq!(place(&kit, at(text)), Err(PlanError::Guarded { address: at(text) }), "{text}");
+        assert_eq!(register_kind(&kit, at(text)), Err(PlanError::Guarded { address: at(text) }), "{text}");
     }
     for text in ["0x66", "0x44", "0x02:0x00", "0x00:0x09"] {
-        assert_eq!(place(&kit, at(text)), Err(PlanError::ReadOnly { address: at(text) }), "{text}");
+        assert_eq!(register_kind(&kit, at(text)), Err(PlanError::ReadOnly { address: at(text) }), "{text}");
     }
     for text in ["0x40", "0x50", "0x00:0x30", "0x01:0x08"] {
-        assert_eq!(place(&kit, at(text)), Ok(RegisterKind::Register), "{text}");
+        assert_eq!(register_kind(&kit, at(text)), Ok(RegisterKind::Register), "{text}");
     }
-    assert!(matches!(place(&kit, at("0x43:0x3F")), Ok(RegisterKind::Data(area)) if area.open == Some(2)));
+    assert!(matches!(register_kind(&kit, at("0x43:0x3F")), Ok(RegisterKind::Data(area)) if area.open == Some(2)));
     let plan =
         plan_edits(&kit, &[], &[(at("0x40"), Some(2)), (at("0x50"), None)], &[edit("0x40", &[3]), edit("0x50", &[1])]);
     let plan = plan.unwrap();
@@ -87,7 +87,7 @@ fn a_filter_is_selected_if_it_differs() {
     (old.identity.firmware, old.filter) = (Some(Firmware::new(1, 0, 9)), None);
     let error = plan_filter(&kit(), &old, PositionFilter::Dynamic).unwrap_err();
     assert_eq!(error.to_string(), "firmware 1.1.0 is needed, the encoder has 1.0.9");
-    let any = Descriptions::built_in().named("BiSS C encoder").unwrap().clone();
+    let any = Descriptions::built_in().find_by_name("BiSS C encoder").unwrap().clone();
     let error = plan_filter(&any, &device(), PositionFilter::Dynamic).unwrap_err();
     assert!(matches!(error, PlanError::NoProcedure { kind: ProcedureKind::FilterSelection, .. }), "{error}");
 }
@@ -104,7 +104,7 @@ fn a_preset_is_stored_and_executed() {
     ];
     for (value, parts, expected) in cases {
         let plan = plan_preset(&kit(), &device(), value, parts).unwrap();
-        let names: Vec<String> = plan.ops.iter().map(Op::item).collect();
+        let names: Vec<String> = plan.ops.iter().map(Op::item_name).collect();
         assert_eq!(names, expected);
         assert_eq!(plan.write_cycles(), expected.len() as u64);
     }
@@ -134,7 +134,7 @@ fn a_mounting_run_forms_one_plan() {
         data: Some(Box::new(data)),
     };
     let plan = plan_mounting(&kit(), &device(), &run, MotorSource::Other).unwrap();
-    let names: Vec<String> = plan.ops.iter().map(Op::item).collect();
+    let names: Vec<String> = plan.ops.iter().map(Op::item_name).collect();
     assert_eq!(names, ["calibration", "Wiegand test", "0x01:0x02+6", "position", "0x24:0x00+2"]);
     assert_eq!(plan.write_cycles(), 5);
     assert_eq!((plan.base.filter, plan.base.preset), (Some(PositionFilter::Balanced), Some(PresetValue::default())));

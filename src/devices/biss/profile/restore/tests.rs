@@ -1,7 +1,7 @@
 //! Plans by case.
 
 use super::*;
-use crate::devices::biss::profile::test_profiles::{areas, profile, set_bank_bytes};
+use crate::devices::biss::profile::test_profiles::{data_areas, profile, set_bank_bytes};
 use crate::devices::biss::profile::{MountingItem, MountingMark, PresetSetting};
 use crate::profile::{Profile, ProfileDocument};
 
@@ -10,7 +10,7 @@ fn device(profile: &BissProfile) -> DeviceState {
         identity: profile.identity.clone(),
         filter: profile.filter,
         preset: profile.preset.as_ref().map(|preset| preset.value),
-        areas: areas().to_vec(),
+        areas: data_areas().to_vec(),
         banks: profile.banks().collect(),
     }
 }
@@ -30,7 +30,7 @@ fn ops(restore: &Restore) -> Vec<String> {
                     registers.iter().map(|own| format!("{}:{:02X}>{:02X}", own.address, own.old, own.new)).collect();
                 format!("{} {} ({cost})", area.name, bytes.join(" "))
             }
-            op => format!("{} ({cost})", op.item()),
+            op => format!("{} ({cost})", op.item_name()),
         }
     };
     restore.plan.ops.iter().map(short).collect()
@@ -48,10 +48,10 @@ fn differences_in_an_area_need_one_save() {
     set_bank_bytes(&mut wanted, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
     let restore = planned(&wanted, &device(&now));
     assert_eq!(ops(&restore), ["OEM data 0x24:0x10:00>01 0x24:0x11:00>02 0x24:0x30:00>03 (1)"]);
-    assert_eq!(restore.plan.ops[0].item(), "0x24:0x10+2, 0x24:0x30");
-    assert_eq!(restore.plan.ops[0].weight(), 3);
+    assert_eq!(restore.plan.ops[0].item_name(), "0x24:0x10+2, 0x24:0x30");
+    assert_eq!(restore.plan.ops[0].compared_items(), 3);
     assert_eq!(restore.plan.write_cycles(), 1);
-    assert_eq!(restore.plan.base.banks, [Bank::filled(0x24, 0)]);
+    assert_eq!(restore.plan.base.banks, [Bank::filled_with(0x24, 0)]);
     // Filter, six registers of the preset value, all but three of 64 banks.
     assert_eq!(restore.unchanged, 1 + 6 + 64 * 64 - 3);
     assert_eq!((restore.missing, restore.mounting_left), (vec![], vec![]));
@@ -118,11 +118,11 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
     let mut now = wanted.clone();
     set_bank_bytes(&mut now, 0x25, &[(1, 0xAB)]);
     assert_eq!(ops(&planned(&wanted, &device(&now))), ["OEM data 0x25:0x01:AB>00 (1)"]);
-    assert_eq!(required_banks(&wanted, &areas()).len(), 64);
+    assert_eq!(required_banks(&wanted, &data_areas()).len(), 64);
     let mut partial = wanted.clone();
     partial.data.iter_mut().for_each(|image| image.empty = None);
     set_bank_bytes(&mut partial, 0x25, &[(1, 0xAB)]);
-    assert_eq!(required_banks(&partial, &areas()), [0x25]);
+    assert_eq!(required_banks(&partial, &data_areas()), [0x25]);
 }
 
 /// Issue 22.9: another kind of encoder needs its own permission; the one for another serial number is not enough.

@@ -28,7 +28,7 @@ fn a_handwritten_profile_parses() {
     assert_eq!(profile.bank(0x25).unwrap().bytes[0x2A], 0x2A);
     assert_eq!(profile.bank(0x24), None, "without `empty` nothing is said about it");
     let filled = profile_with("listed:", "empty: 0xFF, listed:");
-    assert_eq!(filled.bank(0x24), Some(Bank::filled(0x24, 0xFF)));
+    assert_eq!(filled.bank(0x24), Some(Bank::filled_with(0x24, 0xFF)));
     assert_eq!((filled.bank(0x23), filled.bank(0x44)), (None, None));
     assert_eq!(filled.banks().count(), 32);
     assert_eq!(profile.banks().count(), 1);
@@ -46,8 +46,8 @@ fn full_profile() -> BissProfile {
     (profile.identity.multiturn_bits, profile.identity.singleturn_bits) = (Some(16), Some(17));
     profile.filter = Some(PositionFilter::Dynamic);
     profile.preset = Some(PresetSetting { value: PresetValue::new(98_304, 7).unwrap(), unknown: Default::default() });
-    profile.recorded = Recorded {
-        eds: vec![Bank::filled(0x02, 0x17).into()],
+    profile.recorded = RecordedValues {
+        eds: vec![Bank::filled_with(0x02, 0x17).into()],
         wiegand_last: Some(WiegandResult::parse([63, 58, 64, 57])),
         wiegand_production: Some(WiegandResult::parse([1, 2, 3, 4])),
         wiegand_saved: None,
@@ -181,13 +181,13 @@ fn profile_errors_name_their_location() {
 fn empty_banks_are_not_written() {
     let area = Area { name: "OEM data".to_owned().into(), first: 0x24, last: 0x27, access: Access::Rw, open: Some(2) };
     let some = |number| {
-        let mut bank = Bank::filled(number, 0);
+        let mut bank = Bank::filled_with(number, 0);
         bank.bytes[5] = 9;
         bank
     };
     let numbers = |image: &DataImage| image.listed.iter().map(|listed| listed.bank.number).collect::<Vec<_>>();
-    let zero = |number| Bank::filled(number, 0);
-    let erased = |number| Bank::filled(number, 0xFF);
+    let zero = |number| Bank::filled_with(number, 0);
+    let erased = |number| Bank::filled_with(number, 0xFF);
     for (label, banks, empty, listed) in [
         ("some zero", vec![zero(0x24), some(0x25), zero(0x26), erased(0x27)], Some(0), vec![0x25, 0x27]),
         ("most erased", vec![erased(0x24), some(0x25), zero(0x26), erased(0x27)], Some(0xFF), vec![0x25, 0x26]),
@@ -195,9 +195,9 @@ fn empty_banks_are_not_written() {
         ("not all of it", vec![zero(0x24), some(0x25)], None, vec![0x24, 0x25]),
         ("empty", vec![zero(0x24), zero(0x25), zero(0x26), zero(0x27)], Some(0), vec![]),
     ] {
-        let image = DataImage::of(&area, banks.clone());
+        let image = DataImage::new(&area, banks.clone());
         assert_eq!((image.empty, numbers(&image)), (empty, listed), "{label}");
-        assert_eq!(image.all().collect::<Vec<_>>(), banks, "{label}");
+        assert_eq!(image.all_banks().collect::<Vec<_>>(), banks, "{label}");
     }
 }
 

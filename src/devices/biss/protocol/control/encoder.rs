@@ -15,7 +15,7 @@ pub struct Encoder {
 /// A register access requested by the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The host reads a register and waits until [`Encoder::answer`] supplies its value.
+    /// The host reads a register and waits until [`Encoder::answer_task`] supplies its value.
     Read {
         /// Register address, 00h to 7Fh.
         address: u8,
@@ -100,11 +100,13 @@ impl Encoder {
         let (state, event) = match self.state {
             State::Rest if bit && rested => (State::Head { bits: 1, cycle: 1 }, None),
             State::Rest | State::Ignoring | State::Start { .. } => (self.state, None),
-            State::Head { bits, cycle } => self.head(bits << 1 | u32::from(bit), cycle + 1),
+            State::Head { bits, cycle } => self.receive_head(bits << 1 | u32::from(bit), cycle + 1),
             State::Data { address, access, word, sent } if sent < Self::WORD_BITS => {
-                transfer(address, access, word, bit, sent + 1)
+                transfer_bit(address, access, word, bit, sent + 1)
             }
-            State::Data { address, access, .. } if bit && address + 1 < REGISTERS => begin(address + 1, access),
+            State::Data { address, access, .. } if bit && address + 1 < REGISTERS => {
+                begin_transfer(address + 1, access)
+            }
             State::Data { .. } if bit => (State::Ignoring, None),
             State::Data { .. } => (State::Rest, None),
         };
@@ -113,13 +115,13 @@ impl Encoder {
     }
 
     /// Supplies the value of the requested register. Has no effect without a pending request.
-    pub fn answer(&mut self, value: u8) {
+    pub fn provide_value(&mut self, value: u8) {
         if let State::Start { access: access @ Access::Read(None), .. } = &mut self.state {
             *access = Access::Read(Some(append_crc4(value)));
         }
     }
 
-    fn head(&self, bits: u32, cycle: u8) -> (State, Option<Event>) {
+    fn receive_head(&self, bits: u32, cycle: u8) -> (State, Option<Event>) {
         match cycle {
             Self::HEADER_BITS => {
                 let header = (bits >> 4 & 0x7FF) as u16;
@@ -138,13 +140,13 @@ impl Encoder {
             _ if bits & 1 == 0 => (State::Ignoring, None),
             _ => {
                 let access = if bits & 0b100 != 0 { Access::Read(None) } else { Access::Write };
-                begin((bits >> 7 & 0x7F) as u8, access)
+                begin_transfer((bits >> 7 & 0x7F) as u8, access)
             }
         }
     }
 }
 
-fn begin(address: u8, access: Access) -> (State, Option<Event>) {
+fn begin_transfer(address: u8, access: Access) -> (State, Option<Event>) {
     match access {
         Access::Read(_) => (State::Start { address, access: Access::Read(None) }, Some(Event::Read { address })),
         Access::Write => (State::Start { address, access }, None),
@@ -152,7 +154,7 @@ fn begin(address: u8, access: Access) -> (State, Option<Event>) {
 }
 
 /// Handles one bit of DATA and CRC4. `sent` counts the bits and includes the current one.
-fn transfer(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
+fn transfer_bit(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
     if access != Access::Write {
         return (State::Data { address, access, word, sent }, None);
     }

@@ -70,14 +70,14 @@ impl Default for Host {
 
 impl Host {
     /// Last cycle of a request's head. In the following cycle, the encoder may send its start bit S.
-    const LAST_OF_HEAD: u8 = 18;
+    const LAST_HEAD_CYCLE: u8 = 18;
     const WORD_BITS: u8 = 12;
 
     /// Submits a request, which is sent as soon as the line is idle.
     ///
     /// # Errors
     /// Returns the request if another one is in progress.
-    pub fn ask(&mut self, request: Request) -> Result<(), Request> {
+    pub fn submit(&mut self, request: Request) -> Result<(), Request> {
         if self.is_busy() {
             return Err(request);
         }
@@ -91,16 +91,16 @@ impl Host {
     }
 
     /// Abandons the request. The encoder discards it during the zeros before the next request.
-    pub fn abort(&mut self) {
+    pub fn abandon(&mut self) {
         self.waiting = None;
-        self.rest();
+        self.restart_zeros();
     }
 
     /// Runs one cycle with the received CDS bit and returns the CDM bit that ends the cycle.
-    pub fn cycle(&mut self, cds: bool) -> Step {
+    pub fn run_cycle(&mut self, cds: bool) -> Step {
         let step = match std::mem::replace(&mut self.state, State::Rest) {
-            State::Rest => self.begin(),
-            State::Head { request, bits, cycle } => self.head(request, bits, cycle, cds),
+            State::Rest => self.begin_request(),
+            State::Head { request, bits, cycle } => self.send_head(request, bits, cycle, cds),
             State::Start { transfer, cycles } => self.start(transfer, cycles, cds),
             State::Data { transfer, word, received } => self.data(transfer, word << 1 | u16::from(cds), received + 1),
         };
@@ -108,35 +108,35 @@ impl Host {
         step
     }
 
-    fn begin(&mut self) -> Step {
+    fn begin_request(&mut self) -> Step {
         if self.zeros < REST_CYCLES {
             return Step { cdm: false, outcome: None };
         }
         match self.waiting.take() {
             None => Step { cdm: false, outcome: None },
             Some(request) => {
-                let bits = head(&request);
+                let bits = head_bits(&request);
                 self.state = State::Head { request, bits, cycle: 1 };
                 Step { cdm: true, outcome: None }
             }
         }
     }
 
-    fn head(&mut self, request: Request, bits: u32, cycle: u8, cds: bool) -> Step {
+    fn send_head(&mut self, request: Request, bits: u32, cycle: u8, cds: bool) -> Step {
         // Bit that the encoder must send in this cycle, if known.
         let expected = match cycle {
-            17 => Some(request.reads()),
-            18 => Some(!request.reads()),
+            17 => Some(request.is_read()),
+            18 => Some(!request.is_read()),
             _ => None,
         };
         if cycle == request.slave + 1 && !cds {
-            return self.fail(ControlError::NoSlave(request.slave));
+            return self.fail_request(ControlError::NoSlave(request.slave));
         }
         if expected.is_some_and(|expected| expected != cds) {
-            return self.fail(ControlError::Rejected(request.address));
+            return self.fail_request(ControlError::Rejected(request.address));
         }
-        let cdm = bits >> (Self::LAST_OF_HEAD - cycle) & 1 == 1;
-        self.state = if cycle < Self::LAST_OF_HEAD {
+        let cdm = bits >> (Self::LAST_HEAD_CYCLE - cycle) & 1 == 1;
+        self.state = if cycle < Self::LAST_HEAD_CYCLE {
             State::Head { request, bits, cycle: cycle + 1 }
         } else {
             State::Start { transfer: Transfer { request, values: Vec::new() }, cycles: 0 }
@@ -146,7 +146,7 @@ impl Host {
 
     fn start(&mut self, transfer: Transfer, cycles: u8, cds: bool) -> Step {
         if !cds && cycles >= MAX_WAIT_CYCLES {
-            return self.fail(ControlError::TimeOut(transfer.address()));
+            return self.fail_request(ControlError::TimeOut(transfer.address()));
         }
         if !cds {
             self.state = State::Start { transfer, cycles: cycles + 1 };
@@ -166,32 +166,32 @@ impl Host {
         let [value, got] = [(word >> 4) as u8, (word & 0xF) as u8];
         let expected = crc4(value.into(), 8);
         if got != expected {
-            return self.fail(ControlError::Crc { address: transfer.address(), expected, got });
+            return self.fail_request(ControlError::Crc { address: transfer.address(), expected, got });
         }
         transfer.values.push(value);
         if transfer.values.len() < transfer.request.count() {
             self.state = State::Start { transfer, cycles: 0 };
             return Step { cdm: true, outcome: None };
         }
-        self.rest();
+        self.restart_zeros();
         Step { cdm: false, outcome: Some(Ok(transfer.values)) }
     }
 
-    fn fail(&mut self, error: ControlError) -> Step {
-        self.rest();
+    fn fail_request(&mut self, error: ControlError) -> Step {
+        self.restart_zeros();
         Step { cdm: false, outcome: Some(Err(error)) }
     }
 
     /// Restarts the count of zeros before the next request, since zeros within a frame may have been data.
-    fn rest(&mut self) {
+    fn restart_zeros(&mut self) {
         self.state = State::Rest;
         self.zeros = 0;
     }
 }
 
 /// Returns the head of a request, which consists of S, CTS, ID, ADR, CRC4, R, W and S.
-fn head(request: &Request) -> u32 {
+fn head_bits(request: &Request) -> u32 {
     let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
-    let access = if request.reads() { 0b10 } else { 0b01 };
+    let access = if request.is_read() { 0b10 } else { 0b01 };
     1 << 18 | u32::from(header) << 7 | u32::from(crc4(header, 11)) << 3 | access << 1 | 1
 }

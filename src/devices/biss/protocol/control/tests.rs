@@ -82,17 +82,17 @@ impl Line {
 
     fn ask(&mut self, request: Request) -> Result<Vec<u8>, ControlError> {
         (self.cdm, self.cds) = (Vec::new(), Vec::new());
-        self.host.ask(request).unwrap();
+        self.host.submit(request).unwrap();
         let mut pending: Option<(u8, u8)> = None;
         for _ in 0..5_000 {
             if let Some((address, 0)) = pending {
-                self.encoder.answer(self.registers[usize::from(address)]);
+                self.encoder.provide_value(self.registers[usize::from(address)]);
                 pending = None;
             }
             pending = pending.map(|(address, cycles)| (address, cycles - 1));
             let cycle = self.cds.len();
             let cds = self.encoder.next_cds() ^ (self.flip_cds == Some(cycle));
-            let step = self.host.cycle(cds);
+            let step = self.host.run_cycle(cds);
             if step.cdm || !self.cdm.is_empty() {
                 self.cds.push(cds);
                 self.cdm.push(step.cdm);
@@ -145,16 +145,16 @@ fn published_reply_matches() {
     for bit in bits(cdm) {
         cds.push(encoder.next_cds());
         if encoder.receive_cdm(bit) == Some(Event::Read { address: 0x66 }) {
-            encoder.answer(0x4B);
+            encoder.provide_value(0x4B);
         }
     }
     cds.push(encoder.next_cds());
     assert_eq!(text(&cds), CDS_4B);
 
     let mut host = Host::default();
-    host.ask(Request::read(0, 0x66, 1).unwrap()).unwrap();
-    (0..REST_CYCLES).for_each(|_| assert_eq!(host.cycle(false), Step { cdm: false, outcome: None }));
-    let steps: Vec<Step> = bits(CDS_4B)[..32].iter().map(|bit| host.cycle(*bit)).collect();
+    host.submit(Request::read(0, 0x66, 1).unwrap()).unwrap();
+    (0..REST_CYCLES).for_each(|_| assert_eq!(host.run_cycle(false), Step { cdm: false, outcome: None }));
+    let steps: Vec<Step> = bits(CDS_4B)[..32].iter().map(|bit| host.run_cycle(*bit)).collect();
     assert_eq!(text(&steps.iter().map(|step| step.cdm).collect::<Vec<_>>()), cdm);
     assert!(steps[..31].iter().all(|step| step.outcome.is_none()));
     assert_eq!(steps[31].outcome, Some(Ok(vec![0x4B])));
@@ -232,14 +232,14 @@ fn fourteen_zeros_reset_every_cycle() {
 #[test]
 fn an_aborted_request_leaves_the_host_ready() {
     let mut host = Host::default();
-    host.ask(Request::read(0, 0x66, 1).unwrap()).unwrap();
-    assert!(host.ask(Request::read(0, 0x67, 1).unwrap()).is_err());
-    (0..20).for_each(|_| drop(host.cycle(true)));
-    host.abort();
+    host.submit(Request::read(0, 0x66, 1).unwrap()).unwrap();
+    assert!(host.submit(Request::read(0, 0x67, 1).unwrap()).is_err());
+    (0..20).for_each(|_| drop(host.run_cycle(true)));
+    host.abandon();
     assert!(!host.is_busy());
-    host.ask(Request::read(0, 0x40, 1).unwrap()).unwrap();
-    (0..REST_CYCLES).for_each(|_| assert!(!host.cycle(false).cdm));
-    assert!(host.cycle(false).cdm);
+    host.submit(Request::read(0, 0x40, 1).unwrap()).unwrap();
+    (0..REST_CYCLES).for_each(|_| assert!(!host.run_cycle(false).cdm));
+    assert!(host.run_cycle(false).cdm);
 }
 
 /// A flipped bit of the encoder's answer never results in a wrong value read, and one of the host's never in a wrong
@@ -294,12 +294,12 @@ proptest! {
         let (mut host, mut encoder) = (Host::default(), Encoder::new(0));
         for bit in noise {
             if !host.is_busy() {
-                let _ = host.ask(Request::read(0, 0x40, 3).unwrap());
+                let _ = host.submit(Request::read(0, 0x40, 3).unwrap());
             }
-            host.cycle(bit);
+            host.run_cycle(bit);
             encoder.next_cds();
             if let Some(Event::Read { .. }) = encoder.receive_cdm(bit) {
-                encoder.answer(7);
+                encoder.provide_value(7);
             }
         }
     }

@@ -14,7 +14,7 @@ use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
 use super::codes::CodeTable;
-use super::flaw::{self, Claim, DescriptionErrorKind};
+use super::flaw::{self, DescriptionErrorKind, UniqueItem};
 use super::german::GermanNames;
 use super::name::Name;
 use super::register::{Access, Area, Register, Role, ValueDecoding};
@@ -26,12 +26,12 @@ use crate::bits::ByteOrder;
 /// # Errors
 /// Returns the error and its position in the file.
 pub(super) fn parse(text: &str) -> Result<Description, (Position, DescriptionErrorKind)> {
-    flaw::take();
+    flaw::take_error();
     let read: Result<File, SpannedError> = ron::from_str(text);
     let mut file = read.map_err(|SpannedError { code, span }| {
-        (span.start, flaw::take().unwrap_or_else(|| DescriptionErrorKind::Form(code.to_string())))
+        (span.start, flaw::take_error().unwrap_or_else(|| DescriptionErrorKind::Form(code.to_string())))
     })?;
-    std::mem::take(&mut file.german).translate(file.names(), text)?;
+    std::mem::take(&mut file.german).translate(file.names_mut(), text)?;
     Ok(Description {
         name: file.name,
         identity: file.identity,
@@ -67,7 +67,7 @@ struct File {
 }
 
 impl File {
-    fn names(&mut self) -> impl Iterator<Item = &mut Name> {
+    fn names_mut(&mut self) -> impl Iterator<Item = &mut Name> {
         let registers = self.registers.0.iter_mut().flat_map(|register| {
             let values: Box<dyn Iterator<Item = &mut Name>> = match &mut register.decoding {
                 ValueDecoding::Bits(bits) => Box::new(bits.iter_mut().map(|(_, name)| name)),
@@ -129,7 +129,7 @@ struct LockRow {
 #[serde(deny_unknown_fields)]
 struct RegisterRow {
     at: RegisterLocation,
-    #[serde(default = "one")]
+    #[serde(default = "default_count")]
     width: u8,
     name: Name,
     #[serde(default)]
@@ -181,7 +181,7 @@ struct ProcedureRow {
     since: (u8, u8, u8),
 }
 
-fn one() -> u8 {
+fn default_count() -> u8 {
     1
 }
 
@@ -191,7 +191,7 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
     fn try_from(place: RegisterLocation) -> Result<Self, DescriptionErrorKind> {
         match place {
             RegisterLocation::Direct(address) => {
-                RegisterAddress::direct(address).ok_or(DescriptionErrorKind::Direct(address))
+                RegisterAddress::direct_register(address).ok_or(DescriptionErrorKind::Direct(address))
             }
             RegisterLocation::Bank(bank, offset) => {
                 RegisterAddress::in_bank(bank, offset).ok_or(DescriptionErrorKind::Banked { bank, offset })
@@ -206,7 +206,7 @@ macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                $row::deserialize(deserializer)?.check().map_err(flaw::found)
+                $row::deserialize(deserializer)?.validate().map_err(flaw::store_error)
             }
         }
     )*};
@@ -222,34 +222,34 @@ checked! {
 }
 
 impl IdentityRow {
-    fn check(self) -> Result<Identity, DescriptionErrorKind> {
+    fn validate(self) -> Result<Identity, DescriptionErrorKind> {
         let IdentityRow { profile, manufacturer, device_id } = self;
         Ok(Identity { profile: ProfileId::new(profile), manufacturer, device_id })
     }
 }
 
 impl LayoutRow {
-    fn check(self) -> Result<Layout, LayoutError> {
+    fn validate(self) -> Result<Layout, LayoutError> {
         let crc = self.crc.map(|row| Crc::new(row.polynomial, row.start, row.inverted)).transpose()?;
         Layout::new(self.multiturn, self.singleturn, self.error, self.warning, crc)
     }
 }
 
 impl LockRow {
-    fn check(self) -> Result<Lock, DescriptionErrorKind> {
+    fn validate(self) -> Result<Lock, DescriptionErrorKind> {
         let (password_at, mode_at) = (self.password_at.try_into()?, self.mode_at.try_into()?);
         Ok(Lock { password_at, password: self.password, mode_at })
     }
 }
 
 impl RegisterRow {
-    fn check(self) -> Result<Register, DescriptionErrorKind> {
+    fn validate(self) -> Result<Register, DescriptionErrorKind> {
         let address: RegisterAddress = self.at.try_into()?;
         let (name, width) = (self.name, self.width);
         if !(1..=Register::MAX_WIDTH).contains(&width) {
             return Err(DescriptionErrorKind::Width { name: name.to_string(), width });
         }
-        if address.plus(width - 1).is_none() {
+        if address.offset_by(width - 1).is_none() {
             return Err(DescriptionErrorKind::BeyondBank { name: name.to_string(), width, address });
         }
         if !self.default.is_empty() && self.default.len() != usize::from(width) {
@@ -271,7 +271,7 @@ impl RegisterRow {
         {
             return Err(DescriptionErrorKind::Endless(name.to_string()));
         }
-        if !self.access.writes() && !self.saves.is_empty() {
+        if !self.access.is_writable() && !self.saves.is_empty() {
             return Err(DescriptionErrorKind::SavesNothing(name.to_string()));
         }
         Ok(Register {
@@ -291,7 +291,7 @@ impl RegisterRow {
 }
 
 impl AreaRow {
-    fn check(self) -> Result<Area, DescriptionErrorKind> {
+    fn validate(self) -> Result<Area, DescriptionErrorKind> {
         let (first, last) = self.banks;
         if first > last {
             return Err(DescriptionErrorKind::Banks { name: self.name.to_string(), first, last });
@@ -301,7 +301,7 @@ impl AreaRow {
 }
 
 impl ProcedureRow {
-    fn check(self) -> Result<Procedure, DescriptionErrorKind> {
+    fn validate(self) -> Result<Procedure, DescriptionErrorKind> {
         Ok(Procedure {
             kind: self.kind,
             mode: self.mode,
@@ -319,32 +319,32 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
 
 /// A row of a description file. It claims items such as registers, which no other row may claim.
 trait Row {
-    fn unique_items(&self) -> Vec<Claim>;
+    fn unique_items(&self) -> Vec<UniqueItem>;
 }
 
 impl Row for Register {
-    fn unique_items(&self) -> Vec<Claim> {
-        let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(Claim::Register);
-        let role = self.role.map(Claim::Role);
+    fn unique_items(&self) -> Vec<UniqueItem> {
+        let bytes = (0..self.width).filter_map(|at| self.address.offset_by(at)).map(UniqueItem::Register);
+        let role = self.role.map(UniqueItem::Role);
         bytes.chain(role).collect()
     }
 }
 
 impl Row for BankRow {
-    fn unique_items(&self) -> Vec<Claim> {
-        vec![Claim::Bank(self.bank)]
+    fn unique_items(&self) -> Vec<UniqueItem> {
+        vec![UniqueItem::Bank(self.bank)]
     }
 }
 
 impl Row for Area {
-    fn unique_items(&self) -> Vec<Claim> {
-        (self.first..=self.last).map(Claim::Bank).collect()
+    fn unique_items(&self) -> Vec<UniqueItem> {
+        (self.first..=self.last).map(UniqueItem::Bank).collect()
     }
 }
 
 impl Row for Procedure {
-    fn unique_items(&self) -> Vec<Claim> {
-        vec![Claim::Procedure(self.kind)]
+    fn unique_items(&self) -> Vec<UniqueItem> {
+        vec![UniqueItem::Procedure(self.kind)]
     }
 }
 
@@ -378,7 +378,7 @@ impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
         while let Some(row) = list.next_element::<T>()? {
             for claim in row.unique_items() {
                 if claimed.contains(&claim) {
-                    return Err(flaw::found(DescriptionErrorKind::Twice(claim)));
+                    return Err(flaw::store_error(DescriptionErrorKind::Twice(claim)));
                 }
                 claimed.insert(claim);
             }

@@ -86,7 +86,7 @@ pub enum DescriptionErrorKind {
     Layout(#[from] LayoutError),
     /// An item occurs in more than one row.
     #[error("{0} is defined more than once")]
-    Twice(Claim),
+    Twice(UniqueItem),
     /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
@@ -97,7 +97,7 @@ pub enum DescriptionErrorKind {
 
 /// An item that may occur only once in a description.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
-pub enum Claim {
+pub enum UniqueItem {
     /// A register byte.
     #[error("register {0}")]
     Register(RegisterAddress),
@@ -116,18 +116,18 @@ pub enum Claim {
 }
 
 thread_local! {
-    static FOUND: Cell<Option<DescriptionErrorKind>> = const { Cell::new(None) };
+    static LAST_ERROR: Cell<Option<DescriptionErrorKind>> = const { Cell::new(None) };
 }
 
 /// Stores an error and returns a copy of its message for the RON parser, which adds the position.
-pub(super) fn found<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E {
+pub(super) fn store_error<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E {
     let flaw = flaw.into();
     let words = E::custom(&flaw);
-    FOUND.set(Some(flaw));
+    LAST_ERROR.set(Some(flaw));
     words
 }
 
 /// Removes and returns the last error found on the current thread.
-pub(super) fn take() -> Option<DescriptionErrorKind> {
-    FOUND.take()
+pub(super) fn take_error() -> Option<DescriptionErrorKind> {
+    LAST_ERROR.take()
 }

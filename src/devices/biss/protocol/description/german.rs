@@ -9,7 +9,7 @@ use ron::error::Position;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::flaw::{self, Claim, DescriptionErrorKind};
+use super::flaw::{self, DescriptionErrorKind, UniqueItem};
 use super::name::Name;
 
 /// A map from English names to German ones.
@@ -35,13 +35,13 @@ impl GermanNames {
         }
         match self.0.into_keys().next() {
             None => Ok(()),
-            Some(english) => Err((location_of(&english, text), DescriptionErrorKind::GermanNeedless(english))),
+            Some(english) => Err((entry_location(&english, text), DescriptionErrorKind::GermanNeedless(english))),
         }
     }
 }
 
 /// Returns the line and column of an entry, counted from 1. Returns the start of the file if the entry is not found.
-fn location_of(english: &str, text: &str) -> Position {
+fn entry_location(english: &str, text: &str) -> Position {
     let key = format!("\"{english}\"");
     let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(starts_with_colon));
     let found = text.lines().enumerate().find_map(|(line, words)| Some((line + 1, words, is_entry(words)?)));
@@ -74,10 +74,10 @@ impl<'de> Visitor<'de> for Entries {
         let mut entries = BTreeMap::new();
         while let Some((english, german)) = map.next_entry::<String, String>()? {
             if german.trim().is_empty() {
-                return Err(flaw::found(DescriptionErrorKind::GermanEmpty(english)));
+                return Err(flaw::store_error(DescriptionErrorKind::GermanEmpty(english)));
             }
             if entries.contains_key(&english) {
-                return Err(flaw::found(DescriptionErrorKind::Twice(Claim::Name(english))));
+                return Err(flaw::store_error(DescriptionErrorKind::Twice(UniqueItem::Name(english))));
             }
             entries.insert(english, german);
         }

@@ -104,7 +104,7 @@ pub enum ValueDecoding {
 
 /// The decoded value of a register.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Decoded<'a> {
+pub enum DecodedValue<'a> {
     /// Plain number.
     Number(u64),
     /// Code without numerical meaning.
@@ -136,12 +136,12 @@ pub struct Area {
 
 impl Access {
     /// Returns whether reading is permitted.
-    pub const fn reads(self) -> bool {
+    pub const fn is_readable(self) -> bool {
         matches!(self, Access::R | Access::Rw)
     }
 
     /// Returns whether writing is permitted.
-    pub const fn writes(self) -> bool {
+    pub const fn is_writable(self) -> bool {
         matches!(self, Access::W | Access::Rw)
     }
 }
@@ -153,13 +153,13 @@ impl Register {
     /// Returns whether the register contains the byte at the given address.
     pub fn contains(&self, address: RegisterAddress) -> bool {
         // Global addresses of a bank are consecutive, and a register lies within one bank.
-        let first = self.address.global();
-        (first..first + u16::from(self.width)).contains(&address.global())
+        let first = self.address.global_number();
+        (first..first + u16::from(self.width)).contains(&address.global_number())
     }
 
     /// Returns the number that the bytes represent. Returns `None` if the number of bytes differs from the register's
     /// width.
-    pub fn number(&self, bytes: &[u8]) -> Option<u64> {
+    pub fn to_number(&self, bytes: &[u8]) -> Option<u64> {
         let join = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
         (bytes.len() == usize::from(self.width)).then(|| match self.order {
             ByteOrder::HighFirst => bytes.iter().fold(0, join),
@@ -181,23 +181,23 @@ impl Register {
     }
 
     /// Decodes the bytes of the register, or returns `None` if their number differs from the width.
-    pub fn decode(&self, bytes: &[u8]) -> Option<Decoded<'_>> {
-        let number = self.number(bytes)?;
+    pub fn decode(&self, bytes: &[u8]) -> Option<DecodedValue<'_>> {
+        let number = self.to_number(bytes)?;
         Some(match &self.decoding {
-            ValueDecoding::Number => Decoded::Number(number),
-            ValueDecoding::Hex => Decoded::Hex(number),
-            ValueDecoding::Scaled { factor, offset } => Decoded::Scaled(number as f64 * factor + offset),
+            ValueDecoding::Number => DecodedValue::Number(number),
+            ValueDecoding::Hex => DecodedValue::Hex(number),
+            ValueDecoding::Scaled { factor, offset } => DecodedValue::Scaled(number as f64 * factor + offset),
             ValueDecoding::Bits(names) => {
                 let name = |bit: u8| names.iter().find(|(own, _)| *own == bit).map(|(_, name)| name);
                 let set = (0..self.width * 8).filter(|bit| number >> bit & 1 == 1);
-                Decoded::Bits(set.map(|bit| (bit, name(bit))).collect())
+                DecodedValue::Bits(set.map(|bit| (bit, name(bit))).collect())
             }
             ValueDecoding::Choice(names) => {
                 let name = names.iter().find(|(own, _)| *own == number).map(|(_, name)| name);
-                Decoded::Choice(number, name)
+                DecodedValue::Choice(number, name)
             }
-            ValueDecoding::Version => Decoded::Text(bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(".")),
-            ValueDecoding::Text => Decoded::Text(bytes.escape_ascii().to_string()),
+            ValueDecoding::Version => DecodedValue::Text(bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(".")),
+            ValueDecoding::Text => DecodedValue::Text(bytes.escape_ascii().to_string()),
         })
     }
 

@@ -61,17 +61,17 @@ fn kit_encoder_registers_match_the_reference() {
     ];
     let kit = kit();
     for (place, width, access, default, since) in cases {
-        let register = kit.at(at(place)).unwrap();
+        let register = kit.register_at(at(place)).unwrap();
         assert_eq!(register.address, at(place), "{place}");
         assert_eq!((register.width, register.access), (width, access), "{place}");
         assert_eq!((register.default.as_slice(), register.since), (default, since), "{place}");
     }
-    assert_eq!(kit.at(at("0x47")).map(|register| register.name.english()), Some("serial number"));
-    assert_eq!(kit.at(at("0x67")), None);
+    assert_eq!(kit.register_at(at("0x47")).map(|register| register.name.english()), Some("serial number"));
+    assert_eq!(kit.register_at(at("0x67")), None);
     let areas: Vec<_> = kit.areas().iter().map(|area| (area.first, area.last, area.size(), area.open)).collect();
     assert_eq!(areas, [(0x04, 0x23, 2048, Some(0x01)), (0x24, 0x43, 2048, Some(0x02))]);
-    assert_eq!(kit.access(at("0x24:0x10")), Some(Rw));
-    assert_eq!(kit.access(at("0x44:0x00")), None);
+    assert_eq!(kit.access_at(at("0x24:0x10")), Some(Rw));
+    assert_eq!(kit.access_at(at("0x44:0x00")), None);
     assert_eq!(kit.area_at(at("0x43:0x3F")).map(|area| area.name.english()), Some("OEM data"));
     assert_eq!(kit.area_at(at("0x66")), None);
     assert_eq!(kit.layout(), Some(&Layout::default()));
@@ -115,9 +115,9 @@ fn the_file_agrees_with_the_protocol_tables() {
     let kit = kit();
     for bank in [EdsBank::Common, EdsBank::Encoder] {
         for field in bank.fields() {
-            let register = kit.at(RegisterAddress::in_bank(bank.number(), field.offset).unwrap()).unwrap();
+            let register = kit.register_at(RegisterAddress::in_bank(bank.kit_number(), field.offset).unwrap()).unwrap();
             assert_eq!((register.name.english(), register.width), (field.name, field.width));
-            let default = register.number(&register.default).and_then(|number| u32::try_from(number).ok());
+            let default = register.to_number(&register.default).and_then(|number| u32::try_from(number).ok());
             assert_eq!(default, field.default, "{}", field.name);
         }
     }
@@ -126,12 +126,12 @@ fn the_file_agrees_with_the_protocol_tables() {
 #[test]
 fn registers_are_decoded() {
     let kit = kit();
-    let decode = |place: &str, bytes: &[u8]| match kit.at(at(place)).unwrap().decode(bytes) {
-        Some(Decoded::Bits(set)) => {
+    let decode = |place: &str, bytes: &[u8]| match kit.register_at(at(place)).unwrap().decode(bytes) {
+        Some(DecodedValue::Bits(set)) => {
             let words = |(bit, name): (u8, Option<&Name>)| format!("{bit} {}", name.map_or("?", Name::english));
             set.into_iter().map(words).collect::<Vec<_>>().join(", ")
         }
-        Some(Decoded::Choice(value, name)) => format!("{value} {}", name.map_or("?", Name::english)),
+        Some(DecodedValue::Choice(value, name)) => format!("{value} {}", name.map_or("?", Name::english)),
         other => format!("{other:?}"),
     };
     let cases: [(&str, &[u8], &str); 9] = [
@@ -148,25 +148,25 @@ fn registers_are_decoded() {
     for (place, bytes, said) in cases {
         assert_eq!(decode(place, bytes), said, "{place}");
     }
-    let preset = kit.at(at("0x01:0x02")).unwrap();
+    let preset = kit.register_at(at("0x01:0x02")).unwrap();
     assert_eq!(preset.bytes(98_304), Some(vec![0x00, 0x80, 0x01]));
     assert_eq!(preset.bytes(1 << 24), None);
-    let average = kit.at(at("0x00:0x0A")).unwrap();
-    let Some(Decoded::Scaled(volts)) = average.decode(&[PulseVoltage::LIMIT.byte()]) else { panic!() };
+    let average = kit.register_at(at("0x00:0x0A")).unwrap();
+    let Some(DecodedValue::Scaled(volts)) = average.decode(&[PulseVoltage::LIMIT.byte()]) else { panic!() };
     assert!((volts - 5.3).abs() < 1e-9 && average.unit == "V");
     let set = |role: Role, byte: u8| match kit.register_with_role(role).unwrap().decode(&[byte]) {
-        Some(Decoded::Bits(set)) => {
+        Some(DecodedValue::Bits(set)) => {
             set.into_iter().map(|(bit, name)| (bit, name.map(Name::english))).collect::<Vec<_>>()
         }
         other => panic!("{other:?}"),
     };
-    let errors: Vec<_> = ErrorRegister::new(0x1F).set().map(|(bit, name)| (bit, Some(name))).collect();
+    let errors: Vec<_> = ErrorRegister::new(0x1F).set_bits().map(|(bit, name)| (bit, Some(name))).collect();
     assert_eq!(set(Role::Errors, 0x1F), errors);
     let warnings: Vec<_> =
-        WarningRegister::new(0x81).set().map(|(bit, name)| (bit, (bit == 0).then_some(name))).collect();
+        WarningRegister::new(0x81).set_bits().map(|(bit, name)| (bit, (bit == 0).then_some(name))).collect();
     assert_eq!(set(Role::Warnings, 0x81), warnings);
-    let warm = f64::from(Temperature::new(0xB4).celsius());
-    assert_eq!(kit.register_with_role(Role::Temperature).unwrap().decode(&[0xB4]), Some(Decoded::Scaled(warm)));
+    let warm = f64::from(Temperature::new(0xB4).to_celsius());
+    assert_eq!(kit.register_with_role(Role::Temperature).unwrap().decode(&[0xB4]), Some(DecodedValue::Scaled(warm)));
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn names_exist_in_german_and_fall_back_to_english() {
         assert!(same.is_empty(), "{file}: {same:?}");
     }
     let kit = kit();
-    let german = |place: &str| kit.at(at(place)).unwrap().name.german();
+    let german = |place: &str| kit.register_at(at(place)).unwrap().name.german();
     assert_eq!((german("0x44"), german("0x02:0x3F")), ("Seriennummer", "Prüfsumme"));
     let banks: Vec<_> = [0x00, 0x01, 0x02, 0x24].map(|bank| kit.bank_name(bank).unwrap().german()).into();
     assert_eq!(banks, ["Sonderfunktionen", "Preset", "EDS, allgemein", "OEM-Daten"]);
@@ -197,7 +197,7 @@ fn an_encoder_finds_its_description() {
     let other = Identity { manufacturer: *b"XY", ..kit_identity() };
     assert_eq!(all.find(&other).unwrap().name(), "BiSS C encoder");
     assert_eq!(
-        kit().check(&other).unwrap_err().to_string(),
+        kit().check_identity(&other).unwrap_err().to_string(),
         "the encoder says profile 0x6129, manufacturer 58 59, device ID 01 01 68 11 00 01; the description \"POSITAL \
          IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01"
     );
@@ -209,7 +209,7 @@ fn an_encoder_finds_its_description() {
     let all = all.merged_with(own);
     assert_eq!(all.find(&kit_identity()).unwrap().name(), "mine");
     assert_eq!(all.find(&other).unwrap().name(), "anything");
-    assert!(all.named("BiSS C encoder").is_some());
+    assert!(all.find_by_name("BiSS C encoder").is_some());
 }
 
 #[test]
@@ -259,7 +259,7 @@ proptest! {
         let bytes = register.bytes(number);
         prop_assert_eq!(bytes.is_some(), fits);
         if let Some(bytes) = bytes {
-            prop_assert_eq!(register.number(&bytes), Some(number));
+            prop_assert_eq!(register.to_number(&bytes), Some(number));
         }
     }
 

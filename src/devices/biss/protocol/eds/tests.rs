@@ -94,8 +94,8 @@ fn published_data_sheet_parses() {
             (0x38, EdsValue::Number(70, "mA")),
         ]
     );
-    assert_eq!(EdsValue::Kelvin(233).celsius(), Some(-40));
-    assert_eq!(EdsValue::Kelvin(378).celsius(), Some(105));
+    assert_eq!(EdsValue::Kelvin(233).to_celsius(), Some(-40));
+    assert_eq!(EdsValue::Kelvin(378).to_celsius(), Some(105));
 }
 
 #[test]

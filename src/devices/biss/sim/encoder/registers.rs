@@ -7,12 +7,12 @@ use crate::devices::biss::protocol::{EdsBank, Temperature, WarningRegister};
 const PRODUCTION_PULSES: [u8; 4] = [64, 60, 64, 59];
 
 impl Encoder {
-    pub(super) fn direct(&self, address: u8) -> u8 {
+    pub(super) fn direct_register(&self, address: u8) -> u8 {
         let [n0, n1, n2, n3] = self.serial_number.to_be_bytes();
         let diagnoses = self.firmware >= Self::DIAGNOSTICS_SINCE;
         match address {
             0x40 => self.bank,
-            0x41 => EdsBank::Common.number(),
+            0x41 => EdsBank::Common.kit_number(),
             0x42 => 0x61,
             0x43 => 0x29,
             0x44 => n0,

@@ -2,11 +2,11 @@
 
 use super::{Encoder, Power};
 use crate::devices::biss::protocol::{CalibrationStatus, WiegandStatus};
-use crate::devices::biss::sim::calibration::Ended;
+use crate::devices::biss::sim::calibration::RunOutcome;
 use crate::units::Moment;
 
 impl Encoder {
-    pub(super) fn settle(&mut self, now: Moment) {
+    pub(super) fn update(&mut self, now: Moment) {
         if let Power::Starting { ready } = self.power
             && ready <= now
         {
@@ -23,12 +23,12 @@ impl Encoder {
 
     fn update_procedures(&mut self, now: Moment) {
         let waited = self.needs_reversal();
-        match self.calibration.settle(now) {
-            Ended::No => {}
-            Ended::Saved => self.store(|flash, whole| flash.calibrated = whole),
-            Ended::Lost => self.flash.calibrated = false,
+        match self.calibration.update(now) {
+            RunOutcome::No => {}
+            RunOutcome::Saved => self.write_flash(|flash, whole| flash.calibrated = whole),
+            RunOutcome::Lost => self.flash.calibrated = false,
         }
-        self.wiegand.settle(now, self.shaft.rpm(), self.pulses);
+        self.wiegand.update(now, self.shaft.rpm(), self.pulses);
         if self.needs_reversal() && !waited {
             self.drive.reverse_if_configured();
         }

@@ -56,7 +56,7 @@ fn registers_are_read_and_written_by_bank() {
     host.refuses(read(0x66), ErrorCode::NO_ANSWER);
     host.now = host.now + Duration::from_millis(500);
     host.expect(read(0x6A), Reply::BissRegisterRead { value: 0x00 });
-    assert_eq!(host.adapter.device::<Encoder>().unwrap().flash().cycles(), 1);
+    assert_eq!(host.adapter.device::<Encoder>().unwrap().flash().write_cycles(), 1);
     host.expect(write(0x40, 0x44), read_back(0x44));
     host.refuses(read(0x00), ErrorCode::NO_ANSWER); // no such bank
     host.refuses(Request::BissRegisterRead { slave: 1, address: 0x66 }, ErrorCode::NO_ANSWER);
@@ -77,7 +77,7 @@ fn a_fast_stream_has_no_gap() {
         other => panic!("{other:?}"),
     };
     for data in &packets {
-        assert_eq!(continuity.follow(data), PacketGap::None);
+        assert_eq!(continuity.gap_before(data), PacketGap::None);
         let StreamData::Biss(data) = data else { panic!("{data:?}") };
         assert_eq!((data.t0_us, data.period_us, data.width), (start_us + 50 * count, 50, 6));
         for (status, raw) in &data.values {

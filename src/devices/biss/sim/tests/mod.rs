@@ -62,12 +62,12 @@ impl Host {
     }
 
     fn answers(&mut self) -> bool {
-        self.encoder.answers(self.now)
+        self.encoder.can_access_registers(self.now)
     }
 
     /// Returns the multiturn and singleturn.
     fn position(&mut self) -> Option<(u32, u32)> {
-        self.encoder.reading(self.now).map(|reading| (reading.multiturn, reading.singleturn))
+        self.encoder.position_at(self.now).map(|reading| (reading.multiturn, reading.singleturn))
     }
 }
 

@@ -8,19 +8,19 @@ fn a_calibration_takes_two_runs() {
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);
     assert!(!host.answers(), "it may not respond while it runs");
-    assert_eq!(host.encoder.reading(host.now).map(|reading| reading.error), Some(true));
+    assert_eq!(host.encoder.position_at(host.now).map(|reading| reading.error), Some(true));
     host.wait(4.999);
     host.expect("0x00:0x01", 0x01);
     host.wait(0.001);
     assert!(host.answers());
     host.expect("0x00:0x01", 0x02);
-    assert_eq!(host.encoder.flash().cycles(), 5);
+    assert_eq!(host.encoder.flash().write_cycles(), 5);
     host.turn(500.0);
     host.put("0x00:0x00", 0x02);
     host.wait(5.0);
     host.expect("0x00:0x01", 0x22);
     assert!(host.encoder.flash().is_calibrated());
-    assert_eq!(host.encoder.flash().cycles(), 6, "saved by itself");
+    assert_eq!(host.encoder.flash().write_cycles(), 6, "saved by itself");
     host.put("0x6A", 0x00);
     host.expect("0x00:0x01", 0x00);
 }
@@ -78,7 +78,7 @@ fn a_failure_of_the_second_run_loses_the_table() {
             _ => host.encoder.power_cycle(host.now),
         }
         assert!(!host.encoder.flash().is_calibrated(), "{end}");
-        assert_eq!(host.encoder.flash().cycles(), 0);
+        assert_eq!(host.encoder.flash().write_cycles(), 0);
     }
     // Left in the first run, the table stays.
     let mut host = Host::with("rpm=-500");
@@ -124,7 +124,7 @@ fn a_wiegand_test_takes_515_revolutions_each_way() {
         host.put("0x00:0x06", 0x03);
         host.expect("0x00:0x07", 0x00);
         host.put("0x6A", 0x00);
-        assert_eq!(host.encoder.flash().cycles(), 1);
+        assert_eq!(host.encoder.flash().write_cycles(), 1);
         host.encoder.power_cycle(host.now);
         host.wait(0.5);
         let saved = ["0x00:0x11", "0x00:0x12", "0x00:0x13", "0x00:0x14"].map(|register| host.read(register));

@@ -8,10 +8,10 @@ use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 fn a_new_encoder_has_factory_settings() {
     let mut host = Host::with("");
     let all = Descriptions::built_in();
-    let kit = all.named("POSITAL IXARC kit encoder").unwrap();
+    let kit = all.find_by_name("POSITAL IXARC kit encoder").unwrap();
     let mut compared = 0;
     for register in kit.registers() {
-        let at = |offset| register.address.plus(offset).unwrap();
+        let at = |offset| register.address.offset_by(offset).unwrap();
         let read: Vec<u8> = (0..register.width).map(|byte| host.encoder.read(host.now, at(byte)).unwrap()).collect();
         if !register.default.is_empty() {
             assert_eq!(read, register.default, "{}", register.name);
@@ -67,7 +67,7 @@ fn the_temperature_warning_has_a_hysteresis() {
         host.expect("0x66", register);
         host.expect("0x69", u8::from(warns));
         assert_eq!(
-            host.encoder.reading(host.now).map(|reading| (reading.error, reading.warning)),
+            host.encoder.position_at(host.now).map(|reading| (reading.error, reading.warning)),
             Some((false, warns))
         );
     }
@@ -79,10 +79,10 @@ fn the_temperature_warning_has_a_hysteresis() {
 fn an_error_makes_the_position_invalid() {
     let mut host = Host::with("errors=0x12");
     host.expect("0x68", 0x12);
-    assert_eq!(host.encoder.reading(host.now).map(|reading| reading.error), Some(true));
+    assert_eq!(host.encoder.position_at(host.now).map(|reading| reading.error), Some(true));
     host.encoder.set_errors(ErrorRegister::new(0));
     host.expect("0x68", 0);
-    assert_eq!(host.encoder.reading(host.now).map(|reading| reading.error), Some(false));
+    assert_eq!(host.encoder.position_at(host.now).map(|reading| reading.error), Some(false));
 }
 
 #[test]

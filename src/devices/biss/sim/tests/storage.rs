@@ -24,7 +24,7 @@ fn oem_data_is_written_as_in_the_reference() {
     host.put("0x6A", 0x00);
     assert_eq!(host.encoder.flash().oem_data()[0x10..0x12], [0xAB, 0xCD]);
     assert_eq!(host.encoder.flash().oem_data()[2047], 0xEF);
-    assert_eq!(host.encoder.flash().cycles(), 11, "one save");
+    assert_eq!(host.encoder.flash().write_cycles(), 11, "one save");
     host.encoder.power_cycle(host.now);
     host.wait(1.0);
     host.expect("0x24:0x10", 0xAB);
@@ -52,7 +52,7 @@ fn cancelled_or_abandoned_writes_are_discarded() {
         host.put("0x24:0x00", 0x77);
         host.put(end.0, end.1);
         host.expect("0x24:0x00", 0);
-        assert_eq!(host.encoder.flash().cycles(), 10);
+        assert_eq!(host.encoder.flash().write_cycles(), 10);
     }
     let mut host = Host::with("");
     host.enter(0x04);
@@ -81,7 +81,7 @@ fn the_filter_is_selected_as_in_the_reference() {
     for (register, value) in [("0x6E", 0x04), ("0x6A", 0x00), ("0x6B", 0x00)] {
         host.expect(register, value);
     }
-    assert_eq!((host.encoder.flash().filter(), host.encoder.flash().cycles()), (PositionFilter::Dynamic, 1));
+    assert_eq!((host.encoder.flash().filter(), host.encoder.flash().write_cycles()), (PositionFilter::Dynamic, 1));
 }
 
 /// Reference 5.5: 270°.
@@ -114,7 +114,7 @@ fn the_position_is_preset_as_in_the_reference() {
     host.wait(0.5);
     assert_eq!(host.position(), Some((0x1234, 0x18000)));
     host.expect("0x6A", 0x00);
-    assert_eq!(host.encoder.flash().cycles(), 2);
+    assert_eq!(host.encoder.flash().write_cycles(), 2);
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_preset_beyond_the_range_is_refused() {
     host.put("0x01:0x04", 0x01);
     host.put("0x01:0x07", 0x01); // 2¹⁶ revolutions
     assert!(!host.write("0x01:0x00", 0x03));
-    assert!(host.answers() && host.encoder.flash().cycles() == 0);
+    assert!(host.answers() && host.encoder.flash().write_cycles() == 0);
 }
 
 #[test]

@@ -204,7 +204,7 @@ fn reopening_the_link_revives_a_dead_encoder() {
     line.port.connect(line.now);
     line.wait(0.5);
     assert_ne!(line.ask(READ_TEMPERATURE), "");
-    assert_eq!(line.port.encoder().flash().cycles(), 4);
+    assert_eq!(line.port.encoder().flash().write_cycles(), 4);
     assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
 

@@ -1,20 +1,20 @@
 //! Labels and messages of the device check.
 
 use super::guide::mode;
-use super::{mismatch, name};
+use super::{mismatch_text, name};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::literal_text;
 use crate::devices::biss::procedures::check::{BissStepResult, CheckFinding, CheckStep};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
-use crate::devices::biss::state::words::sheet;
+use crate::devices::biss::state::words::data_sheet_error_text;
 
-pub fn check(lines: &[BissStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
+pub fn check_lines(lines: &[BissStepResult]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
-fn step(step: CheckStep) -> Text {
+fn check_step_text(step: CheckStep) -> Text {
     TEXTS.text(match step {
         CheckStep::Identity => "check.identity",
         CheckStep::Status => "check.status",
@@ -32,25 +32,25 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Name(name) => literal_text(name),
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
         CheckFinding::Firmware(firmware) => TEXTS.text("check.firmware").with("firmware", firmware),
-        CheckFinding::Mismatch(found) => mismatch(found),
+        CheckFinding::Mismatch(found) => mismatch_text(found),
         CheckFinding::Error(bit, name) => bit_text("check.error", *bit, name.as_ref()),
         CheckFinding::Warning(bit, name) => bit_text("check.warning", *bit, name.as_ref()),
         CheckFinding::NotTold => TEXTS.text("check.not_told"),
         CheckFinding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode(*found)),
         CheckFinding::Open => TEXTS.text("check.open"),
         CheckFinding::Position(reading) if !reading.is_split_known => {
-            TEXTS.text("check.place_raw").with("raw", reading.raw())
+            TEXTS.text("check.place_raw").with("raw", reading.position_word())
         }
         CheckFinding::Position(reading) => TEXTS
             .text("check.place")
             .with("turns", reading.turns)
             .with("steps", reading.steps)
-            .with_number("degrees", reading.degrees(), 3),
+            .with_number("degrees", reading.degrees_in_turn(), 3),
         CheckFinding::ErrorBit => TEXTS.text("check.error_bit"),
         CheckFinding::WarningBit => TEXTS.text("check.warning_bit"),
         CheckFinding::NoPosition => TEXTS.text("check.no_position"),
         CheckFinding::SumsFit => TEXTS.text("check.sums"),
-        CheckFinding::Sheet(error) => TEXTS.text("check.sheet").with_text("why", sheet(error)),
+        CheckFinding::Sheet(error) => TEXTS.text("check.sheet").with_text("why", data_sheet_error_text(error)),
         CheckFinding::NoSheet => TEXTS.text("check.no_sheet"),
         CheckFinding::OtherFrame { sheet, description } => TEXTS
             .text("check.other_frame")

@@ -2,7 +2,7 @@
 
 use super::layout;
 use crate::app::{Text, explain as general};
-use crate::devices::biss::protocol::{Claim, DescriptionErrorKind, Register};
+use crate::devices::biss::protocol::{DescriptionErrorKind, Register, UniqueItem};
 use crate::devices::biss::state::TEXTS;
 
 pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
@@ -31,19 +31,19 @@ pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
             TEXTS.text("biss_flaw.banks").with("name", name).with("first", byte(*first)).with("last", byte(*last))
         }
         DescriptionErrorKind::Layout(error) => layout(error),
-        DescriptionErrorKind::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::claim(claim)),
+        DescriptionErrorKind::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::item_text(claim)),
         DescriptionErrorKind::GermanEmpty(name) => TEXTS.text("biss_flaw.german_empty").with("name", name),
         DescriptionErrorKind::GermanNeedless(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
     }
 }
 
-fn claim(claim: &Claim) -> Text {
+fn item_text(claim: &UniqueItem) -> Text {
     match claim {
-        Claim::Register(address) => TEXTS.text("biss_flaw.register").with("address", address),
-        Claim::Role(role) => TEXTS.text("biss_flaw.role").with("role", format!("{role:?}")),
-        Claim::Bank(bank) => TEXTS.text("biss_flaw.bank").with("bank", byte(*bank)),
-        Claim::Procedure(kind) => TEXTS.text("biss_flaw.procedure").with("procedure", format!("{kind:?}")),
-        Claim::Name(name) => TEXTS.text("biss_flaw.name").with("name", name),
+        UniqueItem::Register(address) => TEXTS.text("biss_flaw.register").with("address", address),
+        UniqueItem::Role(role) => TEXTS.text("biss_flaw.role").with("role", format!("{role:?}")),
+        UniqueItem::Bank(bank) => TEXTS.text("biss_flaw.bank").with("bank", byte(*bank)),
+        UniqueItem::Procedure(kind) => TEXTS.text("biss_flaw.procedure").with("procedure", format!("{kind:?}")),
+        UniqueItem::Name(name) => TEXTS.text("biss_flaw.name").with("name", name),
     }
 }
 
@@ -71,11 +71,11 @@ mod tests {
             DescriptionErrorKind::SavesNothing(name.clone()),
             DescriptionErrorKind::Banks { name: name.clone(), first: 5, last: 4 },
             DescriptionErrorKind::Layout(LayoutError::Empty),
-            DescriptionErrorKind::Twice(Claim::Register(address)),
-            DescriptionErrorKind::Twice(Claim::Role(Role::Mode)),
-            DescriptionErrorKind::Twice(Claim::Bank(5)),
-            DescriptionErrorKind::Twice(Claim::Procedure(ProcedureKind::Preset)),
-            DescriptionErrorKind::Twice(Claim::Name(name.clone())),
+            DescriptionErrorKind::Twice(UniqueItem::Register(address)),
+            DescriptionErrorKind::Twice(UniqueItem::Role(Role::Mode)),
+            DescriptionErrorKind::Twice(UniqueItem::Bank(5)),
+            DescriptionErrorKind::Twice(UniqueItem::Procedure(ProcedureKind::Preset)),
+            DescriptionErrorKind::Twice(UniqueItem::Name(name.clone())),
             DescriptionErrorKind::GermanEmpty(name.clone()),
             DescriptionErrorKind::GermanNeedless(name),
         ];

@@ -2,14 +2,14 @@
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
-    Advice, CalibrationReport, Motion, OperatorPrompt, Outcome, ProcedureStep, Run, SpeedRange, StartBlocker, Task,
-    WiegandReport,
+    CalibrationReport, MotorRun, OperatorAdvice, OperatorPrompt, OperatorTask, Outcome, ProcedureStep, ShaftMotion,
+    SpeedRange, StartBlocker, WiegandReport,
 };
 use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage, WiegandResult};
 use crate::devices::biss::state::TEXTS;
 
-pub fn procedure(op: &Op) -> Text {
+pub fn procedure_text(op: &Op) -> Text {
     TEXTS.text(match op {
         Op::Calibrate => "guide.calibration",
         Op::WiegandTest { .. } => "guide.wiegand",
@@ -21,14 +21,14 @@ pub fn procedure(op: &Op) -> Text {
     })
 }
 
-pub fn step(step: ProcedureStep) -> Text {
+pub fn procedure_step_text(step: ProcedureStep) -> Text {
     match step {
-        ProcedureStep::Await(task) => self::task(task),
+        ProcedureStep::Await(task) => self::task_text(task),
         ProcedureStep::Run(run) => match run {
-            Run::CalibrationCounterclockwise => TEXTS.text("guide.run_calibration_ccw"),
-            Run::CalibrationClockwise => TEXTS.text("guide.run_calibration_cw"),
-            Run::WiegandClockwise => revolutions(TEXTS.text("guide.run_wiegand_cw")),
-            Run::WiegandCounterclockwise => revolutions(TEXTS.text("guide.run_wiegand_ccw")),
+            MotorRun::CalibrationCounterclockwise => TEXTS.text("guide.run_calibration_ccw"),
+            MotorRun::CalibrationClockwise => TEXTS.text("guide.run_calibration_cw"),
+            MotorRun::WiegandClockwise => with_revolutions(TEXTS.text("guide.run_wiegand_cw")),
+            MotorRun::WiegandCounterclockwise => with_revolutions(TEXTS.text("guide.run_wiegand_ccw")),
         },
         ProcedureStep::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode(mode)),
         ProcedureStep::Conditions => TEXTS.text("guide.conditions"),
@@ -56,19 +56,23 @@ pub fn mode(mode: DeviceMode) -> Text {
     TEXTS.text(id).with("code", format!("0x{:02X}", mode.byte()))
 }
 
-pub fn task(task: Task) -> Text {
+pub fn task_text(task: OperatorTask) -> Text {
     match task {
-        Task::Turn(run) => {
+        OperatorTask::Turn(run) => {
             let id = match (run.is_clockwise(), run.is_calibration()) {
                 (true, true) => "guide.turn_cw_best",
                 (false, true) => "guide.turn_ccw_best",
                 (true, false) => "guide.turn_cw",
                 (false, false) => "guide.turn_ccw",
             };
-            speed_range_text(TEXTS.text(id), run.allowed()).with_number("best", run.recommended_range().midpoint(), 0)
+            speed_range_text(TEXTS.text(id), run.allowed_speeds()).with_number(
+                "best",
+                run.recommended_range().midpoint(),
+                0,
+            )
         }
-        Task::Stand => TEXTS.text("guide.stand"),
-        Task::StandAtPlace => TEXTS.text("guide.stand_at_place"),
+        OperatorTask::Stand => TEXTS.text("guide.stand"),
+        OperatorTask::StandAtPlace => TEXTS.text("guide.stand_at_place"),
     }
 }
 
@@ -89,31 +93,34 @@ pub fn blocker_text(blocker: StartBlocker) -> Text {
     }
 }
 
-pub fn advice_text(advice: Advice) -> Text {
+pub fn advice_text(advice: OperatorAdvice) -> Text {
     match advice {
-        Advice::Speed { recommended } => {
-            let run = Run::CalibrationCounterclockwise;
+        OperatorAdvice::Speed { recommended } => {
+            let run = MotorRun::CalibrationCounterclockwise;
             let text = speed_range_text(TEXTS.text("guide.recommended"), recommended);
             text.with_number("fluctuation", run.max_fluctuation().unwrap_or_default(), 0)
         }
-        Advice::TableAtRisk => TEXTS.text("guide.table_at_risk"),
-        Advice::Marked => TEXTS.text("guide.marked"),
+        OperatorAdvice::TableAtRisk => TEXTS.text("guide.table_at_risk"),
+        OperatorAdvice::Marked => TEXTS.text("guide.marked"),
     }
 }
 
 /// Returns the text about the requirements of a calibration for the motor and the encoder.
 pub fn calibration_requirements_text() -> Text {
-    let run = Run::CalibrationCounterclockwise;
-    let text = speed_range_text(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
+    let run = MotorRun::CalibrationCounterclockwise;
+    let text = speed_range_text(TEXTS.text("mounting_card.calibrate_words"), run.allowed_speeds());
     temperature_range_text(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
 /// Returns the text about the requirements of a Wiegand test for the motor.
 pub fn wiegand_requirements_text() -> Text {
-    revolutions(speed_range_text(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
+    with_revolutions(speed_range_text(
+        TEXTS.text("mounting_card.wiegand_words"),
+        MotorRun::WiegandClockwise.allowed_speeds(),
+    ))
 }
 
-fn revolutions(text: Text) -> Text {
+fn with_revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
 
@@ -126,7 +133,7 @@ pub(super) fn speed_range_text(text: Text, range: SpeedRange) -> Text {
 }
 
 /// Returns the result of an operation for the page and the report, one line per item.
-pub fn outcome(outcome: &Outcome) -> Vec<Text> {
+pub fn outcome_texts(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
             None => "guide.skipped",
@@ -144,7 +151,7 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
                 PresetParts::Multiturn => "guide.preset_multiturn",
             };
             let text = TEXTS.text(id).with("from_turns", from.turns).with("to_turns", to.turns);
-            vec![text.with_number("from", from.degrees(), 3).with_number("to", to.degrees(), 3)]
+            vec![text.with_number("from", from.degrees_in_turn(), 3).with_number("to", to.degrees_in_turn(), 3)]
         }
         Outcome::FilterSelected(filter) => {
             vec![
@@ -159,18 +166,19 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
 }
 
 /// Returns the result of an operation, one line per item with its severity. A skipped operation is reported by name.
-pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
-    let lines = outcome(own);
+pub fn report_lines(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
+    let lines = outcome_texts(own);
     if let Outcome::Skipped { .. } = own {
-        let named = |words| TEXTS.text("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
+        let named =
+            |words| TEXTS.text("guide.of_operation").with_text("what", procedure_text(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
     // The first line states the action or the verdict. The other lines add details.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
-            0 => verdict(report.result.lowest_cw).max(verdict(report.result.lowest_ccw)),
-            1 => verdict(report.result.lowest_cw),
-            2 => verdict(report.result.lowest_ccw),
+            0 => pulse_severity(report.result.lowest_cw).max(pulse_severity(report.result.lowest_ccw)),
+            1 => pulse_severity(report.result.lowest_cw),
+            2 => pulse_severity(report.result.lowest_ccw),
             _ => Severity::Note,
         },
         _ if at == 0 => Severity::Good,
@@ -179,7 +187,7 @@ pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     lines.into_iter().enumerate().map(|(at, text)| (severity(at), text)).collect()
 }
 
-fn verdict(lowest: PulseVoltage) -> Severity {
+fn pulse_severity(lowest: PulseVoltage) -> Severity {
     if lowest > PulseVoltage::LIMIT { Severity::Good } else { Severity::Warning }
 }
 
@@ -213,7 +221,7 @@ fn wiegand_summary(report: &WiegandReport) -> Vec<Text> {
     texts
 }
 
-fn motion(id: &'static str, motion: Option<Motion>) -> Option<Text> {
+fn motion(id: &'static str, motion: Option<ShaftMotion>) -> Option<Text> {
     let motion = motion?;
     Some(TEXTS.text(id).with_number("rpm", motion.rpm.abs(), 1).with_number("spread", motion.spread, 1))
 }
@@ -244,11 +252,11 @@ mod tests {
         };
         let report = WiegandReport { result, saved: false, clockwise: None, counterclockwise: None };
         let words: Vec<String> =
-            outcome(&Outcome::Tested(report)).iter().map(|text| text.to_string_in(English)).collect();
+            outcome_texts(&Outcome::Tested(report)).iter().map(|text| text.to_string_in(English)).collect();
         assert!(words[0].contains("failed"), "{words:?}");
         assert!(words[1].contains("6.3") && words[1].contains("5.4") && words[1].contains("above"), "{words:?}");
         assert!(words[2].contains("5.3") && words[2].contains("not above"), "{words:?}");
-        let report = super::report(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
+        let report = super::report_lines(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
         let weights: Vec<Severity> = report.iter().map(|(severity, _)| *severity).collect();
         assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Warning, Severity::Note]);
     }
@@ -257,14 +265,14 @@ mod tests {
     #[test]
     fn a_stored_preset_value_is_shown_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();
-        let texts = outcome(&Outcome::PresetStored { value, singleturn_bits: 17 });
+        let texts = outcome_texts(&Outcome::PresetStored { value, singleturn_bits: 17 });
         assert_eq!(texts[0].to_string_in(English), "Preset value saved: 270.000° (step 98304), turn 2.");
         assert!(texts[0].to_string_in(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
     }
 
     #[test]
     fn skipped_operations_are_named() {
-        let report = report(&Op::Calibrate, &Outcome::Skipped { after: None });
+        let report = report_lines(&Op::Calibrate, &Outcome::Skipped { after: None });
         let [(Severity::Note, text)] = report.as_slice() else { panic!("{report:?}") };
         assert!(
             text.to_string_in(English).contains("Calibration") && text.to_string_in(German).contains("Kalibrierung")

@@ -4,21 +4,21 @@
 use std::path::Path;
 
 use super::encoder;
-use super::guide::{blocker_text, mode, speed_range_text, step, task, temperature_range_text};
+use super::guide::{blocker_text, mode, procedure_step_text, speed_range_text, task_text, temperature_range_text};
 use super::plan::procedure_kind_text;
 use crate::app::explain::literal_text;
 use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::devices::biss::jobs::{Change, ChangeKind, Prepared, WEAR_LIMIT};
-use crate::devices::biss::procedures::procedure::{Activity, Failure, LeftState, Run};
-use crate::devices::biss::procedures::write::{Interrupted, Written};
+use crate::devices::biss::procedures::procedure::{Activity, Failure, LeftState, MotorRun};
+use crate::devices::biss::procedures::write::{InterruptedWrite, WrittenValues};
 use crate::devices::biss::profile::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::filter;
 
-pub fn change(change: &Change) -> Text {
+pub fn change_text(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),
         Change::Write(edits) => {
@@ -32,12 +32,12 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
+pub fn operation_texts(op: &Op, layout: &Layout) -> OperationTexts {
     let bits = layout.singleturn_bits();
     match op {
         Op::StoreData { area, registers } => OperationTexts {
             item: TEXTS.text("biss_op.data").with_text("area", super::name(&area.name)),
-            changes: runs(registers),
+            changes: register_run_texts(registers),
         },
         Op::StorePreset { from, to } => {
             OperationTexts::single(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
@@ -72,13 +72,13 @@ pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
 }
 
 /// Returns one line for each group of consecutive registers.
-fn runs(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
+fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
         let (old, new): (Vec<u8>, Vec<u8>) = own.map(|own| (own.old, own.new)).unzip();
         ChangeTexts { part: Some(literal_text(range)), old: literal_text(hex(&old)), new: literal_text(hex(&new)) }
     };
-    RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
+    RegisterRange::from_addresses(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
 /// Returns a preset value as angle, step and turn, for a singleturn position of the given width.
@@ -97,12 +97,12 @@ fn preset_text(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Tex
 
 /// Returns the warning about the limited write cycles of the flash. Returns `None` if the plan does not come near the
 /// limit.
-pub fn wear(prepared: &Prepared) -> Option<Text> {
-    let cycles = prepared.wear()?;
+pub fn wear_warning(prepared: &Prepared) -> Option<Text> {
+    let cycles = prepared.wear_to_report()?;
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
-pub fn written(written: &Written) -> Text {
+pub fn written_text(written: &WrittenValues) -> Text {
     // Only the encoder's status confirms a calibration.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
@@ -111,7 +111,7 @@ pub fn written(written: &Written) -> Text {
 /// Returns the messages for an interrupted write, which state the progress, the cause, the state in which the encoder
 /// was left, and the location of the backup.
 pub(super) fn interruption_text(
-    interrupted: &Interrupted,
+    interrupted: &InterruptedWrite,
     backup: &Path,
     planned: usize,
     kind: ChangeKind,
@@ -121,12 +121,12 @@ pub(super) fn interruption_text(
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
-        text.with_text("cause", failure(&interrupted.cause))
+        text.with_text("cause", failure_text(&interrupted.cause))
     }];
-    texts.push(TEXTS.text("biss_left.at").with_text("step", step(interrupted.end_state.at)));
+    texts.push(TEXTS.text("biss_left.at").with_text("step", procedure_step_text(interrupted.end_state.at)));
     texts.extend(match &interrupted.end_state.standing {
         None => vec![TEXTS.text("biss_left.operation")],
-        Some(standing) => left(standing),
+        Some(standing) => left_state_texts(standing),
     });
     let what_next = match (interrupted.uncertain_write(), kind) {
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
@@ -149,7 +149,7 @@ pub(super) fn interruption_text(
     texts
 }
 
-pub fn weight(text: &Text) -> Severity {
+pub fn severity_of(text: &Text) -> Severity {
     match text.id() {
         "biss_left.operation" => Severity::Good,
         "biss_left.at"
@@ -168,8 +168,8 @@ pub fn weight(text: &Text) -> Severity {
 }
 
 /// Returns the messages for an encoder that could not be returned to operation.
-fn left(standing: &LeftState) -> Vec<Text> {
-    let mut texts = vec![match standing.mode.values() {
+fn left_state_texts(standing: &LeftState) -> Vec<Text> {
+    let mut texts = vec![match standing.mode.as_slice() {
         [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),
         several => TEXTS.text("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
     }];
@@ -178,8 +178,8 @@ fn left(standing: &LeftState) -> Vec<Text> {
     }
     texts.extend(match standing.activity {
         Activity::Nothing => None,
-        Activity::Running(Run::CalibrationCounterclockwise) => Some(TEXTS.text("biss_left.calibrating_ccw")),
-        Activity::Running(Run::CalibrationClockwise) => Some(TEXTS.text("biss_left.calibrating_cw")),
+        Activity::Running(MotorRun::CalibrationCounterclockwise) => Some(TEXTS.text("biss_left.calibrating_ccw")),
+        Activity::Running(MotorRun::CalibrationClockwise) => Some(TEXTS.text("biss_left.calibrating_cw")),
         Activity::Running(_) => Some(TEXTS.text("biss_left.testing")),
         Activity::Entered => Some(TEXTS.text("biss_left.entered")),
         Activity::Saving => Some(TEXTS.text("biss_left.saving")),
@@ -189,11 +189,11 @@ fn left(standing: &LeftState) -> Vec<Text> {
     texts
 }
 
-pub fn failure(failure: &Failure) -> Text {
+pub fn failure_text(failure: &Failure) -> Text {
     match failure {
         Failure::Device(error) => encoder(error),
-        Failure::Calibration { run, status } => calibration(*run, *status),
-        Failure::Wiegand { status, code, .. } => wiegand(*status, *code),
+        Failure::Calibration { run, status } => calibration_text(*run, *status),
+        Failure::Wiegand { status, code, .. } => wiegand_text(*status, *code),
         Failure::NotBalanced { .. } => TEXTS.text("biss_plan.not_balanced"),
         Failure::Mode { wanted, found } => {
             TEXTS.text("biss_failure.mode").with_text("wanted", mode(*wanted)).with_text("found", mode(*found))
@@ -208,7 +208,7 @@ pub fn failure(failure: &Failure) -> Text {
             let both =
                 |first, second| TEXTS.text("biss_failure.both").with_text("first", first).with_text("second", second);
             let why = blockers.iter().map(|own| blocker_text(*own)).reduce(both);
-            let text = TEXTS.text("biss_failure.not_ready").with_text("task", task(*requested));
+            let text = TEXTS.text("biss_failure.not_ready").with_text("task", task_text(*requested));
             text.with_text("why", why.unwrap_or_else(|| literal_text("")))
         }
         Failure::NotVerified { item, expected, got } => {
@@ -220,28 +220,28 @@ pub fn failure(failure: &Failure) -> Text {
     }
 }
 
-fn calibration(run: Run, status: CalibrationStatus) -> Text {
+fn calibration_text(run: MotorRun, status: CalibrationStatus) -> Text {
     let why = match status {
         CalibrationStatus::WrongDirection => TEXTS.text("biss_failure.direction"),
         CalibrationStatus::Temperature => temperature_range_text(TEXTS.text("biss_failure.temperature")),
-        CalibrationStatus::Speed => speed_range_text(TEXTS.text("biss_failure.speed"), run.allowed()),
+        CalibrationStatus::Speed => speed_range_text(TEXTS.text("biss_failure.speed"), run.allowed_speeds()),
         CalibrationStatus::Failed => TEXTS.text("biss_failure.calibration"),
-        other => return unknown(other.byte()),
+        other => return unknown_status_text(other.byte()),
     };
     let id = if run.is_clockwise() { "biss_failure.table_lost" } else { "biss_failure.table_kept" };
     TEXTS.text(id).with_text("why", why)
 }
 
-fn wiegand(status: WiegandStatus, code: u8) -> Text {
+fn wiegand_text(status: WiegandStatus, code: u8) -> Text {
     match status {
         WiegandStatus::WrongDirection => TEXTS.text("biss_failure.wiegand_direction"),
         WiegandStatus::Failed => TEXTS.text("biss_failure.wiegand").with("code", format!("0x{code:02X}")),
-        other => unknown(other.byte()),
+        other => unknown_status_text(other.byte()),
     }
 }
 
 /// Returns the message for a status code that was not expected.
-fn unknown(status: u8) -> Text {
+fn unknown_status_text(status: u8) -> Text {
     TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }
 
@@ -250,14 +250,14 @@ mod tests {
     use super::*;
     use crate::app::Language::{English, German};
     use crate::devices::biss::procedures::Error;
-    use crate::devices::biss::procedures::procedure::{PossibleValues, ProcedureStep, StartBlocker, Task};
+    use crate::devices::biss::procedures::procedure::{OperatorTask, PossibleValues, ProcedureStep, StartBlocker};
     use crate::devices::biss::procedures::write::EndState;
     use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
 
-    fn cut_off(write_cycles: u64, cause: Failure, standing: Option<LeftState>) -> Interrupted {
-        let done = Written { ops: 1, write_cycles, ..Written::default() };
-        let left = EndState { at: ProcedureStep::Run(Run::CalibrationClockwise), standing };
-        Interrupted { done, unfinished: None, cause, end_state: left }
+    fn cut_off(write_cycles: u64, cause: Failure, standing: Option<LeftState>) -> InterruptedWrite {
+        let done = WrittenValues { ops: 1, write_cycles, ..WrittenValues::default() };
+        let left = EndState { at: ProcedureStep::Run(MotorRun::CalibrationClockwise), standing };
+        InterruptedWrite { done, unfinished: None, cause, end_state: left }
     }
 
     fn interruption_texts(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {
@@ -270,7 +270,7 @@ mod tests {
     /// unchanged.
     #[test]
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
-        let last = |interrupted: &Interrupted, kind| {
+        let last = |interrupted: &InterruptedWrite, kind| {
             let text = interruption_text(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
             assert!(text.terminal_text().contains("b.ron") && text.to_string_in(German).contains("b.ron"), "{text:?}");
             text.terminal_text()
@@ -290,7 +290,7 @@ mod tests {
             assert!(last(&cut_off(0, lost(), None), kind).contains("Nothing was changed"));
         }
         let mut interrupted = cut_off(0, lost(), None);
-        let address = RegisterAddress::direct(0x6A).unwrap();
+        let address = RegisterAddress::direct_register(0x6A).unwrap();
         interrupted.unfinished = Some(Op::WriteRegister { address, old: None, new: 1, cycles: 0 });
         let words = last(&interrupted, ChangeKind::Bytes);
         assert!(words.contains("is unclear") && words.contains("read biss 0x6A"), "{words}");
@@ -300,7 +300,7 @@ mod tests {
     fn a_failed_calibration_names_the_limits_of_its_run() {
         let cases = [(CalibrationStatus::Speed, "300…700"), (CalibrationStatus::Temperature, "25…40 °C")];
         for (status, limits) in cases {
-            let text = failure(&Failure::Calibration { run: Run::CalibrationClockwise, status });
+            let text = failure_text(&Failure::Calibration { run: MotorRun::CalibrationClockwise, status });
             assert!(
                 text.to_string_in(English).contains(limits) && text.to_string_in(German).contains(limits),
                 "{text:?}"
@@ -309,9 +309,9 @@ mod tests {
     }
 
     fn left_state(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<LeftState> {
-        let mut mode = PossibleValues::known(modes[0]);
-        modes[1..].iter().for_each(|own| mode.or(*own));
-        Some(LeftState { mode, password: PossibleValues::known(password), activity })
+        let mut mode = PossibleValues::new(modes[0]);
+        modes[1..].iter().for_each(|own| mode.add_possible(*own));
+        Some(LeftState { mode, password: PossibleValues::new(password), activity })
     }
 
     /// Issue 22.5: the remedy applies only after the encoder has returned to operation.
@@ -332,14 +332,14 @@ mod tests {
                 unknown.to_string_in(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "),
                 "{unknown:?}"
             );
-            assert_eq!(weight(&unknown), weight(&found));
+            assert_eq!(severity_of(&unknown), severity_of(&found));
         }
     }
 
     #[test]
     fn an_interrupted_write_names_step_cause_and_state() {
         let mode = DeviceMode::CALIBRATION;
-        let activity = Activity::Running(Run::CalibrationClockwise);
+        let activity = Activity::Running(MotorRun::CalibrationClockwise);
         let left = left_state(&[mode, DeviceMode::OPERATION], true, activity);
         let (english, german) = interruption_texts(Failure::Device(Error::NeverSilent), left);
         let expected = [
@@ -362,9 +362,9 @@ mod tests {
     #[test]
     fn every_activity_is_explained() {
         let activities = [
-            Activity::Running(Run::CalibrationCounterclockwise),
-            Activity::Running(Run::CalibrationClockwise),
-            Activity::Running(Run::WiegandClockwise),
+            Activity::Running(MotorRun::CalibrationCounterclockwise),
+            Activity::Running(MotorRun::CalibrationClockwise),
+            Activity::Running(MotorRun::WiegandClockwise),
             Activity::Entered,
             Activity::Saving,
             Activity::Restarting,
@@ -386,10 +386,13 @@ mod tests {
     /// Covers every code in manual 6.3 and 6.4, each with its cause and remedy.
     #[test]
     fn failures_name_cause_and_remedy() {
-        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
         let calibration = |run, byte| Failure::Calibration { run, status: CalibrationStatus::from_byte(byte) };
-        let wiegand =
-            |byte, code| Failure::Wiegand { run: Run::WiegandClockwise, status: WiegandStatus::from_byte(byte), code };
+        let wiegand = |byte, code| Failure::Wiegand {
+            run: MotorRun::WiegandClockwise,
+            status: WiegandStatus::from_byte(byte),
+            code,
+        };
         let cases = [
             (calibration(first, 0x30), "wrong direction"),
             (calibration(first, 0x31), "25…40 °C"),
@@ -404,10 +407,10 @@ mod tests {
             (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
             (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
             (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
-            (Failure::NotReady { task: Task::Turn(first), blockers: vec![StartBlocker::Standing] }, "at rest"),
+            (Failure::NotReady { task: OperatorTask::Turn(first), blockers: vec![StartBlocker::Standing] }, "at rest"),
             (
                 Failure::NotReady {
-                    task: Task::Stand,
+                    task: OperatorTask::Stand,
                     blockers: vec![StartBlocker::Standing, StartBlocker::Temperature { celsius: 20 }],
                 },
                 "is at rest. The encoder temperature is 20 °C",
@@ -416,7 +419,8 @@ mod tests {
             (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),
         ];
         for (cause, fact) in cases {
-            let (english, german) = (failure(&cause).to_string_in(English), failure(&cause).to_string_in(German));
+            let (english, german) =
+                (failure_text(&cause).to_string_in(English), failure_text(&cause).to_string_in(German));
             assert!(english.contains(fact), "{english}");
             for words in [&english, &german] {
                 assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "what to do: {words}");

@@ -101,7 +101,7 @@ impl Connection {
             self.figures.malformed += 1;
             return None;
         };
-        match self.arrivals.take(packet.sequence) {
+        match self.arrivals.classify(packet.sequence) {
             PacketVerdict::Stale => {
                 self.figures.stale += 1;
                 None

@@ -5,7 +5,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::{Connection, ConnectionLoss, Drives};
-use crate::buses::ethernet_ip::protocol::{EPath, ForwardClose, Owner, RequestTimeout};
+use crate::buses::ethernet_ip::protocol::{ConnectionOwner, EPath, ForwardClose, RequestTimeout};
 use crate::devices::hiperdrive::procedures::OpenedConnection;
 use crate::devices::hiperdrive::procedures::dead_man::{
     ActionEnd, MotionIntent, MotionRequest, Permit, SpeedTorque, TargetState,
@@ -21,8 +21,8 @@ fn at(ms: u64) -> Moment {
 
 /// Returns the packets of the reference (section 9): 00020001 in both directions; 10 ms.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> OpenedConnection {
-    let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
-    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::assemblies(104, 100, 101) };
+    let owner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
+    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::to_assemblies(104, 100, 101) };
     let interval = Duration::from_millis(10);
     OpenedConnection {
         to_target_id: 0x0002_0001,

@@ -193,7 +193,7 @@ impl Permit {
     /// can allow motion further outward while the button is pressed.
     ///
     /// # Errors
-    /// Returns [`MotionRefusal::Outward`] or [`MotionRefusal::Unclear`] if the motion would lead, or could lead, further outside.
+    /// Returns [`Refusal::Outward`] or [`Refusal::Unclear`] if the motion would lead, or could lead, further outside.
     pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), MotionRefusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),

@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use super::{Master, ONCE, RetryPolicy};
 use crate::buses::ethernet_ip::protocol::{
-    ConnectionTimeout, EPath, ForwardClose, ForwardOpen, ForwardOpenSuccess, GeneralStatus, IoPacket, Item,
-    NetworkParameters, NetworkPriority, NetworkType, Owner, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
+    ConnectionOwner, ConnectionTimeout, EPath, ForwardClose, ForwardOpen, ForwardOpenSuccess, GeneralStatus, IoPacket,
+    Item, NetworkParameters, NetworkPriority, NetworkType, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
 };
 use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
@@ -109,7 +109,8 @@ impl Master<'_> {
     fn open_with_layout(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<OpenedConnection, Error> {
         self.station.connections = self.station.connections.wrapping_add(1);
         let serial = self.station.connections;
-        let owner = Owner { connection_serial: serial, vendor: VENDOR, serial_number: self.station.originator };
+        let owner =
+            ConnectionOwner { connection_serial: serial, vendor: VENDOR, serial_number: self.station.originator };
         // No image is longer than 72 bytes.
         let length = layout.length() as u16;
         let parameters = |kind, format| {
@@ -132,7 +133,7 @@ impl Master<'_> {
             to_originator_interval_us: interval,
             to_originator,
             transport: Transport::CYCLIC,
-            path: EPath::assemblies(configuration, to, from),
+            path: EPath::to_assemblies(configuration, to, from),
         };
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
@@ -161,7 +162,7 @@ impl Master<'_> {
             to_originator_id: opened.to_originator_id,
             to_target_interval,
             to_originator_interval: micros(opened.to_originator_interval_us),
-            timeout: open.connection_timeout.after(to_target_interval),
+            timeout: open.connection_timeout.for_interval(to_target_interval),
             layout,
             port: items.socket_to_target().map_or(self.station.udp, |address| address.port),
             group: items.socket_to_originator().and_then(group),

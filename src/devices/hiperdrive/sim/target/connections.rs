@@ -13,9 +13,9 @@ use super::cyclic::Cyclic;
 use super::objects::{object, wrong};
 use super::plant::{Originator, TargetDevice};
 use crate::buses::ethernet_ip::protocol::{
-    EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen, ForwardOpenSuccess,
-    GeneralStatus, IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType, Owner, RealTimeFormat, Reply,
-    Request, Segment, Service, SocketAddress, Trigger,
+    ConnectionOwner, EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
+    ForwardOpenSuccess, GeneralStatus, IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType,
+    RealTimeFormat, Reply, Request, Segment, Service, SocketAddress, Trigger,
 };
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout};
 use crate::units::Moment;
@@ -30,7 +30,7 @@ pub(super) struct Connections {
 
 #[derive(Debug)]
 struct ExplicitConnection {
-    owner: Owner,
+    owner: ConnectionOwner,
     session: u32,
     to_target_id: u32,
     to_originator_id: u32,
@@ -108,25 +108,25 @@ impl TargetDevice {
     ) -> (Reply, Vec<Item>) {
         let alone = |reply| (reply, Vec::new());
         if let Err(status) = object(&request.path) {
-            return alone(request.refused(status));
+            return alone(request.error_reply(status));
         }
         match request.service {
             Service::FORWARD_OPEN => match ForwardOpen::parse(&request.data) {
                 Ok(open) => self.open(from, request, &open, items),
-                Err(error) => alone(request.refused(wrong(error))),
+                Err(error) => alone(request.error_reply(wrong(error))),
             },
             Service::FORWARD_CLOSE => match ForwardClose::parse(&request.data) {
                 Ok(close) => alone(self.close(request, &close)),
-                Err(error) => alone(request.refused(wrong(error))),
+                Err(error) => alone(request.error_reply(wrong(error))),
             },
             service if service.code() == UNCONNECTED_SEND => match wrapped(&request.data) {
-                Ok(inner) if inner.class() == Some(Request::CONNECTION_MANAGER) => {
+                Ok(inner) if inner.class_id() == Some(Request::CONNECTION_MANAGER) => {
                     self.handle_connection(from, &inner, items)
                 }
                 Ok(inner) => alone(self.object(&inner)),
-                Err(status) => alone(request.refused(status)),
+                Err(status) => alone(request.error_reply(status)),
             },
-            _ => alone(request.refused(GeneralStatus::NO_SERVICE)),
+            _ => alone(request.error_reply(GeneralStatus::NO_SERVICE)),
         }
     }
 
@@ -137,7 +137,7 @@ impl TargetDevice {
         open: &ForwardOpen,
         items: &ItemList,
     ) -> (Reply, Vec<Item>) {
-        let opened = match open.transport.class() {
+        let opened = match open.transport.transport_class() {
             1 => self.open_cyclic_connection(from.0, open, items),
             3 => self.open_explicit_connection(from.1, open).map(|id| (id, Vec::new())),
             _ => Err(TRANSPORT),
@@ -152,7 +152,7 @@ impl TargetDevice {
                     to_originator_interval_us: open.to_originator_interval_us,
                     application: Vec::new(),
                 };
-                (request.done(opened.emit()), sockets)
+                (request.success_reply(opened.emit()), sockets)
             }
             Err(extended) => {
                 let refused = ForwardErrorReply { owner: open.owner, remaining_path_words: 0 };
@@ -203,9 +203,9 @@ impl TargetDevice {
                 Segment::Data(_) | Segment::Unknown(_) => return Err(SEGMENT),
             }
         }
-        let instance = path.number(LogicalKind::Instance);
-        let points: Vec<u16> = path.numbers(LogicalKind::ConnectionPoint).collect();
-        let fits = path.number(LogicalKind::Class) == Some(ASSEMBLY_CLASS)
+        let instance = path.first_value(LogicalKind::Instance);
+        let points: Vec<u16> = path.values_of(LogicalKind::ConnectionPoint).collect();
+        let fits = path.first_value(LogicalKind::Class) == Some(ASSEMBLY_CLASS)
             && instance.is_none_or(|instance| instance == configuration)
             && points == [to_target, to_originator];
         if fits { Ok(()) } else { Err(ASSEMBLY) }
@@ -249,7 +249,7 @@ impl TargetDevice {
         if connections.explicit.len() >= MOST_EXPLICIT {
             return Err(NONE_LEFT);
         }
-        let path = EPath::instance(MESSAGE_ROUTER, 1);
+        let path = EPath::to_instance(MESSAGE_ROUTER, 1);
         if open.path.emit() != path.emit() {
             return Err(SEGMENT);
         }
@@ -276,7 +276,7 @@ impl TargetDevice {
             let refused = ForwardErrorReply { owner: close.owner, remaining_path_words: 0 };
             return refused.reply(request, NOT_FOUND);
         }
-        request.done(ForwardCloseSuccess { owner: close.owner, application: Vec::new() }.emit())
+        request.success_reply(ForwardCloseSuccess { owner: close.owner, application: Vec::new() }.emit())
     }
 }
 

@@ -11,14 +11,14 @@ use std::time::Duration;
 
 use super::plant::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{
-    ForwardOpen, Frame, IoPacket, Owner, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader,
+    ConnectionOwner, ForwardOpen, Frame, IoPacket, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader,
 };
 use crate::devices::hiperdrive::protocol::{Layout, OutputImage};
 use crate::units::Moment;
 
 #[derive(Debug)]
 pub(super) struct Cyclic {
-    pub(super) owner: Owner,
+    pub(super) owner: ConnectionOwner,
     to_target_id: u32,
     to_originator_id: u32,
     layout: Layout,
@@ -100,12 +100,12 @@ impl TargetDevice {
             self.figures.foreign += 1;
             return;
         };
-        let runs = packet.header.is_some_and(RunIdleHeader::runs);
+        let runs = packet.header.is_some_and(RunIdleHeader::is_running);
         let Ok(image) = OutputImage::parse(&packet.data, cyclic.layout) else {
             self.figures.malformed += 1;
             return;
         };
-        match cyclic.arrivals.take(packet.sequence) {
+        match cyclic.arrivals.classify(packet.sequence) {
             PacketVerdict::New { .. } => {
                 self.figures.packets += 1;
                 self.station.cyclic(self.now, &image, runs);

@@ -41,7 +41,7 @@ impl TargetDevice {
         };
         Some(match body {
             Ok(body) => frame.reply(&body),
-            Err(status) => frame.refusal(status),
+            Err(status) => frame.error_reply(status),
         })
     }
 
@@ -56,18 +56,18 @@ impl TargetDevice {
     }
 
     fn register(&mut self, from: Originator, frame: &Frame) -> Frame {
-        let status = match frame.body() {
+        let status = match frame.parse_body() {
             Ok(Body::Register { version: Frame::VERSION, options: 0 }) => None,
             Ok(Body::Register { version: Frame::VERSION, .. }) => Some(EncapsulationStatus::UNSUPPORTED),
             Ok(Body::Register { .. }) => Some(EncapsulationStatus::VERSION),
             _ => Some(EncapsulationStatus::MALFORMED),
         };
         if let Some(status) = status {
-            return frame.refusal(status);
+            return frame.error_reply(status);
         }
         // A TCP connection has one session. Another request for one returns it (`U`).
         if let Some((session, _)) = self.sessions.iter().find(|(_, owner)| **owner == from) {
-            return Frame { session: *session, ..frame.refusal(EncapsulationStatus::UNSUPPORTED) };
+            return Frame { session: *session, ..frame.error_reply(EncapsulationStatus::UNSUPPORTED) };
         }
         let session = loop {
             let session = self.rng.u32(1..);
@@ -98,7 +98,7 @@ impl TargetDevice {
         if self.sessions.get(&frame.session) != Some(&from) {
             return Err(EncapsulationStatus::NO_SESSION);
         }
-        match frame.body() {
+        match frame.parse_body() {
             Ok(Body::Data { interface: 0, items, .. }) => Ok(items),
             _ => Err(EncapsulationStatus::MALFORMED),
         }
@@ -138,7 +138,7 @@ impl TargetDevice {
         items: &ItemList,
     ) -> Result<(Reply, Vec<Item>), Refusal> {
         match Request::parse(message) {
-            Ok(request) if request.class() == Some(Request::CONNECTION_MANAGER) => {
+            Ok(request) if request.class_id() == Some(Request::CONNECTION_MANAGER) => {
                 Ok(self.handle_connection(from, &request, items))
             }
             Ok(request) => Ok((self.object(&request), Vec::new())),

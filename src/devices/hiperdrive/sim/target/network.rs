@@ -76,7 +76,7 @@ impl Network {
             2 => CAPABILITY.to_le_bytes().to_vec(),
             ConfigurationControl::ATTRIBUTE => self.control.emit().to_vec(),
             4 => {
-                let path = EPath::instance(ETHERNET_LINK, 1).emit();
+                let path = EPath::to_instance(ETHERNET_LINK, 1).emit();
                 // The length of the path is given in words.
                 [&(path.len() as u16 / 2).to_le_bytes()[..], &path].concat()
             }
@@ -133,5 +133,5 @@ impl Network {
 }
 
 fn dhcp_control() -> ConfigurationControl {
-    ConfigurationControl::default().with(AddressSource::Dhcp)
+    ConfigurationControl::default().with_source(AddressSource::Dhcp)
 }

@@ -27,8 +27,8 @@ type Answer = Result<Vec<u8>, GeneralStatus>;
 impl TargetDevice {
     pub(super) fn object(&mut self, request: &Request) -> Reply {
         match self.ask(request) {
-            Ok(data) => request.done(data),
-            Err(status) => request.refused(status),
+            Ok(data) => request.success_reply(data),
+            Err(status) => request.error_reply(status),
         }
     }
 
@@ -55,7 +55,7 @@ impl TargetDevice {
         match class {
             Identity::CLASS => {
                 let identity = self.identity();
-                read(request, attribute, identity.emit_all(), |number| identity.attribute(number))
+                read(request, attribute, identity.emit_all(), |number| identity.attribute_bytes(number))
             }
             ConfigurationControl::CLASS if request.service == Service::SET => {
                 self.network.set(attribute.ok_or(GeneralStatus::NO_ATTRIBUTE)?, &request.data)
@@ -119,8 +119,8 @@ pub(super) fn object(path: &EPath) -> Result<(u16, Option<u16>), GeneralStatus> 
     if !path.0.iter().all(understood) {
         return Err(GeneralStatus::new(0x04));
     }
-    let class = path.number(LogicalKind::Class).filter(|_| path.number(LogicalKind::Instance) == Some(1));
-    Ok((class.ok_or(GeneralStatus::PATH_UNKNOWN)?, path.number(LogicalKind::Attribute)))
+    let class = path.first_value(LogicalKind::Class).filter(|_| path.first_value(LogicalKind::Instance) == Some(1));
+    Ok((class.ok_or(GeneralStatus::PATH_UNKNOWN)?, path.first_value(LogicalKind::Attribute)))
 }
 
 pub(super) const fn wrong(error: PacketError) -> GeneralStatus {

@@ -10,7 +10,7 @@ use crate::devices::hiperface::sim::AttachableEncoder;
 fn the_adapters_uart_reaches_a_hiperface_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AttachableEncoder]);
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
-    assert!(hello.capabilities.has(Capabilities::UART));
+    assert!(hello.capabilities.contains(Capabilities::UART));
     let transfer = |tx: &[u8]| Request::UartTransfer { timeout_us: 20_000, idle_us: 5_000, tx: tx.to_vec() };
     host.refuses(transfer(&[0x40, 0x50, 0x10]), ErrorCode::BAD_ARGUMENT);
     host.refuses(Request::UartConfig { baud: 0, parity: 2, turnaround_us: 0 }, ErrorCode::BAD_ARGUMENT);
