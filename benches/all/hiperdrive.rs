@@ -84,7 +84,7 @@ impl Target {
                 let packet = IoPacket::parse(&buffer[..count], RealTimeFormat::Header).unwrap();
                 let image = OutputImage::parse(&packet.data, LAYOUT).unwrap();
                 let word = image.drives[0].control_word().unwrap();
-                station.cyclic(clock.now(), &image, true);
+                station.handle_process_data(clock.now(), &image, true);
                 sender.send((at, word)).unwrap();
             }
         });

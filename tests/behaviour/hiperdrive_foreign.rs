@@ -11,7 +11,7 @@ use encoder_studio::devices::hiperdrive::jobs::{
 };
 use encoder_studio::devices::hiperdrive::procedures::cyclic::ParameterResult;
 use encoder_studio::devices::hiperdrive::procedures::{
-    DiscoveredDevice, Error, RequestedItem, Sample, Temperature, discover,
+    DiscoveredDevice, Error, PolledSample, RequestedItem, Temperature, discover,
 };
 use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
@@ -316,7 +316,7 @@ fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
         session.run_inline(HiperdriveJob::Watch(view.drives[0].number)).unwrap();
         let sample = session.take_sample().unwrap();
         assert!(
-            matches!(sample, Sample::Position(reading) if reading.actual.position == 4711),
+            matches!(sample, PolledSample::Position(reading) if reading.actual.position == 4711),
             "{options:?}: {sample:?}"
         );
         assert!(matches!(session.run_inline(HiperdriveJob::Take), Err(JobError::Device(Error::InControl))));
@@ -346,7 +346,7 @@ fn temperatures_are_read_through_the_parameter_words() {
         session.run_inline(HiperdriveJob::Take).unwrap();
         comes("what the drive says", || motion.snapshot().link.received > 3);
         let mut watch = |what, celsius| {
-            let WatchReply::Sample(Sample::Temperature(reading)) = session.watch_value(&what).unwrap() else {
+            let WatchReply::Sample(PolledSample::Temperature(reading)) = session.watch_value(&what).unwrap() else {
                 panic!()
             };
             assert_eq!(reading.celsius, Some(celsius), "{options:?}");

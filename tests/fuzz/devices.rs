@@ -42,7 +42,7 @@ fn virtual_devices() {
         let mut adapter = Adapter::from_pairs(&[], attachable_kinds()).unwrap();
         let gateway = interbus::sim::Gateway::new(&interbus::sim::Config::from_pairs(&[]).unwrap());
         let target = hiperdrive::sim::Target::new(&hiperdrive::sim::Config::from_pairs(&[]).unwrap());
-        let mut connection = target.connection(std::net::Ipv4Addr::LOCALHOST);
+        let mut connection = target.connect_from(std::net::Ipv4Addr::LOCALHOST);
         let devices: [&mut dyn ByteDevice; 5] =
             [&mut bus, &mut port, &mut adapter, &mut gateway.connection(), &mut connection];
         for device in devices {

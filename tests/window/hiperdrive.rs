@@ -11,7 +11,7 @@ use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR,
 };
 use encoder_studio::devices::hiperdrive::state::{
-    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Mark, Motor, PositionUnit, Unit,
+    Edit, EditFinding, HiperdriveAction as Hiperdrive, HiperdriveDevice, LimitsPolicy, MotorCommand, PositionUnit,
 };
 
 use crate::support::Desk;
@@ -42,13 +42,13 @@ trait DeviceHistory {
     fn key_is_listed(&self) -> bool;
 }
 
-impl DeviceHistory for Unit {
+impl DeviceHistory for HiperdriveDevice {
     fn key_is_listed(&self) -> bool {
         self.session.backups.is_some()
     }
 }
 
-pub(crate) fn unit(desk: &Desk) -> &Unit {
+pub(crate) fn unit(desk: &Desk) -> &HiperdriveDevice {
     desk.studio.hiperdrive().unwrap()
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn act(desk: &mut Desk, action: Hiperdrive) {
     desk.act(Action::device(id, action));
 }
 
-pub(crate) fn drive(desk: &mut Desk, motor: Motor) {
+pub(crate) fn drive(desk: &mut Desk, motor: MotorCommand) {
     act(desk, Hiperdrive::Drive(motor));
 }
 
@@ -160,17 +160,21 @@ fn an_edit_is_reviewed_written_and_read_back() {
     assert!(unit(&desk).refusal.is_none() && unit(&desk).is_dirty());
     write(&mut desk);
     assert!(!unit(&desk).is_dirty());
-    assert_eq!(unit(&desk).number(ONE, 166), Some(200));
+    assert_eq!(unit(&desk).parameter_value(ONE, 166), Some(200));
     assert_eq!(unit(&desk).staged.changed_from(number(166)), Some(350));
     let target = unit(&desk).target.clone().unwrap();
-    assert_eq!(target.with(|station| station.stores()), 1, "saved once");
+    assert_eq!(target.with_station(|station| station.save_count()), 1, "saved once");
 }
 
 #[test]
 fn limits_that_exclude_the_position_are_marked_and_not_written() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
-    assert!(matches!(unit(&desk).marks()[..], [Mark::Outside { position: 0, .. }]), "{:?}", unit(&desk).marks());
+    assert!(
+        matches!(unit(&desk).findings()[..], [EditFinding::Outside { position: 0, .. }]),
+        "{:?}",
+        unit(&desk).findings()
+    );
     let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     desk.until("it is refused", |studio| {
@@ -194,7 +198,7 @@ fn pitch_and_unit_are_remembered() {
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
     act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
     // 2.5 turns of 65536 steps on 4 mm.
-    let place = unit(&desk).place(ONE, 163_840).to_string_in(encoder_studio::app::Language::English);
+    let place = unit(&desk).position_text(ONE, 163_840).to_string_in(encoder_studio::app::Language::English);
     assert_eq!(place, "10.00000 mm");
     let path = desk.outside.store().settings_path();
     desk.until("it is kept", |_| {
@@ -204,7 +208,7 @@ fn pitch_and_unit_are_remembered() {
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open("sim:");
     until_read(&mut desk);
-    assert_eq!((unit(&desk).pitch(ONE), unit(&desk).measure), (Some(pitch), PositionUnit::Millimetres));
+    assert_eq!((unit(&desk).spindle_pitch(ONE), unit(&desk).measure), (Some(pitch), PositionUnit::Millimetres));
     assert!(desk.notice_ids(Severity::Warning).is_empty(), "that is no edit");
 }
 
@@ -229,18 +233,20 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
     desk.open("sim:");
     until_read(&mut desk);
     assert!(unit(&desk).moves.motion_locks(ONE).contains(&MotionLock::LimitsUnconfirmed), "and over a crash");
-    drive(&mut desk, Motor::ConfirmLimits(ONE));
+    drive(&mut desk, MotorCommand::ConfirmLimits(ONE));
     assert!(unit(&desk).limits_to_confirm(ONE).is_none() && unit(&desk).moves.motion_locks(ONE).is_empty());
 }
 
 #[test]
 fn without_control_no_motion_is_requested() {
     let mut desk = read("sim:");
-    for motor in [Motor::Lead(TargetState::Enabled), Motor::Move { target: 64 }, Motor::Step { by: 64 }] {
+    for motor in
+        [MotorCommand::Lead(TargetState::Enabled), MotorCommand::Move { target: 64 }, MotorCommand::Step { by: 64 }]
+    {
         drive(&mut desk, motor);
         assert_eq!(desk.notice_ids(Severity::Warning).last(), Some(&"hd_refused.not_taken"));
     }
-    drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
+    drive(&mut desk, MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false });
     assert!(!unit(&desk).moves.is_held() && unit(&desk).reachable_states(ONE).is_empty());
 }
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::{Severity, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::ActionEnd;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
@@ -48,7 +48,7 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
-    motor: impl Fn(&Unit) -> Motor,
+    motor: impl Fn(&HiperdriveDevice) -> MotorCommand,
     what: &str,
     condition: impl Fn(&Studio) -> bool,
 ) {
@@ -59,7 +59,7 @@ pub(crate) fn drive_until(
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
-    action: impl Fn(&Unit) -> Hiperdrive,
+    action: impl Fn(&HiperdriveDevice) -> Hiperdrive,
     what: &str,
     condition: impl Fn(&Studio) -> bool,
 ) {
@@ -82,7 +82,7 @@ pub(crate) fn act_until(
 pub(crate) fn set_off(desk: &mut Desk) {
     drive_until(
         desk,
-        |_| Motor::Move { target: 30_000_000 },
+        |_| MotorCommand::Move { target: 30_000_000 },
         "it moves",
         |studio| {
             let own = studio.hiperdrive().unwrap();
@@ -121,7 +121,7 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
     let began = Instant::now();
     while !condition(desk) {
         assert!(began.elapsed() < LONG, "never: {what}\n{}", crate::support::log(&desk.studio));
-        drive(desk, Motor::JogHold);
+        drive(desk, MotorCommand::JogHold);
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -132,7 +132,7 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
 #[track_caller]
 pub(crate) fn hold_pad_until(
     desk: &mut Desk,
-    press: Motor,
+    press: MotorCommand,
     what: &str,
     mut prepare: impl FnMut(&mut Desk),
     condition: impl Fn(&Desk) -> bool,
@@ -146,7 +146,7 @@ pub(crate) fn hold_pad_until(
         if unit(desk).moves.is_held() {
             return;
         }
-        drive(desk, Motor::JogRelease);
+        drive(desk, MotorCommand::JogRelease);
         desk.until("it stands", |studio| !studio.is_moving());
         let end = last_end(&desk.studio, shown);
         assert!(end != before && matches!(end, Some((_, ActionEnd::Stale))), "never: {what}: {before:?}, then {end:?}");

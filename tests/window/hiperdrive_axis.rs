@@ -15,9 +15,9 @@ use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
 use encoder_studio::devices::hiperdrive::state::axis::{
-    AxisAction as Run, AxisButton, AxisStep, End, Power, RestartEvidence, StepStatus, TestTarget, words,
+    AxisAction as Run, AxisButton, AxisStep, Power, RestartEvidence, SetupEnd, StepStatus, TestTarget, words,
 };
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 use encoder_studio::sim::SimulatedFaults;
 use encoder_studio::units::Moment;
 
@@ -41,7 +41,7 @@ fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
         own.axis().unwrap().has_survived() && own.session.is_ready()
     });
     run(&mut desk, Run::Next);
-    assert_eq!(axis(&desk).end(), Some(End::Done));
+    assert_eq!(axis(&desk).setup_end(), Some(SetupEnd::Done));
     assert!(AxisStep::ALL.into_iter().all(|step| axis(&desk).step_status(step) == StepStatus::Done));
     let (lower, upper) = limits;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [1, 400, 256, lower.into(), upper.into()]);
@@ -55,9 +55,9 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     control(&mut desk);
     assert!(axis(&desk).may_move(&seen(&desk)).is_err());
     let before = position(&mut desk);
-    act(&mut desk, Hiperdrive::Drive(Motor::JogPress { direction: Direction::Clockwise, repeated: false }));
+    act(&mut desk, Hiperdrive::Drive(MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false }));
     for _ in 0..50 {
-        act(&mut desk, Hiperdrive::Drive(Motor::JogHold));
+        act(&mut desk, Hiperdrive::Drive(MotorCommand::JogHold));
         desk.settle();
     }
     assert_eq!(position(&mut desk), before);
@@ -81,7 +81,7 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
     // Another master, while the window is not updated.
     let upper = ParameterNumber::for_drive(160, DriveNumber::FIRST).unwrap();
     let target = unit(&desk).target.clone().unwrap();
-    target.with(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
+    target.with_station(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
     let motion = unit(&desk).moves.motion().unwrap().clone();
     let began = std::time::Instant::now();
     while motion.motion_permit(DriveNumber::FIRST).limits != Some((-204_400, 1000)) {
@@ -102,12 +102,12 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
 #[test]
 fn cancelling_stops_the_drive_and_saves_nothing() {
     let mut desk = confirmed();
-    let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
-    held_until(&mut desk, press, "it moves", Unit::is_moving);
+    let press = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
+    held_until(&mut desk, press, "it moves", HiperdriveDevice::is_moving);
     run(&mut desk, Run::Cancel);
     until_stopped(&mut desk);
     let own = axis(&desk);
-    assert_eq!((own.end(), own.is_saved(), own.changes().len()), (Some(End::Cancelled), false, 5));
+    assert_eq!((own.setup_end(), own.is_saved(), own.changes().len()), (Some(SetupEnd::Cancelled), false, 5));
     // Everything is written back, and read: the drive is no longer requested.
     run(&mut desk, Run::Press(AxisButton::Recall));
     write(&mut desk);
@@ -144,7 +144,7 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     let mut desk = new_form("sim:");
     let percent = |value| Percent::new(value).unwrap();
     let chosen = SpeedTorque { speed: percent(80), torque: percent(100) };
-    act(&mut desk, Hiperdrive::Drive(Motor::JogEffort(chosen)));
+    act(&mut desk, Hiperdrive::Drive(MotorCommand::JogEffort(chosen)));
     run(&mut desk, Run::Begin);
     run(&mut desk, Run::Press(AxisButton::Take));
     desk.until("control", |studio| {
@@ -152,13 +152,13 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
         own.moves.is_open() && own.session.is_ready() && own.may_move(own.drive()).is_ok()
     });
     for (press, speed, torque) in [
-        (Motor::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
-        (Motor::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
+        (MotorCommand::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
+        (MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
     ] {
         held_until(&mut desk, press, "it turns", |own| own.moves.held_jog(own.drive()).is_some());
         let sent = unit(&desk).moves.last_setpoint(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
-        act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
+        act(&mut desk, Hiperdrive::Drive(MotorCommand::JogRelease));
         until_stopped(&mut desk);
         assert_eq!(unit(&desk).moves.jog_speed_torque(unit(&desk).drive()), chosen);
     }
@@ -168,14 +168,14 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
 #[test]
 fn a_pitch_applies_only_after_confirmation() {
     let mut desk = new_form("sim:");
-    assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).pitch(unit(&desk).drive())), ("", None));
+    assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).spindle_pitch(unit(&desk).drive())), ("", None));
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| own.pitch = "4".to_owned());
-    assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
+    assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()), None);
     step_with_write(&mut desk);
-    assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
+    assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()), None);
     next(&mut desk, AxisStep::Confirm);
-    assert_eq!(unit(&desk).pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
+    assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
     // On another page it becomes another one.
     let drive = unit(&desk).drive();
     act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
@@ -204,7 +204,7 @@ fn a_new_run_lists_changes_left_by_an_aborted_one() {
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is read again", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.session.is_ready() && own.number(own.drive(), 154) == Some(256)
+        own.session.is_ready() && own.parameter_value(own.drive(), 154) == Some(256)
     });
     assert_eq!(differences(&desk), None);
 }
@@ -244,7 +244,7 @@ fn a_reconnection_is_not_a_power_cycle() {
     let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };
     assert_eq!(restart, RestartEvidence::Read);
     run(&mut desk, Run::Next);
-    assert_eq!(axis(&desk).end(), Some(End::Done));
+    assert_eq!(axis(&desk).setup_end(), Some(SetupEnd::Done));
 }
 
 /// Issue 21.6 (g): a fault during the test is reported with its code, disables motion, and is acknowledged there.
@@ -254,17 +254,24 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
     go(&mut desk, TestTarget::Lower, |own| own.state(own.drive()) == Some(State::Moving));
     let drive = unit(&desk).drive();
     let clock = Moment::default();
-    unit(&desk).target.clone().unwrap().with(|own| own.drive(drive).unwrap().fail(clock, ErrorCode::BLOCK_FORWARD));
+    unit(&desk)
+        .target
+        .clone()
+        .unwrap()
+        .with_station(|own| own.drive(drive).unwrap().inject_error(clock, ErrorCode::BLOCK_FORWARD));
     desk.until("its code is there", |studio| {
         let own = studio.hiperdrive().unwrap();
-        words::fault(&own.seen(own.drive()))
+        words::fault_text(&own.drive_facts(own.drive()))
             .is_some_and(|text| text.to_string_in(Language::English).starts_with("Fault 8301"))
     });
-    assert_eq!(axis(&desk).ask(AxisButton::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
-    assert!(axis(&desk).outcome(TestTarget::Lower).is_some_and(|own| !own.is_good()));
+    assert_eq!(
+        axis(&desk).request(AxisButton::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(),
+        "hd_refused.fault"
+    );
+    assert!(axis(&desk).outcome_of(TestTarget::Lower).is_some_and(|own| !own.is_good()));
     desk.until("it can be acknowledged", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.axis().unwrap().ask(AxisButton::Acknowledge, &own.seen(own.drive())).is_ok()
+        own.axis().unwrap().request(AxisButton::Acknowledge, &own.drive_facts(own.drive())).is_ok()
     });
     act_until(
         &mut desk,
@@ -272,11 +279,11 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
         "it is over",
         |studio| {
             let own = studio.hiperdrive().unwrap();
-            let seen = own.seen(own.drive());
-            !seen.has_failed() && own.axis().unwrap().ask(AxisButton::Go(TestTarget::Lower), &seen).is_ok()
+            let seen = own.drive_facts(own.drive());
+            !seen.has_failed() && own.axis().unwrap().request(AxisButton::Go(TestTarget::Lower), &seen).is_ok()
         },
     );
-    assert!(words::fault(&seen(&desk)).is_none());
+    assert!(words::fault_text(&seen(&desk)).is_none());
 }
 
 /// Issue 21.6 (j): the end is saved as text, in millimetres, in a file that the user chooses.
@@ -325,7 +332,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     // The connection was lost after the write had arrived: it is read, and no restart can be claimed.
     assert_eq!((read(&desk, 382), read(&desk, 182)), (1001, 1000));
     assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
-    assert_eq!(axis(&desk).ask(AxisButton::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis(&desk).request(AxisButton::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     unit(&desk).target.clone().unwrap().power_cycle();
     command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
@@ -334,7 +341,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     assert_eq!(restart, RestartEvidence::Read);
     until_ready(&mut desk);
     run(&mut desk, Run::Next);
-    assert_eq!(axis(&desk).end(), Some(End::Done));
+    assert_eq!(axis(&desk).setup_end(), Some(SetupEnd::Done));
     let report = unit(&desk).axis_report(Language::English).unwrap();
     let has = |part: &str| report.split_whitespace().collect::<Vec<_>>().join(" ").contains(part);
     for part in [

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::Action;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::TargetState;
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State, StatusBit};
-use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor};
+use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, MotorCommand};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, unit};
@@ -18,8 +18,8 @@ use crate::support::{Desk, LONG};
 /// Returns the state of the drive, whether it is at standstill, and whether a host has the cyclic connection.
 fn drive_state(desk: &Desk) -> (State, bool, bool) {
     let target = unit(desk).target.clone().unwrap();
-    target.with(|station| {
-        let status = station.drive(ONE).unwrap().actual(Moment::default()).status;
+    target.with_station(|station| {
+        let status = station.drive(ONE).unwrap().actual_values(Moment::default()).status;
         (status.state(), status.is_set(StatusBit::StandingStill), station.is_open(Moment::default()))
     })
 }
@@ -49,11 +49,11 @@ fn a_closing_window_releases_the_drives_first() {
         desk.act(action);
         assert!(desk.studio.question.is_none() && desk.studio.is_closing(), "{closes}");
         assert!(!desk.studio.can_close(), "{closes}: the drive is in hand");
-        drive(&mut desk, Motor::Move { target: 1 });
+        drive(&mut desk, MotorCommand::Move { target: 1 });
         desk.until("it may close", |studio| studio.can_close());
         until_let_go(&desk);
         assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
-        drive(&mut desk, Motor::Lead(TargetState::Enabled));
+        drive(&mut desk, MotorCommand::Lead(TargetState::Enabled));
         desk.settle();
         assert_eq!(drive_state(&desk).0, State::NotReady, "{closes}");
     }
@@ -117,7 +117,7 @@ fn drives_are_released_without_the_window() {
 #[test]
 fn closing_a_session_stops_its_motion() {
     let mut desk = in_control("sim:");
-    let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
+    let run = MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(
         &mut desk,
         |_| run,
@@ -133,8 +133,8 @@ fn closing_a_session_stops_its_motion() {
     desk.act(Action::CloseSession(id));
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.can_close());
-    let (status, open) = target.with(|station| {
-        (station.drive(ONE).unwrap().actual(Moment::default()).status, station.is_open(Moment::default()))
+    let (status, open) = target.with_station(|station| {
+        (station.drive(ONE).unwrap().actual_values(Moment::default()).status, station.is_open(Moment::default()))
     });
     assert_eq!((status.state(), open), (State::NotReady, false));
 }

@@ -10,7 +10,9 @@ use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect}
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, State, Value};
 use encoder_studio::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton};
-use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{
+    Edit, HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand,
+};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit};
@@ -21,12 +23,12 @@ use crate::support::Desk;
 /// Writes a value as another master.
 fn set(desk: &Desk, of: u16, value: i64) {
     let target = unit(desk).target.clone().unwrap();
-    target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
+    target.with_station(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
 }
 
 /// Stops the cyclic packets of the device, which still answers messages.
 fn fall_silent(desk: &Desk) {
-    unit(desk).target.clone().unwrap().with(|station| station.close(Moment::default()));
+    unit(desk).target.clone().unwrap().with_station(|station| station.close(Moment::default()));
 }
 
 fn is_open(studio: &Studio) -> bool {
@@ -48,11 +50,11 @@ fn lost_control_shows_the_reason_until_taken_again() {
     desk.settle();
     assert_eq!(desk.notice_count("hd_lost.silent"), 1);
     assert_eq!(unit(&desk).loss_reason().unwrap().id(), "hd_lost.silent");
-    drive(&mut desk, Motor::Step { by: 64 });
+    drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lost.silent", "hd_refused.not_taken"]);
     desk.until("everything is read anew", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.actual(ONE).is_some() && own.session.is_ready()
+        own.actual_values(ONE).is_some() && own.session.is_ready()
     });
     desk.settle();
     act(&mut desk, Hiperdrive::Take);
@@ -72,7 +74,7 @@ fn limits_set_by_another_master_under_control_are_read_and_applied() {
         own.limits(ONE) == Some((-33_488_896, 65_536)) && own.session.is_ready()
     });
     assert!(unit(&desk).moves.motion_locks(ONE).is_empty());
-    drive(&mut desk, Motor::Move { target: 65_537 });
+    drive(&mut desk, MotorCommand::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
@@ -84,9 +86,9 @@ fn a_reference_set_by_another_master_under_control_is_read() {
     set(&desk, 198, 6400);
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.number(ONE, 198) == Some(6400) && own.session.is_ready() && own.may_move(ONE).is_ok()
+        own.parameter_value(ONE, 198) == Some(6400) && own.session.is_ready() && own.may_move(ONE).is_ok()
     });
-    drive(&mut desk, Motor::Move { target: 6400 });
+    drive(&mut desk, MotorCommand::Move { target: 6400 });
     assert_eq!(desk.notice_ids(Severity::Warning), Vec::<String>::new());
 }
 
@@ -100,28 +102,29 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
         studio.hiperdrive().unwrap().moves.motion_locks(ONE) == [MotionLock::LimitsUnconfirmed]
     });
     // Limits read before cannot be confirmed.
-    drive(&mut desk, Motor::ConfirmLimits(ONE));
+    drive(&mut desk, MotorCommand::ConfirmLimits(ONE));
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.session.is_ready() && (own.number(ONE, 154), own.number(ONE, 156)) == (Some(400), Some(256))
+        own.session.is_ready()
+            && (own.parameter_value(ONE, 154), own.parameter_value(ONE, 156)) == (Some(400), Some(256))
     });
     assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::LimitsUnconfirmed]);
-    drive(&mut desk, Motor::Step { by: 4 });
+    drive(&mut desk, MotorCommand::Step { by: 4 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
     // Again, before the confirmation: the limits keep their numbers, and are at other places again.
     set(&desk, 154, 100);
     desk.until("it is read again", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.session.is_ready() && own.number(ONE, 154) == Some(100)
+        own.session.is_ready() && own.parameter_value(ONE, 154) == Some(100)
     });
     assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::LimitsUnconfirmed]);
     desk.settle();
-    drive(&mut desk, Motor::ConfirmLimits(ONE));
+    drive(&mut desk, MotorCommand::ConfirmLimits(ONE));
     assert!(unit(&desk).moves.motion_locks(ONE).is_empty());
     drive_until(
         &mut desk,
-        |_| Motor::Step { by: 4 },
+        |_| MotorCommand::Step { by: 4 },
         "it moves",
         |studio| studio.hiperdrive().unwrap().moves.snapshot().drives.iter().any(|own| own.act > 0),
     );
@@ -143,7 +146,7 @@ fn nothing_moves_until_everything_is_read_again_under_control() {
     let mut desk = read("sim:");
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
-    drive(&mut desk, Motor::Step { by: 64 });
+    drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"]);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
@@ -159,15 +162,16 @@ fn the_table_shows_live_values_of_the_drive() {
         rows.into_iter().find(|row| row.number == number(of)).unwrap().value.unwrap()
     };
     assert_eq!((shown(&desk, 107), shown(&desk, 104)), (Value::Number(0), Value::Number(0)));
-    let to_4096 = |own: &Unit| Motor::Step { by: 4096 - own.actual(ONE).unwrap().position };
+    let to_4096 = |own: &HiperdriveDevice| MotorCommand::Step { by: 4096 - own.actual_values(ONE).unwrap().position };
     drive_until(&mut desk, to_4096, "it arrives", |studio| {
         let own = studio.hiperdrive().unwrap();
-        !studio.is_moving() && own.actual(ONE).is_some_and(|own| own.position == 4096)
+        !studio.is_moving() && own.actual_values(ONE).is_some_and(|own| own.position == 4096)
     });
     assert_eq!((shown(&desk, 107), shown(&desk, 104)), (Value::Number(4096), Value::Number(4096)));
     assert_eq!(unit(&desk).value(number(107)), Some(&Value::Number(0)), "as it was read");
     let target = unit(&desk).target.clone().unwrap();
-    target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+    target
+        .with_station(|station| station.drive(ONE).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD));
     // Reference 4: blocked forwards is 8301h, 33537.
     desk.until("its error is read", |studio| {
         let own = studio.hiperdrive().unwrap().drive_status(ONE);
@@ -183,7 +187,7 @@ fn reports_from_before_a_loss_are_discarded() {
     fall_silent(&desk);
     desk.until("the loss is known", |studio| !is_open(studio));
     desk.until("nothing moves as far as is known", |studio| !studio.is_moving());
-    desk.until("it is read anew", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
+    desk.until("it is read anew", |studio| studio.hiperdrive().unwrap().actual_values(ONE).is_some());
     assert_ne!(unit(&desk).state(ONE), Some(State::Moving));
     desk.until("why it was lost is told", |studio| {
         studio.hiperdrive().unwrap().session.is_ready() && studio.services.log.current().is_some()
@@ -243,11 +247,11 @@ fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
     desk.settle();
     let own = unit(&desk);
     assert!(own.session.is_ready(), "it does not begin again");
-    assert_eq!(own.actual(ONE), None, "what was read before the loss");
-    let asked = own.axis().unwrap().ask(AxisButton::Do, &own.seen(ONE));
+    assert_eq!(own.actual_values(ONE), None, "what was read before the loss");
+    let asked = own.axis().unwrap().request(AxisButton::Do, &own.drive_facts(ONE));
     assert_eq!(asked.unwrap_err().id(), "hd_axis.unread", "there is nothing to wait for");
     command(&mut desk, DeviceCommand::Read);
-    desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual_values(ONE).is_some());
 }
 
 #[test]
@@ -273,6 +277,6 @@ fn positions_read_before_a_reconnect_are_discarded() {
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.live_session().is_some());
     assert!(unit(&desk).survey.is_some() && unit(&desk).session.is_busy());
-    assert_eq!(unit(&desk).actual(ONE), None);
-    desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
+    assert_eq!(unit(&desk).actual_values(ONE), None);
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual_values(ONE).is_some());
 }

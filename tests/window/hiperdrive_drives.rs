@@ -8,7 +8,7 @@ use encoder_studio::app::{Action, Language, Severity, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Phase, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
 use encoder_studio::devices::hiperdrive::state::explain;
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, unit};
@@ -35,9 +35,9 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
 fn settings_of_one_drive_do_not_apply_to_another() {
     let mut desk = in_control(HUB);
     let slow = SpeedTorque { speed: percent(7), torque: percent(50) };
-    drive(&mut desk, Motor::MoveEffort(slow));
-    drive(&mut desk, Motor::JogEffort(slow));
-    drive(&mut desk, Motor::Expert(true));
+    drive(&mut desk, MotorCommand::MoveEffort(slow));
+    drive(&mut desk, MotorCommand::JogEffort(slow));
+    drive(&mut desk, MotorCommand::Expert(true));
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     until_free(&mut desk, two());
     let moves = &unit(&desk).moves;
@@ -46,9 +46,10 @@ fn settings_of_one_drive_do_not_apply_to_another() {
         (SpeedTorque::DEFAULT_MOVE, SpeedTorque::DEFAULT_JOG)
     );
     assert_eq!((moves.allows_endless_run(ONE), moves.allows_endless_run(two())), (true, false));
-    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
+    drive(&mut desk, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.endless"]);
-    let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(own.drive()).unwrap().position };
+    let to_64 =
+        |own: &HiperdriveDevice| MotorCommand::Step { by: 64 - own.actual_values(own.drive()).unwrap().position };
     drive_until(&mut desk, to_64, "it has been sent", |studio| {
         studio.hiperdrive().unwrap().moves.last_setpoint(two()).is_some_and(|own| own.target == 64)
     });
@@ -64,20 +65,20 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
     // Before the drive itself has reported its motion.
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    drive(&mut desk, Motor::Step { by: 64 });
+    drive(&mut desk, MotorCommand::Move { target: 30_000_000 });
+    drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.still_moves"]);
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
     let told = while_it_moves(&mut desk, |desk| {
         let before = warned(desk).len();
-        drive(desk, Motor::Step { by: 64 });
-        drive(desk, Motor::Move { target: 0 });
-        drive(desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
+        drive(desk, MotorCommand::Step { by: 64 });
+        drive(desk, MotorCommand::Move { target: 0 });
+        drive(desk, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
         warned(desk).split_off(before)
     });
     assert_eq!(told, ["hd_refused.still_moves"; 3]);
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
     let seen = while_it_moves(&mut desk, |desk| {
         act(desk, Hiperdrive::SelectDrive(two()));
@@ -86,10 +87,10 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
         });
         let before = warned(desk).len();
         for motor in [
-            Motor::Step { by: 64 },
-            Motor::JogPress { direction: Direction::Clockwise, repeated: false },
-            Motor::Lead(TargetState::Ready),
-            Motor::Acknowledge,
+            MotorCommand::Step { by: 64 },
+            MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false },
+            MotorCommand::Lead(TargetState::Ready),
+            MotorCommand::Acknowledge,
         ] {
             drive(desk, motor);
         }
@@ -99,12 +100,12 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     });
     assert_eq!(seen, (vec!["hd_refused.other_moves"; 4], true, vec![ONE]), "it goes on");
     act(&mut desk, Hiperdrive::SelectDrive(two()));
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
     until_free(&mut desk, two());
-    let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(two()).unwrap().position };
+    let to_64 = |own: &HiperdriveDevice| MotorCommand::Step { by: 64 - own.actual_values(two()).unwrap().position };
     drive_until(&mut desk, to_64, "now it may", |studio| {
-        studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64)
+        studio.hiperdrive().unwrap().actual_values(two()).is_some_and(|own| own.position == 64)
     });
 }
 
@@ -116,23 +117,23 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
     let seen = while_it_moves(&mut desk, |desk| {
         let before = last_end(&desk.studio, ONE);
         let lapsed = |studio: &Studio| has_lapsed(studio, ONE, before);
-        drive(desk, Motor::Pause);
+        drive(desk, MotorCommand::Pause);
         desk.until("it waits", |studio| {
             let phase = studio.hiperdrive().unwrap().moves.phase(ONE);
             matches!(phase, Some(Phase::Paused { .. })) || lapsed(studio)
         });
         act(desk, Hiperdrive::SelectDrive(two()));
         let told = warned(desk).len();
-        drive(desk, Motor::Lead(TargetState::Ready));
+        drive(desk, MotorCommand::Lead(TargetState::Ready));
         let told = warned(desk).split_off(told);
         act(desk, Hiperdrive::SelectDrive(ONE));
         until_free(desk, ONE);
-        drive(desk, Motor::Resume);
+        drive(desk, MotorCommand::Resume);
         desk.until("it goes on", |studio| moves(studio, ONE) || lapsed(studio));
         (told, moves(&desk.studio, ONE))
     });
     assert_eq!(seen, (vec!["hd_refused.other_moves"], true));
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
 }
 
@@ -145,7 +146,9 @@ fn messages_name_the_drive() {
         until_free(&mut desk, own);
         set_off(&mut desk);
         let target = unit(&desk).target.clone().unwrap();
-        target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+        target.with_station(|station| {
+            station.drive(own).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD)
+        });
         desk.until("the fault is told", |studio| {
             studio.services.log.notices().any(|one| one.texts[0].id() == "hd_end.fault")
         });
@@ -166,24 +169,24 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
         SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE },
     );
     assert_eq!(unit(&desk).moves.running_move_speed_torque(ONE), None);
-    drive(&mut desk, Motor::MoveEffort(before));
+    drive(&mut desk, MotorCommand::MoveEffort(before));
     let seen = while_it_moves(&mut desk, |desk| {
-        drive(desk, Motor::MoveEffort(after));
+        drive(desk, MotorCommand::MoveEffort(after));
         desk.settle();
         let moves = &unit(desk).moves;
         let seen =
             (moves.move_speed_torque(ONE), moves.running_move_speed_torque(ONE), moves.running_jog_speed_torque(ONE));
         // For another attempt.
-        drive(desk, Motor::MoveEffort(before));
+        drive(desk, MotorCommand::MoveEffort(before));
         seen
     });
     assert_eq!(seen, (after, Some(before), None), "and that is no jog");
-    drive(&mut desk, Motor::MoveEffort(after));
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::MoveEffort(after));
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
-    drive_until(&mut desk, |_| Motor::Step { by: 1_000_000 }, "it moves", |studio| moves(studio, ONE));
+    drive_until(&mut desk, |_| MotorCommand::Step { by: 1_000_000 }, "it moves", |studio| moves(studio, ONE));
     assert_eq!(unit(&desk).moves.running_move_speed_torque(ONE), Some(after));
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
 }
 
@@ -226,8 +229,8 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     for _ in 0..20 {
         screen.act(own(Hiperdrive::SelectDrive(ONE)));
         screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.is_moving());
-        screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(SpeedTorque::DEFAULT_MOVE))));
-        screen.act(own(Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
+        screen.act(own(Hiperdrive::Drive(MotorCommand::MoveEffort(SpeedTorque::DEFAULT_MOVE))));
+        screen.act(own(Hiperdrive::Drive(MotorCommand::Move { target: 30_000_000 })));
         screen.until("it moves or stands again", |studio| moves(studio, ONE) || !studio.is_moving());
         screen.act(own(then()));
         screen.steps();
@@ -273,7 +276,8 @@ fn drive_buttons_show_the_drive_states() {
     screen.act(Action::StopMotion);
     screen.until("it stands", |studio| !studio.is_moving());
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
-    target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+    target
+        .with_station(|station| station.drive(ONE).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD));
     screen.until("it has failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
     screen.steps();
     assert!(says(&screen, "drive 1, Fault"));
@@ -283,7 +287,7 @@ fn drive_buttons_show_the_drive_states() {
 #[test]
 fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let mut screen = on_screen();
-    let slower = Motor::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE });
+    let slower = MotorCommand::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE });
     let waits = "sent: 25 %";
     assert!(!screen.shows(waits));
     assert!(while_it_moves_on(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));

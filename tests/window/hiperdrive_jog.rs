@@ -7,7 +7,7 @@ use egui_kittest::kittest::{AccessKitNode, NodeT, Queryable};
 use encoder_studio::app::{Action, DeviceCommand};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::SpeedTorque;
 use encoder_studio::devices::hiperdrive::protocol::Percent;
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, MotorCommand};
 
 use crate::hiperdrive::{ONE, command, drive, unit};
 use crate::hiperdrive_motion::in_control;
@@ -105,7 +105,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
 fn every_connection_begins_slowly() {
     let mut desk = in_control("sim:");
     let fast = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
-    drive(&mut desk, Motor::JogEffort(fast));
+    drive(&mut desk, MotorCommand::JogEffort(fast));
     assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), fast);
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected again", |studio| {

@@ -11,7 +11,9 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionLock, Spee
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
 };
-use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Mark, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{
+    Edit, EditFinding, HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand,
+};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
@@ -22,7 +24,7 @@ use crate::support::{Desk, LONG};
 fn status(desk: &Desk) -> StatusWord {
     let target = unit(desk).target.clone().unwrap();
     // Sending advances its time.
-    target.with(|station| station.drive(ONE).unwrap().actual(Moment::default()).status)
+    target.with_station(|station| station.drive(ONE).unwrap().actual_values(Moment::default()).status)
 }
 
 fn is_at_standstill(desk: &Desk) -> bool {
@@ -51,7 +53,7 @@ fn moves(desk: &Desk) -> bool {
 /// Holds a jog that turns the drive.
 #[track_caller]
 fn jog(desk: &mut Desk) {
-    let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
+    let press = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
     hold_pad_until(desk, press, "it moves", |_| {}, moves);
 }
 
@@ -74,15 +76,15 @@ fn a_jog_turns_the_drive_while_it_is_held() {
     assert!(desk.studio.is_moving() && !is_at_standstill(&desk));
     let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
     assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
-    drive(&mut desk, Motor::JogRelease);
+    drive(&mut desk, MotorCommand::JogRelease);
     assert!(!unit(&desk).moves.is_held(), "at once");
     until_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.is_moving());
-    let where_it_stands = unit(&desk).actual(ONE).unwrap().position;
+    let where_it_stands = unit(&desk).actual_values(ONE).unwrap().position;
     assert!(where_it_stands != 0);
     // A late hold, and a repeated key, begin nothing.
-    drive(&mut desk, Motor::JogHold);
-    drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: true });
+    drive(&mut desk, MotorCommand::JogHold);
+    drive(&mut desk, MotorCommand::JogPress { direction: Direction::Clockwise, repeated: true });
     desk.settle();
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held());
     assert!(warned(&desk).is_empty());
@@ -97,7 +99,7 @@ fn a_jog_that_is_not_refreshed_ends_by_itself() {
     desk.until("it stands", |studio| !studio.is_moving());
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held());
     assert_eq!(desk.notice_count("hd_end.stale"), before + 1);
-    drive(&mut desk, Motor::JogHold);
+    drive(&mut desk, MotorCommand::JogHold);
     desk.settle();
     assert!(is_at_standstill(&desk), "an act that has ended does not begin again");
 }
@@ -133,7 +135,7 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
         ("stop", |desk| desk.act(Action::StopMotion)),
         ("stop all", |desk| desk.act(Action::Stop)),
         ("escape", |desk| desk.act(Action::Escape)),
-        ("its own stop", |desk| drive(desk, Motor::Stop)),
+        ("its own stop", |desk| drive(desk, MotorCommand::Stop)),
         ("give", |desk| act(desk, Hiperdrive::Give)),
         ("disconnect", |desk| command(desk, DeviceCommand::Reconnect)),
     ];
@@ -146,12 +148,12 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
             .studio
             .devices()
             .iter()
-            .filter_map(|own| own.get::<encoder_studio::devices::hiperdrive::state::Unit>())
+            .filter_map(|own| own.get::<encoder_studio::devices::hiperdrive::state::HiperdriveDevice>())
             .any(|own| own.moves.is_held());
         assert!(!held, "{what}");
         let began = Instant::now();
         while !target
-            .with(|station| station.drive(ONE).unwrap().actual(Moment::default()))
+            .with_station(|station| station.drive(ONE).unwrap().actual_values(Moment::default()))
             .status
             .is_set(StatusBit::StandingStill)
         {
@@ -184,39 +186,41 @@ fn a_move_continues_in_another_tab_and_ends_with_stop() {
 fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     let mut desk = in_control("sim:");
     let effort = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
-    drive(&mut desk, Motor::MoveEffort(effort));
+    drive(&mut desk, MotorCommand::MoveEffort(effort));
     drive_until(
         &mut desk,
-        |_| Motor::Move { target: 4096 },
+        |_| MotorCommand::Move { target: 4096 },
         "it arrives",
         |studio| {
             let own = studio.hiperdrive().unwrap();
             own.current_or_last_request(ONE).is_some_and(|said| said.words.id() == "hd_end.arrived")
         },
     );
-    assert_eq!(unit(&desk).actual(ONE).unwrap().position, 4096);
-    let back = |own: &Unit| Motor::Step { by: -own.actual(ONE).unwrap().position };
-    let is_back = |studio: &Studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position == 0;
+    assert_eq!(unit(&desk).actual_values(ONE).unwrap().position, 4096);
+    let back = |own: &HiperdriveDevice| MotorCommand::Step { by: -own.actual_values(ONE).unwrap().position };
+    let is_back = |studio: &Studio| studio.hiperdrive().unwrap().actual_values(ONE).unwrap().position == 0;
     drive_until(&mut desk, back, "it is back", is_back);
     desk.until("it stands", |studio| !studio.is_moving());
     // 511 turns are 33 488 896 steps.
-    drive(&mut desk, Motor::Move { target: 33_488_897 });
+    drive(&mut desk, MotorCommand::Move { target: 33_488_897 });
     assert_eq!(warned(&desk), ["hd_refused.outside"]);
-    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
+    drive(&mut desk, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
     assert!(unit(&desk).check_can_allow_endless_run(ONE).is_ok(), "it can be switched on");
-    drive(&mut desk, Motor::Expert(true));
+    drive(&mut desk, MotorCommand::Expert(true));
     assert!(unit(&desk).check_can_run_endlessly(ONE).is_ok(), "factory limits and scaling");
     desk.settle();
     assert!(is_at_standstill(&desk));
     // Each endless run must be allowed again.
-    let run = |_: &Unit| Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless };
-    drive_until(&mut desk, run, "it runs", |studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position > 0);
+    let run = |_: &HiperdriveDevice| MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::Endless };
+    drive_until(&mut desk, run, "it runs", |studio| {
+        studio.hiperdrive().unwrap().actual_values(ONE).unwrap().position > 0
+    });
     assert!(unit(&desk).moves.allows_endless_run(ONE), "while it runs");
-    drive(&mut desk, Motor::Stop);
+    drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
     assert!(!unit(&desk).moves.allows_endless_run(ONE), "the run has ended");
-    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
+    drive(&mut desk, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
 }
 
@@ -224,7 +228,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
 #[test]
 fn distance_and_duration_of_a_move_are_estimated() {
     let desk = in_control("sim:");
-    assert_eq!(unit(&desk).actual(ONE).unwrap().position, 0);
+    assert_eq!(unit(&desk).actual_values(ONE).unwrap().position, 0);
     let estimate = unit(&desk).move_estimate(35 * 65_536).unwrap();
     assert!(estimate.to_string_in(Language::English).ends_with(", about 4 min 0 s"), "{estimate:?}");
     assert_eq!(
@@ -239,7 +243,7 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
     assert_eq!(unit(&desk).reachable_states(ONE), [State::Ready]);
     drive_until(
         &mut desk,
-        |_| Motor::Lead(TargetState::Enabled),
+        |_| MotorCommand::Lead(TargetState::Enabled),
         "it is enabled",
         |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Enabled),
     );
@@ -247,7 +251,7 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
     jog(&mut desk);
     let target = unit(&desk).target.clone().unwrap();
     let blocked = ErrorCode::BLOCK_FORWARD;
-    target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), blocked));
+    target.with_station(|station| station.drive(ONE).unwrap().inject_error(Moment::default(), blocked));
     hold_until(&mut desk, "the fault is seen", |desk| unit(desk).state(ONE) == Some(State::Fault));
     desk.until("its error is read", |studio| {
         let own = studio.hiperdrive().unwrap().drive_status(ONE);
@@ -258,7 +262,7 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
     assert_eq!(unit(&desk).reachable_states(ONE), [State::Locked]);
     drive_until(
         &mut desk,
-        |_| Motor::Acknowledge,
+        |_| MotorCommand::Acknowledge,
         "it is ready",
         |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Ready),
     );
@@ -268,11 +272,11 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
 fn locks_name_a_remedy() {
     let mut desk = in_control("sim:?hub=4&drives=1");
     assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::NotRequested], "as a hub comes from the factory");
-    drive(&mut desk, Motor::Step { by: 64 });
+    drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.not_requested"]);
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Set(number(186), 255));
-    assert!(matches!(unit(&desk).marks()[..], [Mark::NoTimeout { .. }]));
+    assert!(matches!(unit(&desk).findings()[..], [EditFinding::NoTimeout { .. }]));
     write(&mut desk);
     assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::NoTimeout]);
 }
@@ -280,7 +284,7 @@ fn locks_name_a_remedy() {
 #[test]
 fn a_run_ends_immediately_when_its_panel_is_hidden() {
     let mut desk = in_control("sim:");
-    let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
+    let run = MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
     desk.act(Action::ShowTab(crate::tabs::BISS));
     until_standstill(&desk);
@@ -292,7 +296,8 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
     let mut desk = read("sim:");
     let target = unit(&desk).target.clone().unwrap();
     let set = |number_: u16, value: i64| {
-        target.with(|station| station.write(Moment::default(), number(number_), &Value::Number(value)).unwrap());
+        target
+            .with_station(|station| station.write(Moment::default(), number(number_), &Value::Number(value)).unwrap());
     };
     set(158, -65_536);
     set(160, 65_536);
@@ -303,7 +308,7 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
         own.moves.is_open() && own.limits(ONE) == Some((-65_536, 65_536)) && own.session.is_ready()
     });
     assert!(unit(&desk).check_can_allow_endless_run(ONE).is_err(), "they are not the factory's");
-    drive(&mut desk, Motor::Move { target: 65_537 });
+    drive(&mut desk, MotorCommand::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
@@ -313,7 +318,7 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
 fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
     let target = unit(&desk).target.clone().unwrap();
-    target.with(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));
+    target.with_station(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));
     desk.until("it is outside", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.out_of_range_position(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
@@ -323,21 +328,21 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     assert_eq!(own.outside_limits_text(ONE).unwrap().id(), "hd_outside.words");
     assert_eq!(own.check_can_jog(ONE, up).unwrap_err().id(), "hd_refused.outward");
     assert!(own.check_can_jog(ONE, down).is_ok());
-    drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
+    drive(&mut desk, MotorCommand::JogPress { direction: up, repeated: false });
     desk.studio.poll();
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
     for _ in 0..2 {
         let free = |desk: &mut Desk| {
-            drive(desk, Motor::FreeOutward(up));
+            drive(desk, MotorCommand::FreeOutward(up));
             assert!(unit(desk).check_can_jog(ONE, up).is_ok() && !unit(desk).can_enable_outward_jog(ONE, up));
-            drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
+            drive(desk, MotorCommand::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
-        let press = Motor::JogPress { direction: up, repeated: false };
+        let press = MotorCommand::JogPress { direction: up, repeated: false };
         hold_pad_until(&mut desk, press, "it moves out", free, moves);
         let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
         assert!(unit(&desk).check_can_jog(ONE, up).is_ok(), "its pad stays enabled while it is held");
-        drive(&mut desk, Motor::JogRelease);
+        drive(&mut desk, MotorCommand::JogRelease);
         desk.until("it stands", |studio| {
             let own = studio.hiperdrive().unwrap();
             own.state(ONE) != Some(State::Moving) && !own.moves.is_motion_active()
@@ -345,10 +350,10 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         assert!(unit(&desk).check_can_jog(ONE, up).is_err(), "freed for one press");
     }
     // A permission ends with a stop, and with another page of the window.
-    drive(&mut desk, Motor::FreeOutward(up));
+    drive(&mut desk, MotorCommand::FreeOutward(up));
     desk.act(Action::StopMotion);
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
-    drive(&mut desk, Motor::FreeOutward(up));
+    drive(&mut desk, MotorCommand::FreeOutward(up));
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
@@ -371,22 +376,22 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
             assert!(unit(&desk).is_blocked(ONE, own), "{own:?}");
         }
         let free = |desk: &mut Desk| {
-            drive(desk, Motor::FreeOutward(way));
+            drive(desk, MotorCommand::FreeOutward(way));
             assert!(unit(desk).check_can_jog(ONE, way).is_ok() && unit(desk).check_can_jog(ONE, other).is_err());
-            drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
+            drive(desk, MotorCommand::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
-        let press = Motor::JogPress { direction: way, repeated: false };
+        let press = MotorCommand::JogPress { direction: way, repeated: false };
         hold_pad_until(&mut desk, press, "it moves", free, moves);
         let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
-        drive(&mut desk, Motor::JogRelease);
+        drive(&mut desk, MotorCommand::JogRelease);
         desk.until("it stands", |studio| {
             let own = studio.hiperdrive().unwrap();
             own.state(ONE) != Some(State::Moving) && !own.moves.is_motion_active()
         });
     }
     desk.studio.poll();
-    drive(&mut desk, Motor::Move { target: 65_536 });
+    drive(&mut desk, MotorCommand::Move { target: 65_536 });
     assert!(
         desk.notice_ids(Severity::Warning).contains(&"hd_refused.unclear"),
         "{:?}",

@@ -72,11 +72,11 @@ fn a_recording_survives_unit_and_scale_changes() {
     assert!(recorder(&desk).series().iter().all(|line| !line.ended));
     let before = positions(&desk);
     let target = unit(&desk).target.clone().unwrap();
-    target.with(|station| station.write(Moment::default(), number(154), &Value::Number(400)).unwrap());
+    target.with_station(|station| station.write(Moment::default(), number(154), &Value::Number(400)).unwrap());
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.session.is_ready() && own.number(ONE, 154) == Some(400)
+        own.session.is_ready() && own.parameter_value(ONE, 154) == Some(400)
     });
     desk.until("the new scale is recorded", |studio| {
         studio.hiperdrive().unwrap().recording().recorder().series().iter().any(|line| line.ended)

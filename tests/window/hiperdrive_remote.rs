@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use encoder_studio::app::{Action, Studio, StudioEnvironment, connect};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, MotorCommand};
 
 use crate::hiperdrive::{ONE, act, drive, unit, until_read};
 use crate::hiperdrive_acts::{drive_until, hold_pad_until, warned};
@@ -13,7 +13,7 @@ use crate::screen::Screen;
 use crate::support::{Desk, Outside};
 use crate::tabs::Tabs as _;
 
-const PRESS: Motor = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
+const PRESS: MotorCommand = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
 
 /// Returns a studio that is told by the flag whether it is operated remotely.
 fn studio(outside: &Outside, remote: &Arc<AtomicBool>) -> Studio {
@@ -37,18 +37,18 @@ fn a_jog_ends_when_the_session_becomes_remote() {
     remote.store(true, Ordering::SeqCst);
     desk.studio.poll();
     assert!(!unit(&desk).moves.is_held(), "at once");
-    drive(&mut desk, Motor::JogHold);
+    drive(&mut desk, MotorCommand::JogHold);
     desk.until("it stands", |studio| !studio.is_moving());
 
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
-    for motor in [PRESS, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd }] {
+    for motor in [PRESS, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd }] {
         drive(&mut desk, motor);
         assert_eq!(unit(&desk).may_move_until_stopped(ONE).unwrap_err().id(), "hd_refused.remote");
         assert!(warned(&desk).contains(&"hd_refused.remote") && !unit(&desk).moves.is_motion_active());
     }
     // A move ends by itself.
     let moves = |studio: &Studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving);
-    drive_until(&mut desk, |_| Motor::Move { target: 30_000_000 }, "it moves", moves);
+    drive_until(&mut desk, |_| MotorCommand::Move { target: 30_000_000 }, "it moves", moves);
 
     remote.store(false, Ordering::SeqCst);
     desk.until("it may be jogged", |studio| studio.hiperdrive().unwrap().may_move_until_stopped(ONE).is_ok());

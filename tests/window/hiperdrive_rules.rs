@@ -16,7 +16,7 @@ use encoder_studio::devices::hiperdrive::jobs::DeviceConnection;
 use encoder_studio::devices::hiperdrive::procedures::Station;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, State, Value};
 use encoder_studio::devices::hiperdrive::sim::{Config, Target};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 use encoder_studio::link::{ByteLink, Clock, LinkError, RealClock, SimLink, SimPort};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
@@ -34,7 +34,7 @@ fn two() -> DriveNumber {
 /// Writes a value as another master.
 fn set(desk: &Desk, of: u16, value: i64) {
     let target = unit(desk).target.clone().unwrap();
-    target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
+    target.with_station(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
 }
 
 #[test]
@@ -66,15 +66,15 @@ fn a_newly_selected_drive_moves_only_with_freshly_read_limits() {
     assert!(unit(&desk).may_move(two()).is_ok());
     set(&desk, 260, 65_536);
     act(&mut desk, Hiperdrive::SelectDrive(two()));
-    drive(&mut desk, Motor::Move { target: 65_537 });
+    drive(&mut desk, MotorCommand::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.old"]);
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
     assert_eq!(unit(&desk).limits(two()), Some((-33_488_896, 65_536)), "by what it has now");
-    drive(&mut desk, Motor::Move { target: 65_537 });
+    drive(&mut desk, MotorCommand::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.old", "hd_refused.outside"]);
-    let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(two()).unwrap().position };
+    let to_64 = |own: &HiperdriveDevice| MotorCommand::Step { by: 64 - own.actual_values(two()).unwrap().position };
     drive_until(&mut desk, to_64, "it moves", |studio| {
-        studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64)
+        studio.hiperdrive().unwrap().actual_values(two()).is_some_and(|own| own.position == 64)
     });
 }
 
@@ -113,7 +113,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
         given: outside.world().given.with_value(LinkOpener::new(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
-            let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
+            let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
             let stream = Box::new(SimLink::connect(connection, clock.clone()));
             let wire = Box::new(Damaging(stream, is_bad.clone()));
             let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
@@ -142,7 +142,7 @@ fn unreadable_limits_stop_motion_until_readable() {
         studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
     });
     assert!(unit(&desk).moves.is_open() && unit(&desk).session.is_polling(), "it is seen all the same");
-    drive(&mut desk, Motor::Step { by: 64 });
+    drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning).last(), Some(&"hd_lock.old"));
     let began = Instant::now();
     desk.until("some time passes", |studio| {
@@ -179,7 +179,8 @@ fn the_notice_of_unreadable_limits_ends_with_control() {
 
 fn fail(desk: &Desk, own: DriveNumber) {
     let target = unit(desk).target.clone().unwrap();
-    target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+    target
+        .with_station(|station| station.drive(own).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD));
 }
 
 fn has_fault_notice(studio: &Studio) -> bool {
@@ -205,14 +206,14 @@ fn a_fault_notice_does_not_end_with_another_drives_recovery() {
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     drive_until(
         &mut desk,
-        |_| Motor::Acknowledge,
+        |_| MotorCommand::Acknowledge,
         "it has recovered",
         |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Ready),
     );
     desk.settle();
     assert!(has_fault_notice(&desk.studio), "the other has not");
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
-    drive_until(&mut desk, |_| Motor::Acknowledge, "all have recovered", |studio| !has_fault_notice(studio));
+    drive_until(&mut desk, |_| MotorCommand::Acknowledge, "all have recovered", |studio| !has_fault_notice(studio));
 }
 
 /// A reading of all states that began before a fault ends after it.
@@ -231,7 +232,7 @@ fn a_reading_from_before_a_fault_does_not_end_its_notice() {
         assert!(has_fault_notice(&desk.studio));
         drive_until(
             &mut desk,
-            |_| Motor::Acknowledge,
+            |_| MotorCommand::Acknowledge,
             "it has recovered",
             |studio| !has_fault_notice(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok(),
         );
@@ -250,7 +251,7 @@ fn limits_are_confirmed_in_one_place() {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
     for (of, value) in [(154, 400), (156, 256), (186, 255)] {
-        target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
+        target.with_station(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
     }
     screen.act(Action::device(id, Hiperdrive::Take));
     screen.until("it is locked", |studio| {

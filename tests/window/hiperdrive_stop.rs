@@ -11,7 +11,7 @@ use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::hiperdrive::jobs::DriveSnapshot;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{OutputData, State};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, MotorCommand};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::ONE;
@@ -44,7 +44,7 @@ pub(crate) fn in_hand() -> Screen {
 
 pub(crate) fn begin(screen: &mut Screen) {
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::device(id, Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
+    screen.act(Action::device(id, Hiperdrive::Drive(MotorCommand::Move { target: 30_000_000 })));
     screen.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
 }
 
@@ -242,7 +242,7 @@ fn moved_by_another_master() -> Screen {
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
     for control in [0x0400, 0x0401, 0x0409, 0x0439, 0x0479] {
         let out = OutputData { control, speed: 1, torque: 100, target: 30_000_000 };
-        target.with(|station| station.drive(ONE).unwrap().command(Moment::default(), out));
+        target.with_station(|station| station.drive(ONE).unwrap().command(Moment::default(), out));
     }
     screen.until("it is seen to move", Studio::is_moving);
     screen

@@ -35,7 +35,7 @@ pub(crate) trait Tabs {
     fn biss(&self) -> Option<&biss::state::Encoder>;
     fn ssi(&self) -> Option<&ssi::state::Encoder>;
     fn interbus(&self) -> Option<&interbus::state::Encoder>;
-    fn hiperdrive(&self) -> Option<&hiperdrive::state::Unit>;
+    fn hiperdrive(&self) -> Option<&hiperdrive::state::HiperdriveDevice>;
     fn signals(&self) -> &Signals;
 }
 
@@ -56,7 +56,7 @@ impl Tabs for Studio {
         self.selected_model()
     }
 
-    fn hiperdrive(&self) -> Option<&hiperdrive::state::Unit> {
+    fn hiperdrive(&self) -> Option<&hiperdrive::state::HiperdriveDevice> {
         self.selected_model()
     }
 

@@ -12,7 +12,7 @@ use std::{env, fs, thread};
 use encoder_studio::app::{Action, ColorScheme, Language, Settings, Studio, StudioEnvironment};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, PositionUnit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, MotorCommand, PositionUnit};
 use encoder_studio::kinds::program;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
@@ -70,11 +70,11 @@ fn take(desk: &mut Desk) {
 /// Changes the scale of the drive as another master, and surveys it.
 fn scale(desk: &mut Desk, numerator: i64) {
     let target = unit(desk).target.clone().unwrap();
-    target.with(|station| station.write(Moment::default(), number(154), &Value::Number(numerator)).unwrap());
+    target.with_station(|station| station.write(Moment::default(), number(154), &Value::Number(numerator)).unwrap());
     command(desk, DeviceCommand::Read);
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.session.is_ready() && own.number(ONE, 154) == Some(numerator)
+        own.session.is_ready() && own.parameter_value(ONE, 154) == Some(numerator)
     });
 }
 
@@ -119,7 +119,7 @@ fn limits_marked_by_another_window_are_locked() {
     scale(&mut first, 400);
     assert!(is_locked(&first));
     poll_both_until([&mut first, &mut second], "the other one is locked", |_, second| is_locked(second));
-    drive(&mut second, Motor::Step { by: 64 });
+    drive(&mut second, MotorCommand::Step { by: 64 });
     assert_eq!(unit(&second).may_move(ONE).unwrap_err().id(), "hd_lock.limits");
     second.act(Action::SetTheme(ColorScheme::Light));
     poll_both_until([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["Light"]));
@@ -140,7 +140,7 @@ fn limits_are_confirmed_in_each_window() {
     take(&mut second);
     scale(&mut first, 400);
     poll_both_until([&mut first, &mut second], "both are locked", |_, second| is_locked(second));
-    drive(&mut second, Motor::ConfirmLimits(ONE));
+    drive(&mut second, MotorCommand::ConfirmLimits(ONE));
     assert!(!is_locked(&second));
     poll_both_until([&mut first, &mut second], "that is kept", |first, _| {
         settings_contain(first, &["unconfirmed: []"])
@@ -173,11 +173,14 @@ fn values_typed_for_a_drive_stay_in_their_window() {
     act(&mut second, Hiperdrive::SetMeasure(PositionUnit::Degrees));
     let all = ["1: 4000000", "2: 5000000", "Degrees"];
     poll_both_until([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
-    assert_eq!((unit(&first).pitch(two), unit(&second).pitch(ONE)), (None, None));
+    assert_eq!((unit(&first).spindle_pitch(two), unit(&second).spindle_pitch(ONE)), (None, None));
     assert_eq!(unit(&first).measure, PositionUnit::Steps);
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
     with_drives(&mut later);
-    assert_eq!((unit(&later).pitch(ONE), unit(&later).pitch(two)), (pitch(4_000_000), pitch(5_000_000)));
+    assert_eq!(
+        (unit(&later).spindle_pitch(ONE), unit(&later).spindle_pitch(two)),
+        (pitch(4_000_000), pitch(5_000_000))
+    );
     assert_eq!(unit(&later).measure, PositionUnit::Degrees);
 }
 

@@ -33,7 +33,7 @@ impl Clock for Unhurried {
 pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
     let clock: Arc<dyn Clock> = Arc::new(Unhurried(RealClock::start()));
     let target = Target::new(&Config::from_pairs(&url.query.without(&["rpi", "udp", "timeout"]))?);
-    let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
+    let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
     let wire = Box::new(SimLink::connect(connection, clock.clone()));
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
     let station = Station::from_query(&url.query, None, MARGIN)?;

@@ -12,7 +12,7 @@ use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::TargetState;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
 use encoder_studio::devices::hiperdrive::state::axis::AxisStep;
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Mark, Motor};
+use encoder_studio::devices::hiperdrive::state::{EditFinding, HiperdriveAction as Hiperdrive, MotorCommand};
 use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
@@ -139,14 +139,14 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     screen.put("Spindle pitch", "4");
     screen.put("Step size", "0.0000001");
     let own = screen.studio().hiperdrive().unwrap();
-    assert_eq!(own.pitch(own.drive()).map(|own| own.nanometres), Some(4_000_000));
+    assert_eq!(own.spindle_pitch(own.drive()).map(|own| own.nanometres), Some(4_000_000));
     screen.click("hd_scale.set");
     assert!(screen.studio().hiperdrive().unwrap().staged.differences().is_empty());
     screen.put("Step size", "0.01");
     screen.click("hd_scale.set");
     assert!(screen.shows("400 steps") && screen.shows("-2044.00 … 2044.00 mm"));
     let own = screen.studio().hiperdrive().unwrap();
-    let wanted = own.staged.wanted().unwrap();
+    let wanted = own.staged.edited_values().unwrap();
     assert_eq!(wanted.scale(own.drive()).unwrap().steps_per_turn(), 400.0);
     assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
     let id = own.session.id;
@@ -162,8 +162,8 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     screen.press(Role::RadioButton, "Limits: keep their values");
     screen.click("hd_scale.set");
     let own = screen.studio().hiperdrive().unwrap();
-    assert_eq!(own.staged.wanted().unwrap().limits(own.drive()), Some((-33_488_896, 33_488_896)));
-    assert!(matches!(own.marks()[..], [Mark::LimitsMove { .. }]));
+    assert_eq!(own.staged.edited_values().unwrap().limits(own.drive()), Some((-33_488_896, 33_488_896)));
+    assert!(matches!(own.findings()[..], [EditFinding::LimitsMove { .. }]));
     for language in [Language::German, Language::English] {
         screen.act(Action::SetLanguage(language));
         screen.check_language();
@@ -251,14 +251,14 @@ fn stop_is_reachable_over_a_dialog() {
     screen.until("the control is taken", |studio| {
         studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
     });
-    act(&mut screen, Hiperdrive::Drive(Motor::Move { target: 30_000_000 }));
+    act(&mut screen, Hiperdrive::Drive(MotorCommand::Move { target: 30_000_000 }));
     screen.until("it moves", Studio::is_moving);
     screen.act(Action::Connect(connect::ConnectAction::Open));
     assert!(screen.studio().connect.is_some() && screen.studio().is_moving(), "a move goes on under a dialog");
     screen.click("hd_bar.stop");
     screen.until("it stands", |studio| !studio.is_moving());
     let own = screen.studio().hiperdrive().unwrap();
-    assert!(own.actual(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
+    assert!(own.actual_values(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }
 
 /// Issue 21.6 (i): whatever the drive reports, no clickable control moves, and the step remains until the user leaves
@@ -302,20 +302,22 @@ fn the_layout_of_a_step_does_not_shift() {
     screen.steps();
     assert_eq!(places(&screen), before, "with control");
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::device(id, Hiperdrive::Drive(Motor::Lead(TargetState::Enabled))));
+    screen.act(Action::device(id, Hiperdrive::Drive(MotorCommand::Lead(TargetState::Enabled))));
     screen.until("it is enabled", |studio| {
         studio.hiperdrive().is_some_and(|own| own.state(own.drive()) == Some(State::Enabled))
     });
-    unit(&screen).with(|own| own.drive(DriveNumber::FIRST).unwrap().fail(Moment::default(), ErrorCode::FOLLOWING));
+    unit(&screen).with_station(|own| {
+        own.drive(DriveNumber::FIRST).unwrap().inject_error(Moment::default(), ErrorCode::FOLLOWING_ERROR)
+    });
     screen.until("its code is read", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.seen(own.drive()).error == Some(ErrorCode::FOLLOWING))
+        studio.hiperdrive().is_some_and(|own| own.drive_facts(own.drive()).error == Some(ErrorCode::FOLLOWING_ERROR))
     });
     screen.steps();
     assert!(screen.shows("Fault 8203") && screen.is_enabled("hd_axis.acknowledge"));
     assert!(!screen.is_enabled("hd_axis.jog_up") && !screen.is_enabled("hd_axis.jog_down"));
     assert_eq!(places(&screen), before, "in a fault");
     let scale = ParameterNumber::for_drive(154, DriveNumber::FIRST).unwrap();
-    unit(&screen).with(|own| own.write(Moment::default(), scale, &Value::Number(400)).unwrap());
+    unit(&screen).with_station(|own| own.write(Moment::default(), scale, &Value::Number(400)).unwrap());
     screen.until("somebody else has set the scale", |studio| {
         studio.hiperdrive().is_some_and(|own| own.axis().unwrap().invalidated_step() == Some(AxisStep::Scale))
     });

@@ -33,7 +33,7 @@ fn device() -> (Target, Arc<VirtualClock>) {
 
 fn state(stand: &Stand) -> State {
     let now = stand.clock.now();
-    WRITTEN.iter().map(|own| stand.target.with(|station| station.read(now, number(*own))).unwrap()).collect()
+    WRITTEN.iter().map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap()).collect()
 }
 
 /// Returns a session whose link is still intact, and the schedule of its faults.

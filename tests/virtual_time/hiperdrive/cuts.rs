@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::devices::hiperdrive::jobs::{Change, HiperdriveJob, JobError};
 use encoder_studio::devices::hiperdrive::procedures::Error;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
-use encoder_studio::devices::hiperdrive::procedures::write::Interrupted;
+use encoder_studio::devices::hiperdrive::procedures::write::InterruptedWrite;
 use encoder_studio::link::CancelToken;
 
 use super::support::{Stand, drive, image};
@@ -105,7 +105,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
 }
 
 /// Carries a change out with a cancellation at each of its requests in turn; `look` receives each end.
-fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &Interrupted)) {
+fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &InterruptedWrite)) {
     for at in 0.. {
         let mut stand = Stand::new("");
         let prepared = stand.prepare(change()).unwrap();

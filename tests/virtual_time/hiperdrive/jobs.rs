@@ -1,7 +1,7 @@
 //! The data that can be read of a device. Nothing is set, and no cyclic connection is opened.
 
 use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
-use encoder_studio::devices::hiperdrive::procedures::{Error, LateReplyError, Sample, Temperature};
+use encoder_studio::devices::hiperdrive::procedures::{Error, LateReplyError, PolledSample, Temperature};
 use std::sync::{Arc, Mutex};
 
 use encoder_studio::buses::ethernet_ip::protocol::{AddressSource, Service};
@@ -36,7 +36,7 @@ fn reading_writes_nothing() {
     assert!(others.is_empty(), "{others:?}");
     assert!(stand.requests().len() > 200);
     let now = stand.clock.now();
-    assert!(!stand.target.with(|station| station.is_open(now)));
+    assert!(!stand.target.with_station(|station| station.is_open(now)));
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn missing_ports_and_drives_are_named() {
 fn status_reports_states_errors_and_temperatures_of_all_drives() {
     let mut stand = Stand::new("hub=4&drives=1,1&requested=1&supply=23.4");
     let now = stand.clock.now();
-    stand.target.with(|station| station.drive(drive(2)).unwrap().fail(now, ErrorCode::OVER_CURRENT));
+    stand.target.with_station(|station| station.drive(drive(2)).unwrap().inject_error(now, ErrorCode::OVER_CURRENT));
     let HiperdriveOutput::Status(status) = stand.run(HiperdriveJob::Status).unwrap() else { panic!() };
     assert_eq!(status.supply_tenths, 234);
     let [first, second] = status.drives.as_slice() else { panic!("{status:?}") };
@@ -131,7 +131,7 @@ fn a_recorded_trace_replays_the_devices_replies() {
 fn positions_of_the_watched_drive_are_read() {
     let mut stand = Stand::new("hub=4&drives=1,1&position=65536");
     let position = |stand: &mut Stand| match stand.session.take_sample().unwrap() {
-        Sample::Position(reading) => reading,
+        PolledSample::Position(reading) => reading,
         other => panic!("{other:?}"),
     };
     let reading = position(&mut stand);
@@ -147,7 +147,7 @@ fn temperatures_are_watched_by_one_request_each() {
     stand.session.take_sample().unwrap();
     let before = stand.requests().len();
     for (what, celsius) in [(Temperature::Device, 31), (Temperature::Drive(drive(2)), 25)] {
-        let WatchReply::Sample(Sample::Temperature(reading)) = stand.session.watch_value(&what).unwrap() else {
+        let WatchReply::Sample(PolledSample::Temperature(reading)) = stand.session.watch_value(&what).unwrap() else {
             panic!()
         };
         assert_eq!((reading.what, reading.celsius), (what, Some(celsius)));
@@ -155,7 +155,7 @@ fn temperatures_are_watched_by_one_request_each() {
     assert_eq!(stand.requests().len() - before, 2);
     let empty = stand.session.watch_value(&Temperature::Drive(drive(4))).unwrap();
     assert!(
-        matches!(empty, WatchReply::Refused(Sample::Temperature(reading)) if reading.celsius.is_none()),
+        matches!(empty, WatchReply::Refused(PolledSample::Temperature(reading)) if reading.celsius.is_none()),
         "an empty port is not asked again: {empty:?}"
     );
     assert!(stand.requests().iter().all(|request| request.service == Service::GET));
@@ -164,7 +164,7 @@ fn temperatures_are_watched_by_one_request_each() {
 #[test]
 fn the_check_has_a_line_for_each_possible_fault() {
     let mut stand = Stand::new("hub=4&drives=1&requested=0&supply=18&switch=98&position=65536");
-    stand.target.with(|station| {
+    stand.target.with_station(|station| {
         for (own, value) in [(186, 255), (158, 0)] {
             let now = encoder_studio::units::Moment::START;
             station.write(now, number(own), &Value::Number(value)).unwrap();

@@ -260,7 +260,7 @@ fn a_number_of_another_length_is_refused_with_both_lengths() {
 fn a_refusal_is_reported_with_its_parameter_name() {
     let mut desk = Desk::with([Act::Reply("8E 00 05 00")]);
     let error = desk.read(13).unwrap_err();
-    let refusal = error.refusal().unwrap();
+    let refusal = error.as_refusal().unwrap();
     assert_eq!(refusal.status, GeneralStatus::new(5));
     assert_eq!(error.to_string(), "reading parameter 13 (category): 0x05 path unknown");
     // For a drive its existence is read as well: 0 in parameter 120 means that it does not exist.
@@ -346,7 +346,7 @@ fn a_cyclic_connection_is_opened_as_in_the_reference() {
     assert_eq!(beside, bytes("01 80 10 00 00 02 12 34 00 00 00 00 00 00 00 00 00 00 00 00"));
     assert_eq!((opened.to_target_id, opened.to_originator_id), (0x0002_0001, 0x0001_0001));
     assert_eq!((opened.to_target_interval, opened.timeout), (Duration::from_millis(10), Duration::from_millis(80)));
-    assert_eq!((opened.port, opened.group, opened.layout.length()), (2222, None, 16));
+    assert_eq!((opened.port, opened.group, opened.layout.byte_length()), (2222, None, 16));
     desk.ask(|master| master.forward_close(&opened.close)).unwrap();
     let close = "4E 02 20 06 24 01 03 FA .. .. 34 12 .. .. .. .. 04 00 20 04 24 68 2C 64 2C 65";
     assert_eq!(cip(&desk.sent()[2], close).0, flat(close));
@@ -396,7 +396,7 @@ fn another_master_is_reported_and_nothing_is_retried() {
     }
     let mut desk = Desk::with([Act::Reply("D4 00 01 01 11 01")]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
-    let remedy = error.refusal().unwrap().remedy();
+    let remedy = error.as_refusal().unwrap().remedy();
     assert_eq!(remedy, Some("request a longer interval"));
     // A lost reply may belong to a connection that is open: it is not opened twice.
     let mut desk = Desk::with([]);

@@ -53,16 +53,16 @@ impl Stand {
     /// Creates another session with a device.
     pub(crate) fn at(target: Target, clock: Arc<VirtualClock>) -> Self {
         let tap = Arc::<Mutex<Tap>>::default();
-        let connection = target.connection(Ipv4Addr::UNSPECIFIED);
+        let connection = target.connect_from(Ipv4Addr::UNSPECIFIED);
         let wire = Box::new(TestLink::new(Arc::new(Mutex::new(connection)), clock.clone(), tap.clone()));
         Self::over(wire, tap, target, clock)
     }
 
     /// Creates another session with a device, over a link with these faults.
     pub(crate) fn with_faults(target: Target, clock: Arc<VirtualClock>, schedule: Arc<Mutex<Schedule>>) -> Self {
-        let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
+        let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
         let supplied = target.clone();
-        let cut_power = move |now| supplied.with(|station| station.power_cycle(now));
+        let cut_power = move |now| supplied.with_station(|station| station.power_cycle(now));
         let wire = Box::new(FaultyLink::new(connection, clock.clone(), schedule, cut_power));
         Self::over(wire, Arc::default(), target, clock)
     }
@@ -125,7 +125,7 @@ impl Stand {
     /// Returns a parameter as the device has it.
     pub(crate) fn value(&self, own: u16) -> i64 {
         let now = self.clock.now();
-        match self.target.with(|station| station.read(now, number(own))).unwrap() {
+        match self.target.with_station(|station| station.read(now, number(own))).unwrap() {
             Value::Number(value) => value,
             Value::Text(text) => panic!("{text}"),
         }

@@ -4,7 +4,7 @@ use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJo
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::procedures::{DisplayedLimits, Error, RequestedItem};
 use encoder_studio::devices::hiperdrive::profile::{HiperdriveProfile, PlanError, RestoreOptions, Service};
-use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, Range, Value};
+use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, ParameterRange, Value};
 use encoder_studio::kinds::program;
 use encoder_studio::link::Clock;
 use encoder_studio::profile::ProfileDocument;
@@ -32,14 +32,18 @@ fn differences_are_written_read_back_and_saved_once() {
     assert_eq!(sets, [(24, vec![7, 0, 0, 0]), (166, vec![200, 0]), (47, vec![1, 0])]);
     assert_eq!((stand.value(24), stand.value(166), stand.value(47)), (7, 200, 0), "it waits until it is saved");
     let now = stand.clock.now();
-    stand.target.with(|station| station.power_cycle(now));
+    stand.target.with_station(|station| station.power_cycle(now));
     assert_eq!(stand.value(166), 200);
     let before = ProfileDocument::parse(&read_text(&done.backup.unwrap()).unwrap(), program().studio.formats).unwrap();
     assert_eq!(before.body.get::<HiperdriveProfile>().unwrap().image.get(number(166)), Some(350));
     let done = stand.change(Change::Write(image(&[(24, 7)]))).unwrap();
     assert!(done.backup.is_none() && stand.sets().len() == 3, "what is so already is not written");
     let prepared = stand.prepare(Change::Write(image(&[(24, 8)]))).unwrap();
-    assert_eq!((prepared.cycles_seen, prepared.wear()), (Some(1), None), "saves are counted by the device's number");
+    assert_eq!(
+        (prepared.cycles_seen, prepared.wear_to_report()),
+        (Some(1), None),
+        "saves are counted by the device's number"
+    );
 }
 
 /// Issue 22.4: no limit of saves is known, but they are counted: if they cannot be, only a forced write is carried out.
@@ -64,7 +68,7 @@ fn trial_values_are_not_saved() {
     stand.change(Change::Do(Service::Recall)).unwrap();
     assert_eq!(stand.value(166), 100);
     let now = stand.clock.now();
-    stand.target.with(|station| station.power_cycle(now));
+    stand.target.with_station(|station| station.power_cycle(now));
     assert_eq!((stand.value(166), stand.value(170)), (350, 4096));
 }
 
@@ -110,7 +114,7 @@ fn a_changed_device_or_value_stops_the_write() {
     let mut stand = Stand::new("serial=42");
     let prepared = stand.prepare(Change::Write(image(&[(166, 100)]))).unwrap();
     let now = stand.clock.now();
-    stand.target.with(|station| station.write(now, number(166), &Value::Number(300))).unwrap();
+    stand.target.with_station(|station| station.write(now, number(166), &Value::Number(300))).unwrap();
     let error = device_error(stand.commit(prepared.clone()));
     assert_eq!(error, Error::Changed { item: "166".to_owned() });
     let mut other = Stand::new("serial=43");
@@ -127,11 +131,11 @@ fn out_of_range_values_name_both_limits_of_host_and_device() {
     // The drive has turned meanwhile: the plan does not include it, and the device refuses.
     let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
     let now = stand.clock.now();
-    stand.target.with(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
+    stand.target.with_station(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
     let error = device_error(stand.commit(prepared));
     let Error::Refuses(out) = &error else { panic!("{error}") };
     // 512 turns of 65536 steps.
-    assert_eq!(out.range, Range::Within(-33_554_432, 640), "no lower limit above the position");
+    assert_eq!(out.range, ParameterRange::Within(-33_554_432, 640), "no lower limit above the position");
     assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000: it may be -33554432 to 640");
 }
 
@@ -220,12 +224,12 @@ fn a_fault_is_acknowledged_with_a_reset_only_if_needed() {
     for (codes, reset) in [
         (&[ErrorCode::RS485][..], false),
         (&[ErrorCode::OVER_CURRENT, ErrorCode::RS485], true),
-        (&[ErrorCode::RS485, ErrorCode::FOLLOWING], true),
+        (&[ErrorCode::RS485, ErrorCode::FOLLOWING_ERROR], true),
     ] {
         let mut stand = Stand::new("hub=4&drives=0,1&requested=1");
         for code in codes {
             let now = stand.clock.now();
-            stand.target.with(|station| station.drive(drive(2)).unwrap().fail(now, *code));
+            stand.target.with_station(|station| station.drive(drive(2)).unwrap().inject_error(now, *code));
         }
         assert_eq!(stand.value(297), codes.len() as i64);
         let done = stand.change(Change::Do(Service::Acknowledge(drive(2)))).unwrap();

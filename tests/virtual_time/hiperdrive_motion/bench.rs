@@ -88,7 +88,7 @@ impl Bench {
         }
         if !self.cut_out {
             let image = OutputImage { drives: vec![setpoint.into()], pkw: None };
-            self.station.cyclic(self.now, &image, true);
+            self.station.handle_process_data(self.now, &image, true);
             self.before = word;
         }
         if self.words.last() != Some(&word.to_u16()) {
@@ -143,7 +143,7 @@ impl Bench {
 
     pub(super) fn fail(&mut self, code: ErrorCode) {
         let now = self.now;
-        self.station.drive(DriveNumber::FIRST).unwrap().fail(now, code);
+        self.station.drive(DriveNumber::FIRST).unwrap().inject_error(now, code);
     }
 
     pub(super) fn load(&mut self, load: SpindleLoad) {

@@ -7,9 +7,9 @@ use encoder_studio::app::{Action, ReviewAction};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
 use encoder_studio::devices::hiperdrive::sim::WriteFault;
 use encoder_studio::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, Entries, TestTarget,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, LengthEntries, TestTarget,
 };
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
@@ -17,7 +17,7 @@ use crate::support::Desk;
 /// An adapter whose drive was never requested.
 pub(super) const FRESH: &str = "sim:?requested=0";
 
-pub(super) fn unit(desk: &Desk) -> &Unit {
+pub(super) fn unit(desk: &Desk) -> &HiperdriveDevice {
     desk.studio.hiperdrive().unwrap()
 }
 
@@ -40,7 +40,7 @@ pub(super) fn run(desk: &mut Desk, action: Run) {
 }
 
 pub(super) fn seen(desk: &Desk) -> DriveFacts {
-    unit(desk).seen(unit(desk).drive())
+    unit(desk).drive_facts(unit(desk).drive())
 }
 
 /// Reads a parameter by its own number.
@@ -53,7 +53,12 @@ pub(super) fn read(desk: &Desk, number: u16) -> i64 {
 
 /// Presses a pad as soon as the drive may move, and holds it until a condition holds.
 #[track_caller]
-pub(super) fn held_until(desk: &mut Desk, press: Motor, what: &str, condition: impl Fn(&Unit) -> bool) {
+pub(super) fn held_until(
+    desk: &mut Desk,
+    press: MotorCommand,
+    what: &str,
+    condition: impl Fn(&HiperdriveDevice) -> bool,
+) {
     let drive = unit(desk).drive();
     hold_pad_until(desk, press, what, |desk| until_free(desk, drive), |desk| condition(unit(desk)));
 }
@@ -118,7 +123,7 @@ pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     assert_eq!(self::axis(desk).step(), step);
 }
 
-pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut Entries)) {
+pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut LengthEntries)) {
     let mut entries = axis(desk).entries().clone();
     change(&mut entries);
     run(desk, Run::Edit(Box::new(entries)));
@@ -129,30 +134,30 @@ pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut Entries)) {
 pub(super) fn position(desk: &mut Desk) -> i32 {
     let drive = unit(desk).drive();
     desk.until("the position is known", move |studio| {
-        studio.hiperdrive().is_some_and(|own| own.seen(drive).position.is_some())
+        studio.hiperdrive().is_some_and(|own| own.drive_facts(drive).position.is_some())
     });
     seen(desk).position.unwrap()
 }
 
 pub(super) fn number(desk: &Desk, number: u16) -> i64 {
-    unit(desk).number(unit(desk).drive(), number).unwrap()
+    unit(desk).parameter_value(unit(desk).drive(), number).unwrap()
 }
 
 /// Holds the jog until the axis has moved this far, then releases it.
 #[track_caller]
 pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
     let from = position(desk);
-    held_until(desk, Motor::SlowJogPress { direction, repeated: false }, "it moves", |own| {
-        own.seen(own.drive()).position.is_some_and(|position| (position - from).abs() >= steps)
+    held_until(desk, MotorCommand::SlowJogPress { direction, repeated: false }, "it moves", |own| {
+        own.drive_facts(own.drive()).position.is_some_and(|position| (position - from).abs() >= steps)
     });
-    act(desk, Hiperdrive::Drive(Motor::JogRelease));
+    act(desk, Hiperdrive::Drive(MotorCommand::JogRelease));
     until_stopped(desk);
 }
 
 #[track_caller]
 pub(super) fn until_stopped(desk: &mut Desk) {
     desk.until("it stands", |studio| {
-        studio.hiperdrive().is_some_and(|own| !own.is_moving() && !own.seen(own.drive()).moves)
+        studio.hiperdrive().is_some_and(|own| !own.is_moving() && !own.drive_facts(own.drive()).moves)
     });
 }
 
@@ -165,7 +170,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
             number => ParameterNumber::for_drive(number, unit(desk).drive()).unwrap(),
         };
         let target = unit(desk).target.clone().unwrap();
-        target.with(|station| station.set_write_fault(Some((own, hindrance))));
+        target.with_station(|station| station.set_write_fault(Some((own, hindrance))));
         let step = axis(desk).step();
         run(desk, Run::Press(AxisButton::Do));
         consent(desk);
@@ -176,14 +181,14 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
                 .review_sheet()
                 .is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
         });
-        target.with(|station| station.set_write_fault(None));
+        target.with_station(|station| station.set_write_fault(None));
         let id = unit(desk).session.id;
         desk.act(Action::Review(id, ReviewAction::Close));
         desk.until("it can be asked", |studio| studio.hiperdrive().is_some_and(|own| !own.session.is_busy()));
         command(desk, DeviceCommand::Read);
         desk.until("it is read again", |studio| {
             let own = studio.hiperdrive().unwrap();
-            let seen = own.seen(own.drive());
+            let seen = own.drive_facts(own.drive());
             seen.connected && !seen.busy && !seen.stale && seen.actual.is_some()
         });
         let own = axis(desk);
@@ -196,7 +201,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         }
     }
     // The interrupted write may have arrived: then it is already done.
-    if axis(desk).ask(AxisButton::Do, &seen(desk)).is_ok() {
+    if axis(desk).request(AxisButton::Do, &seen(desk)).is_ok() {
         step_with_write(desk);
     } else {
         assert!(rough, "{number}");
@@ -208,7 +213,7 @@ pub(super) fn control(desk: &mut Desk) {
     run(desk, Run::Press(AxisButton::Take));
     desk.until("control", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.moves.is_open() && own.session.is_ready() && own.seen(own.drive()).position.is_some()
+        own.moves.is_open() && own.session.is_ready() && own.drive_facts(own.drive()).position.is_some()
     });
 }
 
@@ -225,7 +230,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     step_with_writes(&mut desk, 152, rough);
     desk.until("the drive is there", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.axis().unwrap().check_can_continue(&own.seen(own.drive())).is_ok()
+        own.axis().unwrap().check_can_continue(&own.drive_facts(own.drive())).is_ok()
     });
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
@@ -268,7 +273,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     // 100 steps are rounded to 128: the nearest multiple of 64.
     desk.until("the position is set", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.seen(own.drive()).position.is_some_and(|position| (position - 128).abs() <= 1)
+        own.drive_facts(own.drive()).position.is_some_and(|position| (position - 128).abs() <= 1)
     });
     next(&mut desk, AxisStep::Lower);
     desk
@@ -292,7 +297,7 @@ pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
 
 /// Moves to a place until a condition holds; again after a delay of 250 ms on a busy computer, which ends the motion.
 #[track_caller]
-pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -> bool) {
+pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&HiperdriveDevice) -> bool) {
     let drive = unit(desk).drive();
     for _ in 0..ATTEMPTS {
         let before = last_end(&desk.studio, drive);
@@ -306,7 +311,7 @@ pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -
         until_stopped(desk);
         desk.until("it may go", |studio| {
             let own = studio.hiperdrive().unwrap();
-            own.axis().unwrap().ask(AxisButton::Go(place), &own.seen(drive)).is_ok()
+            own.axis().unwrap().request(AxisButton::Go(place), &own.drive_facts(drive)).is_ok()
         });
     }
     panic!("it has lapsed {ATTEMPTS} times");
@@ -314,8 +319,8 @@ pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -
 
 pub(super) fn tested(mut desk: Desk) -> Desk {
     for place in TestTarget::ALL {
-        go(&mut desk, place, |own| own.axis().unwrap().outcome(place).is_some());
-        let outcome = axis(&desk).outcome(place).unwrap();
+        go(&mut desk, place, |own| own.axis().unwrap().outcome_of(place).is_some());
+        let outcome = axis(&desk).outcome_of(place).unwrap();
         assert!(outcome.is_good(), "{place:?}: {outcome:?}");
         until_stopped(&mut desk);
     }

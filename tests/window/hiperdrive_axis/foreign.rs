@@ -19,7 +19,7 @@ fn other_mode_text() -> Desk {
 fn set_by_another(desk: &Desk) {
     let reference = ParameterNumber::for_drive(198, DriveNumber::FIRST).unwrap();
     let target = unit(desk).target.clone().unwrap();
-    target.with(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
+    target.with_station(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
 }
 
 /// Issue 21.6 (c): the position jumps while the axis is at standstill, and everything based on the reference becomes
@@ -46,7 +46,7 @@ fn a_position_change_while_disconnected_is_reported() {
         let own = studio.hiperdrive().unwrap();
         let has_ended =
             studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == "session.poll_failed"));
-        !own.seen(own.drive()).connected && has_ended
+        !own.drive_facts(own.drive()).connected && has_ended
     });
     set_by_another(&desk);
     target.set_faults(&SimulatedFaults::default());
@@ -54,7 +54,7 @@ fn a_position_change_while_disconnected_is_reported() {
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is told", |studio| {
         let own = studio.hiperdrive().unwrap();
-        words::unexplained_change_text(own.axis().unwrap(), &own.seen(own.drive())).is_some()
+        words::unexplained_change_text(own.axis().unwrap(), &own.drive_facts(own.drive())).is_some()
     });
     assert_eq!(axis(&desk).invalidated_step(), None);
     let told = words::unexplained_change_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);

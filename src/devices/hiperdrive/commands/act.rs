@@ -2,7 +2,7 @@
 //! and the device check.
 
 use super::args::{DoOptions, DriveOption, HiperdriveAction};
-use super::plan::{change_lines, commit, operations, prepare};
+use super::plan::{change_lines, commit_plan, operations_json, prepare_plan};
 use super::run::{Runner, drive};
 use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::require_consent;
@@ -21,7 +21,7 @@ use crate::result_of;
 
 const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
 
-pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
+pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let action = act.parse_action(KIND, ACTIONS);
     let of_drive = matches!(action, Ok(HiperdriveAction::Acknowledge | HiperdriveAction::SetPosition));
@@ -56,11 +56,11 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
     };
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
-    let prepared = prepare(&mut runner, output, change)?;
-    let operations = operations(&prepared.plan);
+    let prepared = prepare_plan(&mut runner, output, change)?;
+    let operations = operations_json(&prepared.plan);
     let changes = change_lines(&prepared.plan);
     let before: Vec<DriveNumber> = prepared.identity.drives.iter().map(|own| own.number).collect();
-    let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    let spent = commit_plan(&mut runner, output, prepared, &act.consent)?;
     let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };
     match action {
         HiperdriveAction::Factory if !all => output.print_message(&TEXTS.text("hd_cli.not_saved").terminal_text()),
@@ -73,7 +73,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
     let done = print_write_result(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
     // The action may have been carried out without the desired effect.
     match action {
-        HiperdriveAction::PresenceTest => present(&before, &found)?,
+        HiperdriveAction::PresenceTest => check_present(&before, &found)?,
         HiperdriveAction::Acknowledge if !operations.is_empty() => {
             check_acknowledged(&mut runner, output, drive(&of))?;
         }
@@ -84,7 +84,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
 
 /// Checks that a drive no longer has a fault after its acknowledgement.
 pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: DriveNumber) -> Result<()> {
-    let again = prepare(runner, output, Change::Do(Service::Acknowledge(drive)))?;
+    let again = prepare_plan(runner, output, Change::Do(Service::Acknowledge(drive)))?;
     if again.plan.is_empty() {
         Ok(())
     } else {
@@ -97,7 +97,7 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
 }
 
 /// Checks that the presence test has found at least one drive and every previously known drive.
-fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
+fn check_present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
         return Err(to_failure(&TEXTS.text("hd_cli.no_drives")));
     }
@@ -118,5 +118,5 @@ fn set_position(of: &DriveOption, text: &str) -> Result<Change> {
 
 fn check_device(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    result_of!(runner.run(HiperdriveJob::Check)?, HiperdriveOutput::Check(lines) => check::show(output, &words::check(&lines)))
+    result_of!(runner.run(HiperdriveJob::Check)?, HiperdriveOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
 }

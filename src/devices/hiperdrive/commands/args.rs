@@ -31,7 +31,7 @@ pub(super) struct WordOptions {
     pub(super) way: DirectionOption,
     /// hiperdrive: byte order of numbers in process data. Default: little.
     #[arg(long, value_enum)]
-    pub(super) order: Option<Order>,
+    pub(super) order: Option<ByteOrderArg>,
 }
 
 /// Hub option of `simulate`.
@@ -68,18 +68,18 @@ pub(crate) struct MoveArgs {
 
 /// Byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Order {
+pub(crate) enum ByteOrderArg {
     /// Low byte first.
     Little,
     /// High byte first.
     Big,
 }
 
-impl From<Order> for ByteOrder {
-    fn from(order: Order) -> Self {
+impl From<ByteOrderArg> for ByteOrder {
+    fn from(order: ByteOrderArg) -> Self {
         match order {
-            Order::Little => ByteOrder::Little,
-            Order::Big => ByteOrder::Big,
+            ByteOrderArg::Little => ByteOrder::Little,
+            ByteOrderArg::Big => ByteOrder::Big,
         }
     }
 }

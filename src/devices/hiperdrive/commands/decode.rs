@@ -19,26 +19,26 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
     let known =
         DecodeContext { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
     let explained: Vec<FrameExplanation> =
-        parse_captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
+        parse_captured(&arguments.hex)?.iter().map(|captured| explain_captured(captured, &known)).collect();
     show(output, &explained)
 }
 
-enum Captured {
+enum CapturedData {
     /// A word, given as four hexadecimal digits.
     Word(u16),
     Bytes(Vec<u8>),
 }
 
 /// Parses the arguments. Four hexadecimal digits are a word; anything else is a sequence of bytes.
-fn parse_captured(arguments: &[String]) -> Result<Vec<Captured>> {
+fn parse_captured(arguments: &[String]) -> Result<Vec<CapturedData>> {
     let word = |text: &String| {
         let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
         let is_word = digits.len() == 4 && digits.chars().all(|c| c.is_ascii_hexdigit());
-        is_word.then(|| u16::from_str_radix(digits, 16).ok()).flatten().map(Captured::Word)
+        is_word.then(|| u16::from_str_radix(digits, 16).ok()).flatten().map(CapturedData::Word)
     };
-    let words: Vec<Option<Captured>> = arguments.iter().map(word).collect();
+    let words: Vec<Option<CapturedData>> = arguments.iter().map(word).collect();
     match words.iter().filter(|word| word.is_some()).count() {
-        0 => Ok(parse_frames(arguments)?.into_iter().map(Captured::Bytes).collect()),
+        0 => Ok(parse_frames(arguments)?.into_iter().map(CapturedData::Bytes).collect()),
         all if all == arguments.len() => Ok(words.into_iter().flatten().collect()),
         _ => Err(Failure::Usage(
             "words (4 hexadecimal digits, such as 0439) and bytes cannot be mixed: decode them separately".to_owned(),
@@ -46,13 +46,13 @@ fn parse_captured(arguments: &[String]) -> Result<Vec<Captured>> {
     }
 }
 
-fn explain(captured: &Captured, known: &DecodeContext) -> FrameExplanation {
+fn explain_captured(captured: &CapturedData, known: &DecodeContext) -> FrameExplanation {
     let (shown, compact, meaning_lines) = match captured {
-        Captured::Word(word) => {
+        CapturedData::Word(word) => {
             let text = format!("{word:04X}");
-            (text.clone(), text, meaning::from_word(*word, known).map(|readings| lines(&readings)))
+            (text.clone(), text, meaning::from_word(*word, known).map(|readings| meaning_lines(&readings)))
         }
-        Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), decode_bytes(bytes, known)),
+        CapturedData::Bytes(bytes) => (hex(bytes), hex_compact(bytes), decode_bytes(bytes, known)),
     };
     let (meaning, mut more) = match meaning_lines {
         Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
@@ -62,10 +62,10 @@ fn explain(captured: &Captured, known: &DecodeContext) -> FrameExplanation {
     FrameExplanation { shown, compact, meaning, more }
 }
 
-fn lines(readings: &[WordMeaning]) -> DecodedBytes {
+fn meaning_lines(readings: &[WordMeaning]) -> DecodedBytes {
     let list = readings.iter().map(WordMeaning::json).collect();
     let more = Map::from_iter([("readings".to_owned(), list)]);
-    DecodedBytes { lines: readings.iter().flat_map(WordMeaning::lines).collect(), more, data: None }
+    DecodedBytes { lines: readings.iter().flat_map(WordMeaning::to_lines).collect(), more, data: None }
 }
 
 /// Decodes bytes as a packet, or as process data if their length matches a layout. With a known direction, bytes of a
@@ -77,8 +77,8 @@ fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> std::result::Result<Deco
     if let Some(explained) = packet {
         let mut explained = explained?;
         if let Some((data, to_target)) = explained.data.take() {
-            let readings = image::cyclic(&data, to_target, known);
-            explained.lines.extend(readings.iter().flat_map(WordMeaning::lines));
+            let readings = image::explain_cyclic(&data, to_target, known);
+            explained.lines.extend(readings.iter().flat_map(WordMeaning::to_lines));
             explained.more.insert("readings".to_owned(), readings.iter().map(WordMeaning::json).collect());
         }
         return Ok(explained);
@@ -90,5 +90,5 @@ fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> std::result::Result<Deco
             bytes.len()
         ));
     }
-    image::decode_bytes(bytes, known).map(|readings| lines(&readings))
+    image::decode_bytes(bytes, known).map(|readings| meaning_lines(&readings))
 }

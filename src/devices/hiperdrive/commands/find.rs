@@ -20,7 +20,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let shout = match &common.link {
         None => UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone()),
-        Some(url) => UdpBroadcast::new(addresses(url)?, clock.clone()),
+        Some(url) => UdpBroadcast::new(query_addresses(url)?, clock.clone()),
     };
     let mut shout = shout.map_err(|error| to_failure(&explain::link_error_text(&error)))?;
     let found =
@@ -48,7 +48,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
 
 /// Returns the addresses to query: that of a single device, or the broadcast address of a network. An example of a
 /// broadcast link is `enip:192.168.1.255`.
-fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
+fn query_addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     let (LinkScheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
         return Err(Failure::Usage(
             "find hiperdrive takes --link enip:ADDRESS, or no link to search the whole network".to_owned(),

@@ -6,7 +6,7 @@ use super::meaning::{self, DecodeContext, WordMeaning, control_word_text, parame
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
     ActualValues, Answer, ControlWord, InputImage, Kind, Layout, OutputData, OutputImage, ParameterNumber,
-    ParameterRow, Pkw, Task, Value, turns,
+    ParameterRow, Pkw, Task, Value, split_turns,
 };
 
 /// Returns the meanings of process data: one per possible layout, restricted to the direction if known. The result is
@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::protocol::{
 pub(super) fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = decode_parameter_word(bytes, known);
-    for layout in layouts(bytes.len(), known) {
+    for layout in possible_layouts(bytes.len(), known) {
         // An implausible status word is shown only if no other meaning fits.
         let from = || decode_input_image(bytes, layout).filter(|_| words.is_empty() || is_input_image(bytes, layout));
         match (decode_output_image(bytes, layout), known.direction) {
@@ -35,7 +35,7 @@ pub(super) fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> Result<Vec<Wo
     Ok(readings)
 }
 
-fn layouts(length: usize, known: &DecodeContext) -> impl Iterator<Item = Layout> {
+fn possible_layouts(length: usize, known: &DecodeContext) -> impl Iterator<Item = Layout> {
     Layout::all_with_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
@@ -51,7 +51,7 @@ fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
 
 /// Returns the meanings of the process data in a cyclic packet. The packet's direction is used if no direction is
 /// known. The result is empty if no layout has this length.
-pub(super) fn cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec<WordMeaning> {
+pub(super) fn explain_cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
@@ -60,7 +60,7 @@ pub(super) fn cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec
         let refused = |why: String| WordMeaning { direction: "OUT", lines: vec![why], json: json!({"legal": false}) };
         Some(decode_output_image(data, layout).unwrap_or_else(refused))
     };
-    layouts(data.len(), known).filter_map(reading).collect()
+    possible_layouts(data.len(), known).filter_map(reading).collect()
 }
 
 fn decode_output_image(bytes: &[u8], layout: Layout) -> Result<WordMeaning, String> {
@@ -123,7 +123,7 @@ fn actual_text(drive: &ActualValues) -> String {
 
 /// Formats a position in turns and degrees for a drive with default scaling.
 fn turns_text(position: i32) -> String {
-    let (turn, steps) = turns(position);
+    let (turn, steps) = split_turns(position);
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
 
@@ -195,12 +195,12 @@ fn has_expected_width(pkw: Pkw, row: &ParameterRow) -> bool {
 /// Returns whether a word or a double word can be a value of the parameter. A double word can also hold four characters
 /// of a string.
 fn matches_width(row: &ParameterRow, word: bool) -> bool {
-    row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
+    row.kind.byte_length().map_or(!word, |bytes| (bytes < 4) == word)
 }
 
 fn write_request_text(pkw: Pkw, raw: u32, word: bool) -> String {
     let own = row(pkw).filter(|row| matches_width(row, word));
-    let warning = own.map_or(String::new(), |row| meaning::warning(row, number(row, raw)));
+    let warning = own.map_or(String::new(), |row| meaning::warning(row, signed_value(row, raw)));
     format!("write {} to {}{warning}", value_description(pkw, raw, word), parameter_name(pkw.number()))
 }
 
@@ -209,14 +209,14 @@ fn value_description(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),
         Some(row) if !matches_width(row, word) => {
-            let (got, expected) = if word { (2, 4) } else { (4, row.kind.length().unwrap_or(2).max(2)) };
+            let (got, expected) = if word { (2, 4) } else { (4, row.kind.byte_length().unwrap_or(2).max(2)) };
             format!("no value ({got} bytes where its type has {expected}: 0x{raw:X})")
         }
         Some(row) if row.kind == Kind::Text => match Kind::Text.parse(&raw.to_le_bytes()) {
             Ok(Value::Text(text)) => format!("\"{text}\""),
             _ => raw.to_string(),
         },
-        Some(row) => meaning::number_meaning(row, number(row, raw)),
+        Some(row) => meaning::number_meaning(row, signed_value(row, raw)),
     }
 }
 
@@ -225,7 +225,7 @@ fn row(pkw: Pkw) -> Option<&'static ParameterRow> {
 }
 
 /// Returns the value, sign-extended if the parameter type is signed.
-fn number(row: &ParameterRow, raw: u32) -> i64 {
+fn signed_value(row: &ParameterRow, raw: u32) -> i64 {
     match row.kind {
         Kind::I8 | Kind::I16 => i64::from((raw as u16).cast_signed()),
         Kind::I32 => i64::from(raw.cast_signed()),

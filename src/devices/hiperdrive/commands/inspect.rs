@@ -3,7 +3,7 @@
 use serde_json::{Value as Json, json};
 
 use super::args::DriveOption;
-use super::item;
+use super::parse_item;
 use super::run::{Runner, value};
 use crate::cli::args::{CommonArgs, Read, Status as StatusArguments};
 use crate::cli::output::{Lines, Output};
@@ -225,7 +225,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
 
 /// Formats a parameter value: words in hexadecimal with their meaning, tenths also in whole units.
 fn number_text(item: Item, number: i64) -> String {
-    let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
+    let (base, unit) = (item.0.drive1_number(), item.0.row().map_or("", |row| row.unit));
     let word = u16::try_from(number).ok();
     match (base, word, unit.strip_prefix("0.1 ")) {
         (STATUS, Some(word), _) => {
@@ -236,7 +236,7 @@ fn number_text(item: Item, number: i64) -> String {
         (NEWEST_ERROR..=OLDEST_ERROR, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
         (CONTROL | 116..=118, Some(word), _) => format!("0x{word:04X}"),
         (VARIANT, Some(word), _) => {
-            format!("{number} ({})", words::variant(Variant::new(word)).terminal_text())
+            format!("{number} ({})", words::variant_text(Variant::new(word)).terminal_text())
         }
         (TIMEOUT, Some(word), _) if i64::from(word) == NO_TIMEOUT => "255 (no time-out)".to_owned(),
         // The number fits into 32 bits.
@@ -265,12 +265,12 @@ fn nominal_text(text: &str, unit: &str) -> String {
 }
 
 pub(super) fn read(common: &CommonArgs, output: &Output, read: &Read) -> Result {
-    let item = item(&read.item, &read.own.read()?)?;
+    let item = parse_item(&read.item, &read.own.read()?)?;
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;
     let unit = item.0.row().map_or("", |row| row.unit);
     // With the factory scale, the speed is in tenths of rpm (manual 6.2).
-    let scale = item.0.drive().filter(|_| item.0.base() == SPEED).map(|drive| speed_scale(&mut runner, drive));
+    let scale = item.0.drive().filter(|_| item.0.drive1_number() == SPEED).map(|drive| speed_scale(&mut runner, drive));
     let scale = scale.transpose()?.flatten().filter(|scale| *scale != SpeedScale::FACTORY);
     let unit = if scale.is_some() { "" } else { unit };
     let (own, text) = match value {

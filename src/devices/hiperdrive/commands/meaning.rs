@@ -9,8 +9,8 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     CONTROL, NEWEST_ERROR, OLDEST_ERROR, SERVICE, STATUS, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
-    Access, ByteOrder, ControlBit, ControlWord, ErrorCode, ParameterNumber, ParameterRow, StatusBit, StatusWord,
-    Travel, Value, Variant,
+    ByteOrder, ControlBit, ControlWord, ErrorCode, ParameterAccess, ParameterNumber, ParameterRow, StatusBit,
+    StatusWord, Travel, Value, Variant,
 };
 
 pub(super) struct DecodeContext {
@@ -25,7 +25,7 @@ pub(super) struct WordMeaning {
 }
 
 impl WordMeaning {
-    pub(super) fn lines(&self) -> impl Iterator<Item = String> {
+    pub(super) fn to_lines(&self) -> impl Iterator<Item = String> {
         self.lines.iter().map(|line| format!("{}: {line}", self.direction))
     }
 
@@ -172,9 +172,9 @@ pub(super) fn number_meaning(row: &ParameterRow, number: i64) -> String {
 
 /// Returns a warning against writing the value, or an empty string if writing is permitted.
 pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
-    let beyond = row.allowed(Travel::UNKNOWN).filter(|range| !range.holds(number));
+    let beyond = row.allowed_values(Travel::UNKNOWN).filter(|range| !range.contains(number));
     match (row.access, beyond) {
-        (Access::Read, _) => "; warning: it can only be read".to_owned(),
+        (ParameterAccess::Read, _) => "; warning: it can only be read".to_owned(),
         (_, Some(range)) => format!("; warning: it may be {range}"),
         (_, None) => String::new(),
     }

@@ -99,14 +99,14 @@ impl DeviceCommands for HiperdriveCommands {
             Command::Read(read) => inspect::read(common, output, read),
             Command::Save(save) => profiles::save(common, output, save),
             Command::Write(write) => write::write(common, output, write),
-            Command::Do(act) => act::act(common, output, act),
+            Command::Do(act) => act::run_action(common, output, act),
             Command::Decode(decode) => decode::decode(output, decode),
             _ => return None,
         })
     }
 
     fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
-        simulate::simulated(output, arguments)
+        simulate::create_simulated(output, arguments)
     }
 }
 
@@ -137,11 +137,11 @@ Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201
 }
 
 /// Parses a parameter given by the user; `of` selects the drive.
-fn item(text: &str, of: &DriveOption) -> Result<Item> {
-    let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::number(text)) {
-        (Some(drive), Some(number)) => Item::of(number, Some(drive)),
+fn parse_item(text: &str, of: &DriveOption) -> Result<Item> {
+    let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::parse_number(text)) {
+        (Some(drive), Some(number)) => Item::new(number, Some(drive)),
         (Some(drive), None) if item.0.drive().map(|own| own.get()) != Some(drive) => {
-            Err(ItemError::NoDrive { number: item.0.base(), drive })
+            Err(ItemError::NoDrive { number: item.0.drive1_number(), drive })
         }
         _ => Ok(item),
     });

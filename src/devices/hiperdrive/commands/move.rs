@@ -5,7 +5,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, NEWEST_ERROR, NUMERATOR, REQUESTED, TIMEOUT, UPPER,
+    DENOMINATOR, LOWER_LIMIT, NEWEST_ERROR, NUMERATOR, REQUESTED_BY_BUS, TIMEOUT, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -34,7 +34,7 @@ use crate::units::Moment;
 /// Interval for refreshing a motion request.
 const REFRESH: Duration = Duration::from_millis(20);
 /// Maximum time for the stop ladder and for switching off.
-const END: Duration = Duration::from_secs(3);
+const STOP_TIMEOUT: Duration = Duration::from_secs(3);
 
 enum MotionOutcome {
     Ended(ActionEnd),
@@ -54,16 +54,20 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     let mut runner = Runner::open(common)?;
     let drive = drive(&wanted.of);
     let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
-    let (permit, scale) = permit(&mut runner, &identity, drive)?;
+    let (permit, scale) = read_permit(&mut runner, &identity, drive)?;
     // An impossible target is refused before the cyclic connection is opened.
-    let target = within(&permit, target)?;
-    permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
+    let target = check_target(&permit, target)?;
+    permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(refusal_failure)?;
     if let Some((low, high)) = permit.limits {
-        output.print_message(&range(drive, target, (low, high), scale));
+        output.print_message(&describe_range(drive, target, (low, high), scale));
     }
     result_of!(runner.run(HiperdriveJob::Take)?, HiperdriveOutput::Taken => {});
-    let came =
-        carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
+    let came = run_until_end(
+        &runner,
+        drive,
+        MotionRequest::Move { target, effort },
+        Duration::from_secs(wanted.timeout.into()),
+    );
     let stood = stop_and_switch_off(&runner, drive);
     // Control is released even after a lost connection; that loss has already been reported.
     let given = runner.run(HiperdriveJob::Give);
@@ -97,7 +101,7 @@ fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
 }
 
 /// Describes the target and the limits in the present scale, so that a change of scale is noticed.
-fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
+fn describe_range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
     let turns = |steps: i32| match scale {
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
         None => steps.to_string(),
@@ -106,10 +110,14 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
 }
 
 /// Returns a drive's motion permit according to its present parameters, along with its scale.
-fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
-    let variant = identity.named(drive).map_err(|error| to_failure(&words::device(&error)))?.variant;
+fn read_permit(
+    runner: &mut Runner,
+    identity: &Identity,
+    drive: DriveNumber,
+) -> Result<(Permit, Option<PositionScale>)> {
+    let variant = identity.drive_identity(drive).map_err(|error| to_failure(&words::device(&error)))?.variant;
     let mut values = Vec::new();
-    for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT] {
+    for base in [REQUESTED_BY_BUS, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT] {
         let Some(number) = ParameterNumber::for_drive(base, drive) else { continue };
         if let Value::Number(value) = value(runner, number)? {
             values.push((base, value));
@@ -125,25 +133,25 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
 }
 
 /// Checks that a target fits into 32 bits. Any other target is outside all limits.
-fn within(permit: &Permit, target: i64) -> Result<i32> {
+fn check_target(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {
-        let text = TEXTS.text("hd_refused.outside").with_text("target", place(target));
-        to_failure(&text.with_text("low", place(low)).with_text("high", place(high)))
+        let text = TEXTS.text("hd_refused.outside").with_text("target", steps_text(target));
+        to_failure(&text.with_text("low", steps_text(low)).with_text("high", steps_text(high)))
     })
 }
 
-fn place(steps: impl Into<i64>) -> Text {
+fn steps_text(steps: impl Into<i64>) -> Text {
     let unit = TEXTS.text(PositionUnit::Steps.unit());
     TEXTS.text("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
 }
 
-fn refused(refusal: MotionRefusal) -> Failure {
-    to_failure(&words::refusal(refusal, place))
+fn refusal_failure(refusal: MotionRefusal) -> Failure {
+    to_failure(&words::refusal_text(refusal, steps_text))
 }
 
 /// Refreshes the motion request until the motion ends, is interrupted, or times out.
-fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
+fn run_until_end(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
     let act = motion.request_motion(drive, wish);
@@ -154,7 +162,7 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
             return MotionOutcome::Interrupted;
         }
         motion.refresh();
-        if let Some(ended) = over(runner, drive, act) {
+        if let Some(ended) = action_end(runner, drive, act) {
             return if runner.is_interrupted() { MotionOutcome::Interrupted } else { MotionOutcome::Ended(ended) };
         }
         if Instant::now() >= until {
@@ -165,7 +173,7 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
     }
 }
 
-fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<ActionEnd> {
+fn action_end(runner: &Runner, drive: DriveNumber, act: u64) -> Option<ActionEnd> {
     let view = runner.kept.snapshot();
     let ended = view.drives.iter().find(|own| own.number == drive).and_then(|own| own.ended);
     match ended {
@@ -179,14 +187,14 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<ActionEnd> {
 fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot> {
     let motion = &runner.kept;
     let find = || motion.snapshot().drives.into_iter().find(|own| own.number == drive);
-    let until = Instant::now() + END;
+    let until = Instant::now() + STOP_TIMEOUT;
     while motion.is_open() && Instant::now() < until && find().is_some_and(|own| own.phase != Phase::Idle) {
         motion.refresh();
         sleep(REFRESH);
     }
     let stood = find();
     let act = motion.request_motion(drive, MotionRequest::Lead(TargetState::Off));
-    while over(runner, drive, act).is_none() && Instant::now() < until {
+    while action_end(runner, drive, act).is_none() && Instant::now() < until {
         motion.refresh();
         sleep(REFRESH);
     }
@@ -196,7 +204,7 @@ fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnaps
 
 fn stop_reasons(came: &MotionOutcome, stood: Option<DriveSnapshot>, seconds: u16) -> Vec<String> {
     let first = match came {
-        MotionOutcome::Ended(ended) => words::ended(*ended, place).terminal_text(),
+        MotionOutcome::Ended(ended) => words::end_text(*ended, steps_text).terminal_text(),
         MotionOutcome::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
         MotionOutcome::Late => format!(
             "The drive did not reach its target within {seconds} s and was stopped. Use --timeout to allow more \

@@ -9,14 +9,14 @@ use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::{Lines, Output};
 use crate::cli::plan::{self, PlanReport, WriteSummary};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
-use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, warnings};
+use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, plan_warnings};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
 /// Prepares a plan for a change and prints its warnings. Nothing is written.
-pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
+pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let asked = match &change {
         Change::SetPosition { position, .. } => Some(i64::from(*position)),
         _ => None,
@@ -28,7 +28,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     {
         output.print_message(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal_text());
     }
-    for warning in warnings(&prepared.plan) {
+    for warning in plan_warnings(&prepared.plan) {
         output.print_message(&words::warning(&warning).terminal_text());
     }
     if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
@@ -38,7 +38,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
 }
 
 /// Asks for consent if required and carries out the plan. An empty plan sends nothing.
-pub(super) fn commit(
+pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
@@ -48,24 +48,24 @@ pub(super) fn commit(
         return Ok(WriteSummary::default());
     }
     check_wear::<Hiperdrive>(consent, &prepared)?;
-    if let Some(saves) = prepared.wear() {
+    if let Some(saves) = prepared.wear_to_report() {
         output.print_message(&format!(
             "This is save {saves} counted on this computer. The manual gives no limit; from {WEAR_WARNING} on, an \
              EEPROM may wear out."
         ));
     }
-    let text = shown(&prepared).text;
+    let text = plan_report(&prepared).text;
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperdriveJob::Commit(Box::new(agreed)))?, HiperdriveOutput::Committed(committed) => *committed);
     Ok(WriteSummary::from_commit(output, committed))
 }
 
 /// Returns the report of a plan as text and JSON: the old and new value of each parameter, and the cost.
-pub(super) fn shown(prepared: &Prepared) -> PlanReport {
+pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();
     for op in &plan.ops {
-        let words = words::op(op);
+        let words = words::operation_texts(op);
         for change in &words.changes {
             lines.add_line(
                 words.item.terminal_text(),
@@ -74,12 +74,12 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
         }
     }
     let text = plan::text(plan, lines, prepared.cycles_seen, None);
-    PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+    PlanReport { operations: operations_json(plan), text, write_cycles: plan.write_cycles() }
 }
 
 pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
-    for words in plan.ops.iter().map(words::op) {
+    for words in plan.ops.iter().map(words::operation_texts) {
         for change in &words.changes {
             let (item, old, new) = (words.item.terminal_text(), change.old.terminal_text(), change.new.terminal_text());
             text.push_str(&format!("{item}: {old} → {new}\n"));
@@ -88,7 +88,7 @@ pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     text
 }
 
-pub(super) fn operations(plan: &HiperdrivePlan) -> Vec<Json> {
+pub(super) fn operations_json(plan: &HiperdrivePlan) -> Vec<Json> {
     plan.ops
         .iter()
         .map(|op| {
@@ -103,7 +103,7 @@ pub(super) fn operations(plan: &HiperdrivePlan) -> Vec<Json> {
                     (Json::Null, json!(changes.first().map(ToString::to_string)))
                 }
             };
-            json!({"item": op.item(), "old": old, "new": new, "write_cycles": op.write_cycles()})
+            json!({"item": op.item_name(), "old": old, "new": new, "write_cycles": op.write_cycles()})
         })
         .collect()
 }

@@ -19,7 +19,8 @@ use crate::result_of;
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);
-    let (numerator, denominator) = (part(&mut runner, NUMERATOR, drive)?, part(&mut runner, DENOMINATOR, drive)?);
+    let (numerator, denominator) =
+        (read_word(&mut runner, NUMERATOR, drive)?, read_word(&mut runner, DENOMINATOR, drive)?);
     let scale = numerator.zip(denominator).and_then(|(one, other)| PositionScale::new(one, other).ok());
     if position.csv {
         output.write_stdout("t_s,raw,turns,steps,degrees,valid\n")?;
@@ -27,12 +28,12 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let job = || HiperdriveJob::Position(drive);
     print_readings(&mut runner, position, job, |came| {
         let reading = result_of!(came, HiperdriveOutput::Position(reading) => reading);
-        let place = scale.map(|scale| TurnPosition::of(reading.actual.position, scale));
+        let place = scale.map(|scale| TurnPosition::split(reading.actual.position, scale));
         if position.csv { output.write_stdout(&row(&reading, place)) } else { show(output, &reading, place) }
     })
 }
 
-fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
+fn read_word(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
     let Some(number) = ParameterNumber::for_drive(number, drive) else { return Ok(None) };
     Ok(match value(runner, number)? {
         Value::Number(part) => u16::try_from(part).ok(),
@@ -52,7 +53,7 @@ struct TurnPosition {
 
 impl TurnPosition {
     /// Splits a position. A turn has 256 · numerator / denominator steps (reference 5).
-    fn of(position: i32, scale: PositionScale) -> Self {
+    fn split(position: i32, scale: PositionScale) -> Self {
         let (numerator, denominator) = (i64::from(scale.numerator()), i64::from(scale.denominator()));
         // Fractions of a step make a turn a whole number.
         let (turn, parts) = (256 * numerator, i64::from(position) * denominator);
@@ -122,7 +123,7 @@ mod tests {
     fn a_position_is_split_into_turns_and_steps() {
         let place = |position, numerator, denominator| {
             let TurnPosition { turns, steps, degrees } =
-                TurnPosition::of(position, PositionScale::new(numerator, denominator).unwrap());
+                TurnPosition::split(position, PositionScale::new(numerator, denominator).unwrap());
             (turns, (steps * 1000.0).round() / 1000.0, (degrees * 1000.0).round() / 1000.0)
         };
         assert_eq!(place(0, 256, 1), (0, 0.0, 0.0));
@@ -131,6 +132,6 @@ mod tests {
         assert_eq!(place(1000, 400, 256), (2, 200.0, 180.0));
         assert_eq!(place(-1, 10, 3), (-1, 852.333, 359.578));
         assert_eq!(place(i32::MIN, 65_535, 1), (-129, 16_744_192.0, 359.297));
-        assert_eq!(TurnPosition::of(-1, PositionScale::FACTORY).steps_json(), json!(65_535));
+        assert_eq!(TurnPosition::split(-1, PositionScale::FACTORY).steps_json(), json!(65_535));
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::HiperdriveCommands;
-use super::plan::{commit, prepare, shown};
+use super::plan::{commit_plan, plan_report, prepare_plan};
 use super::run::Runner;
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
@@ -18,7 +18,7 @@ use crate::profile::Body;
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
-    let profile = saved(common)?;
+    let profile = read_profile(common)?;
     let (parameters, drives) = (profile.image.values.len(), profile.identity.drives.len());
     save_profile(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
@@ -32,7 +32,7 @@ impl ProfileCommands for HiperdriveCommands {
         let options = restore_options(restore)?;
         let profile = profile_to_restore::<HiperdriveProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
-        let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+        let prepared = prepare_plan(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         for types in &prepared.other_types {
             output.print_message(&words::other_type(types).terminal_text());
         }
@@ -40,7 +40,7 @@ impl ProfileCommands for HiperdriveCommands {
             output.print_message(&words);
         }
         for item in &prepared.mounting_left {
-            let how = match item.0.base() {
+            let how = match item.0.drive1_number() {
                 REFERENCE => "a reference is never restored; set it with \"do hiperdrive set-position\"",
                 _ => "use --with-mounting to restore it",
             };
@@ -48,13 +48,13 @@ impl ProfileCommands for HiperdriveCommands {
         }
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-        let plan = shown(&prepared);
-        write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
+        let plan = plan_report(&prepared);
+        write_restore(output, restore, &plan, &left, || commit_plan(&mut runner, output, prepared, &restore.consent))
     }
 
     /// Reads the complete device for a comparison.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-        Ok(Body::new(saved(common)?))
+        Ok(Body::new(read_profile(common)?))
     }
 
     /// Returns a message if the two profiles are from different devices or have different drives. A profile without a
@@ -72,7 +72,7 @@ impl ProfileCommands for HiperdriveCommands {
     }
 }
 
-fn saved(common: &CommonArgs) -> Result<HiperdriveProfile> {
+fn read_profile(common: &CommonArgs) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 

@@ -21,10 +21,10 @@ use crate::worker::Session;
 
 /// Time to wait for the drives to stop. It is several times the longest send interval, so a stop word is sent before
 /// the program ends.
-const STOPPED: Duration = Duration::from_millis(500);
+const STOP_TIME: Duration = Duration::from_millis(500);
 /// Time to wait until the drives are switched off and the connection is closed.
-const RELEASED: Duration = Duration::from_secs(1);
-const LOOKS: Duration = Duration::from_millis(1);
+const RELEASE_TIME: Duration = Duration::from_secs(1);
+const CHECK_INTERVAL: Duration = Duration::from_millis(1);
 
 pub(super) type Runner = runner::Runner<Hiperdrive>;
 
@@ -68,15 +68,15 @@ impl CliDevice for Hiperdrive {
         let motion = motion.clone();
         Box::new(move |again| {
             motion.stop();
-            let until = Instant::now() + STOPPED;
+            let until = Instant::now() + STOP_TIME;
             while !motion.is_at_rest() && Instant::now() < until {
-                sleep(LOOKS);
+                sleep(CHECK_INTERVAL);
             }
             if again {
                 motion.release_drives();
-                let until = Instant::now() + RELEASED;
+                let until = Instant::now() + RELEASE_TIME;
                 while motion.is_connected() && Instant::now() < until {
-                    sleep(LOOKS);
+                    sleep(CHECK_INTERVAL);
                 }
             }
         })

@@ -9,7 +9,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::sim::DatagramDevice;
 
-pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
+pub(super) fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     if arguments.pty.is_some() {
         let what = "HIPERDRIVE is reached over EtherNet/IP: use --listen HOST:PORT instead of --pty";
         return Err(Failure::Usage(what.to_owned()));
@@ -25,7 +25,7 @@ pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box
 impl ServableDevice for Target {
     /// Accepts another connection, since a target can serve several originators at once.
     fn clone_for_peer(&self, peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
-        Some(Box::new(self.connection(peer)))
+        Some(Box::new(self.connect_from(peer)))
     }
 
     fn datagram_device(&self) -> Option<Box<dyn DatagramDevice>> {
@@ -33,7 +33,7 @@ impl ServableDevice for Target {
     }
 
     fn on_listening(&self, at: SocketAddrV4) {
-        self.listen(at);
+        self.set_address(at);
     }
 
     fn has_ended(&self) -> bool {

@@ -8,16 +8,16 @@ use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
-pub(super) fn commit(
+pub(super) fn commit_plan(
     device: &mut Hiperdrive,
     context: &mut SessionContext,
     commit: &Commit,
     tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-    let mut write = DeviceWriter { master: device.master(context), identity: &commit.prepared.identity };
+    let mut write = DeviceWriter { master: device.create_master(context), identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        tell(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item()))));
+        tell(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item_name()))));
     })
 }
 
@@ -44,6 +44,6 @@ impl PlannedWrite for Prepared {
     }
 
     fn before_image(&self) -> String {
-        backup_document(Body::new(HiperdriveProfile::of(self.identity.profile(), self.image.clone()))).emit()
+        backup_document(Body::new(HiperdriveProfile::from_image(self.identity.profile(), self.image.clone()))).emit()
     }
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::commit::commit as carry_through;
+use super::commit::commit_plan as carry_through;
 use super::rules_refresh::RulesRefresh;
 use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Motion, ProgressSink};
 use crate::buses::ethernet_ip::protocol::ForwardClose;
@@ -126,12 +126,12 @@ impl Hiperdrive {
         if cfg!(windows) {
             check_timer(measure_timer_step(&*self.control.clock), self.station.link.interval)?;
         }
-        let identity = identify(&mut self.master(context), progress)?;
+        let identity = identify(&mut self.create_master(context), progress)?;
         self.control.rules_refresh = RulesRefresh::default();
         identity.drives.iter().for_each(|drive| self.control.motion.invalidate_limits(drive.number));
         self.read_rules(context, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
-        let opened = self.master(context).forward_open(identity.topology, packets.port())?;
+        let opened = self.create_master(context).forward_open(identity.topology, packets.port())?;
         packets.set_target_port(opened.port);
         let joined = opened.group.map_or(Ok(()), |group| packets.join(group));
         let drives: Vec<DriveNumber> = identity.drives.iter().map(|drive| drive.number).collect();
@@ -149,7 +149,7 @@ impl Hiperdrive {
             }
             Err(error) => {
                 // The unusable connection is closed, but the original error is reported.
-                if let Err(why) = self.master(context).forward_close(&opened.close) {
+                if let Err(why) = self.create_master(context).forward_close(&opened.close) {
                     tracing::warn!("{why}");
                 }
                 Err(error.into())
@@ -160,7 +160,7 @@ impl Hiperdrive {
     pub(super) fn release(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         let Some(OpenConnection { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
-        let closed = self.master(context).forward_close(&close);
+        let closed = self.create_master(context).forward_close(&close);
         self.control.motion.set_connected(false);
         closed
     }
@@ -172,7 +172,7 @@ impl Hiperdrive {
             tracing::warn!("{why}");
         }
         // This request has no reply, and it does not matter if the device is disconnected.
-        if had_control && let Err(why) = self.master(context).unregister() {
+        if had_control && let Err(why) = self.create_master(context).unregister_session() {
             tracing::debug!("{why}");
         }
     }

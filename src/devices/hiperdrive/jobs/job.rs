@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::devices::hiperdrive::procedures::check::{CheckStep, HiperdriveStepResult};
-use crate::devices::hiperdrive::procedures::write::{Interrupted, WrittenChanges};
+use crate::devices::hiperdrive::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::hiperdrive::procedures::{DriveReading, Error, Identity, Network, Status, Survey};
 use crate::devices::hiperdrive::profile::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, PlanError, RestoreOptions, Service, TypeMismatch,
@@ -119,7 +119,7 @@ pub struct Prepared {
 
 impl Prepared {
     /// Returns the number of saves after this plan if a wear warning is needed, or `None` otherwise.
-    pub fn wear(&self) -> Option<u64> {
+    pub fn wear_to_report(&self) -> Option<u64> {
         total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
@@ -178,7 +178,7 @@ pub enum HiperdriveOutput {
     Watched(DriveNumber),
 }
 
-pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+pub type JobError = crate::worker::JobError<Error, PlanError, InterruptedWrite, ChangeKind>;
 
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {

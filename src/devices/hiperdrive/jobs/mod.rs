@@ -22,13 +22,13 @@ pub use job::{
     WEAR_WARNING, device_key,
 };
 pub use motion::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
-pub use open::{check, open};
+pub use open::{check_link, open};
 use session_watch::MonitoredLink;
 
-use crate::devices::hiperdrive::procedures::check::check as check_device;
+use crate::devices::hiperdrive::procedures::check::check_device;
 use crate::devices::hiperdrive::procedures::{
-    DriveReading, Master, Sample, Station, Temperature, identify, network, position, read_status, save, survey,
-    temperature,
+    DriveReading, Master, PolledSample, Station, Temperature, identify, network, position, read_status, read_survey,
+    save, temperature,
 };
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
@@ -57,7 +57,7 @@ const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
-    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+    fn create_master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 }
@@ -104,7 +104,7 @@ impl Device for Hiperdrive {
     type Output = HiperdriveOutput;
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
-    type Sample = Sample;
+    type Sample = PolledSample;
     type Watch = Temperature;
     type JobStep = JobStep;
 
@@ -119,25 +119,31 @@ impl Device for Hiperdrive {
         let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, step: what }));
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
-            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)),
+            HiperdriveJob::Prepare(change) => {
+                Out::Prepared(Box::new(prepare::prepare_plan(self, context, &change, tell)?))
+            }
             HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit_plan(context, &commit, tell)?)),
-            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(context), &mut parameter)?)),
-            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(context), &mut parameter)?)),
+            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.create_master(context), &mut parameter)?)),
+            HiperdriveJob::Identify => {
+                Out::Identity(Box::new(identify(&mut self.create_master(context), &mut parameter)?))
+            }
             HiperdriveJob::Survey => {
                 let began = context.clock.now();
-                let survey = survey(&mut self.master(context), &mut parameter)?;
+                let survey = read_survey(&mut self.create_master(context), &mut parameter)?;
                 self.control.update_permits(&survey, began);
                 Out::Surveyed(Box::new(survey))
             }
-            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(context), &mut parameter)?)),
+            HiperdriveJob::Status => {
+                Out::Status(Box::new(read_status(&mut self.create_master(context), &mut parameter)?))
+            }
             HiperdriveJob::Check => {
                 let report = &mut |done, total, what| step(done, total, JobStep::Step(what));
-                Out::Check(check_device(&mut self.master(context), report)?)
+                Out::Check(check_device(&mut self.create_master(context), report)?)
             }
-            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(context), drive)?),
-            HiperdriveJob::Read(number) => Out::Value(number, self.master(context).read(number)?),
-            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(context))?)),
-            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(context), &mut parameter)?)),
+            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.create_master(context), drive)?),
+            HiperdriveJob::Read(number) => Out::Value(number, self.create_master(context).read(number)?),
+            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.create_master(context))?)),
+            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.create_master(context), &mut parameter)?)),
             HiperdriveJob::Take => {
                 self.take_control(context, &mut parameter)?;
                 Out::Taken
@@ -154,22 +160,26 @@ impl Device for Hiperdrive {
         })
     }
 
-    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<PolledSample, JobError> {
         self.release_lost_control(context);
         let drive = self.watched;
         if let Some(actual) = self.control.actual_values(drive) {
-            return Ok(Sample::Position(DriveReading { at: context.clock.now(), drive, actual }));
+            return Ok(PolledSample::Position(DriveReading { at: context.clock.now(), drive, actual }));
         }
-        Ok(Sample::Position(position(&mut self.master(context), drive)?))
+        Ok(PolledSample::Position(position(&mut self.create_master(context), drive)?))
     }
 
-    fn read_watched(&mut self, desk: &mut SessionContext, what: &Temperature) -> Result<WatchReply<Sample>, JobError> {
+    fn read_watched(
+        &mut self,
+        desk: &mut SessionContext,
+        what: &Temperature,
+    ) -> Result<WatchReply<PolledSample>, JobError> {
         self.release_lost_control(desk);
         let reading = match self.control.temperature(*what)? {
             Some(reading) => reading,
-            None => temperature(&mut self.master(desk), *what)?,
+            None => temperature(&mut self.create_master(desk), *what)?,
         };
-        let sample = Sample::Temperature(reading);
+        let sample = PolledSample::Temperature(reading);
         Ok(if reading.celsius.is_some() { WatchReply::Sample(sample) } else { WatchReply::Refused(sample) })
     }
 

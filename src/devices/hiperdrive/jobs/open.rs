@@ -18,7 +18,7 @@ use crate::worker::{OpenError, Session};
 ///
 /// # Errors
 /// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
-pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
@@ -49,7 +49,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
 /// Returns the connection to a virtual device in this process.
 fn open_virtual(config: &Config, station: Station, clock: Arc<dyn Clock>) -> DeviceConnection {
     let target = Target::new(config);
-    let connection = target.connection(Ipv4Addr::UNSPECIFIED);
+    let connection = target.connect_from(Ipv4Addr::UNSPECIFIED);
     let wire = connect_simulated(connection, &clock);
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock));
     DeviceConnection { wire, port: Some(port), station, target: Some(target) }
@@ -90,7 +90,7 @@ mod tests {
             "enip:hub:50123?rpi=100&order=little&udp=2222&timeout=250",
             "replay:drives.trace",
         ] {
-            assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
+            assert!(check_link(&text.parse().unwrap()).is_ok(), "{text}");
         }
         for (text, why) in [
             (
@@ -103,7 +103,7 @@ mod tests {
             ("sim:?rpi=1000", "rpi=1000 is not valid (allowed: a time in milliseconds from 5 to 100)"),
             ("sim:?what=1", "a virtual"),
         ] {
-            let error = check(&text.parse().unwrap()).unwrap_err().to_string();
+            let error = check_link(&text.parse().unwrap()).unwrap_err().to_string();
             assert!(error.starts_with(why), "{text}: {error}");
         }
     }

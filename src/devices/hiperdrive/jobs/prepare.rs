@@ -1,7 +1,7 @@
 //! Preparation of a plan from a change. Only reads.
 
 use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
-use crate::devices::hiperdrive::procedures::write::{FaultReset, remedy};
+use crate::devices::hiperdrive::procedures::write::{FaultReset, find_remedy};
 use crate::devices::hiperdrive::procedures::{Error, Identity, Master, read_state, settings};
 use crate::devices::hiperdrive::profile::{
     HiperdrivePlan, Image, Op, Restore, Service, plan_edits, plan_network, plan_restore, plan_service,
@@ -11,14 +11,14 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::worker::commit::cycles_seen;
 use crate::worker::{JobReport, Progress, SessionContext};
 
-pub(super) fn prepare(
+pub(super) fn prepare_plan(
     device: &mut Hiperdrive,
     context: &mut SessionContext,
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-    let mut master = device.master(context);
+    let mut master = device.create_master(context);
     let report = &mut |done, total, number| {
         tell(JobReport::Progress(Progress { done, total, step: JobStep::Parameter(number) }));
     };
@@ -53,7 +53,7 @@ pub(super) fn prepare(
             let (identity, state) = state(&mut master, Vec::new())?;
             let mut plan = plan_service(&state.image, *service);
             if let Service::Acknowledge(drive) = service {
-                match remedy(&mut master, *drive)? {
+                match find_remedy(&mut master, *drive)? {
                     FaultReset::Nothing => plan.ops.clear(),
                     FaultReset::Acknowledgement => {}
                     FaultReset::Reset => {
@@ -100,7 +100,7 @@ fn ensure_drives_present(identity: &Identity, change: &Change) -> Result<(), Err
         Change::SetPosition { drive, .. } | Change::Do(Service::Acknowledge(drive)) => vec![*drive],
         Change::Restore { .. } | Change::Do(_) | Change::Network(_) => Vec::new(),
     };
-    named.into_iter().try_for_each(|drive| identity.named(drive).map(|_| ()))
+    named.into_iter().try_for_each(|drive| identity.drive_identity(drive).map(|_| ()))
 }
 
 fn restore_from_plan(plan: HiperdrivePlan) -> Restore {

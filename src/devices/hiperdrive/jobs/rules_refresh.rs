@@ -77,7 +77,7 @@ impl Hiperdrive {
         let known = self.control.motion().limits(drive);
         let Some(mut times) = known.read_times() else {
             let began = context.clock.now();
-            let rules = read_rules(&mut self.master(context), drive)?;
+            let rules = read_rules(&mut self.create_master(context), drive)?;
             self.control.publish_limits(identity, drive, rules, [began; GROUPS]);
             return Ok(());
         };
@@ -85,7 +85,7 @@ impl Hiperdrive {
         let turn = if self.control.motion().is_motion_active() { TURN_IN_MOTION } else { TURN };
         for group in due_groups(times, context.clock.now(), turn) {
             let now = context.clock.now();
-            rules = read_rule_group(&mut self.master(context), drive, rules, group)?;
+            rules = read_rule_group(&mut self.create_master(context), drive, rules, group)?;
             if let Some(at) = times.get_mut(group) {
                 *at = now;
             }
@@ -121,7 +121,7 @@ impl Hiperdrive {
     pub(super) fn read_rules(&mut self, context: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = context.clock.now();
-            let rules = self.master(context).run_uncancellable(|master| read_rules(master, drive.number))?;
+            let rules = self.create_master(context).run_uncancellable(|master| read_rules(master, drive.number))?;
             self.control.publish_limits(identity, drive.number, rules, [began; GROUPS]);
         }
         Ok(())

@@ -3,13 +3,15 @@
 use std::fmt;
 use std::time::Duration;
 
-use super::identify::{drive_status, identify, of, own};
+use super::identify::{device_parameter, drive_parameter, drive_status, identify};
 use super::limits::stops_on_timeout;
 use super::network::network;
 use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
 use crate::analysis::check;
 use crate::buses::ethernet_ip::protocol::AddressSource;
-use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, POSITION, TIMEOUT, UPPER};
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER_LIMIT, NUMERATOR, POSITION, TIMEOUT, UPPER_LIMIT,
+};
 use crate::devices::hiperdrive::protocol::{
     AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, State, StatusBit, StepLimit, Topology,
     Travel, Variant,
@@ -161,33 +163,33 @@ pub enum CheckFinding {
 }
 
 /// Number of readings used to measure the reply time.
-const LOOKS: u32 = 20;
+const READING_COUNT: u32 = 20;
 /// Allowed supply voltage in tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
-const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
+const SUPPLY_RANGE: std::ops::RangeInclusive<i64> = 204..=288;
 /// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference 8.9).
-const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
+const TEMPERATURE_RANGE: std::ops::RangeInclusive<i64> = -10..=70;
 
 /// Runs the check, which ends early only if the device fails.
 ///
 /// # Errors
 /// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
-pub fn check(
+pub fn check_device(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, CheckStep),
 ) -> Result<Vec<HiperdriveStepResult>, Error> {
     let mut lines = Vec::new();
     progress(0, 1, CheckStep::Messages);
     let identity = identify(master, &mut |_, _, _| {})?;
-    lines.push(messages(master)?);
+    lines.push(check_messages(master)?);
     lines.push(device(&identity));
     lines.push(HiperdriveStepResult::new(
         CheckStep::Supply,
-        vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, CheckFinding::Supply)],
+        vec![in_range(master.read_number(device_parameter(9)?)?, &SUPPLY_RANGE, CheckFinding::Supply)],
     ));
-    let celsius = master.read_number(own(11)?)?;
+    let celsius = master.read_number(device_parameter(11)?)?;
     lines.push(HiperdriveStepResult::new(
         CheckStep::Temperature,
-        vec![in_range(celsius, &TEMPERATURES, CheckFinding::Temperature)],
+        vec![in_range(celsius, &TEMPERATURE_RANGE, CheckFinding::Temperature)],
     ));
     lines.push(HiperdriveStepResult::new(CheckStep::Address, address(&network(master)?)));
     let saved = match master.read_number(ParameterNumber::SAVE)? {
@@ -208,16 +210,16 @@ fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> Ch
     (if range.contains(&value) { Verdict::Good } else { Verdict::Attention }, of(value))
 }
 
-fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
+fn check_messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     let mut slowest = Duration::ZERO;
-    for _ in 0..LOOKS {
+    for _ in 0..READING_COUNT {
         let begun = master.now();
-        master.read_number(own(9)?)?;
+        master.read_number(device_parameter(9)?)?;
         slowest = slowest.max(master.now().duration_since(begun));
     }
     let late = master.station().late_reply_count();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
-    let replies = CheckFinding::Replies { requested: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
+    let replies = CheckFinding::Replies { requested: READING_COUNT, slowest_ms: slowest.as_millis() as u64, late };
     Ok(HiperdriveStepResult::new(CheckStep::Messages, vec![(verdict, replies)]))
 }
 
@@ -272,18 +274,18 @@ fn check_drive(
         0 => (Verdict::Good, CheckFinding::LineGood),
         other => (Verdict::Bad, CheckFinding::LineWord(other)),
     };
-    let timeout = match master.read_number(of(TIMEOUT, number)?)? {
+    let timeout = match master.read_number(drive_parameter(TIMEOUT, number)?)? {
         tenths if stops_on_timeout(tenths) => (Verdict::Good, CheckFinding::Timeout(tenths)),
         _ => (Verdict::Bad, CheckFinding::NoTimeout),
     };
-    let temperature = in_range(status.temperature, &TEMPERATURES, CheckFinding::Temperature);
+    let temperature = in_range(status.temperature, &TEMPERATURE_RANGE, CheckFinding::Temperature);
     Ok(vec![
         HiperdriveStepResult::new(CheckStep::Request(number), request),
         HiperdriveStepResult::new(CheckStep::Line(number), vec![rs485]),
         HiperdriveStepResult::new(CheckStep::Timeout(number), vec![timeout]),
         HiperdriveStepResult::new(CheckStep::Errors(number), error_findings(&status)),
         HiperdriveStepResult::new(CheckStep::DriveTemperature(number), vec![temperature]),
-        HiperdriveStepResult::new(CheckStep::Range(number), range(master, drive)?),
+        HiperdriveStepResult::new(CheckStep::Range(number), check_range(master, drive)?),
     ])
 }
 
@@ -306,10 +308,10 @@ fn error_findings(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     findings
 }
 
-fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict, CheckFinding)>, Error> {
-    let mut read = |base| master.read_number(of(base, drive.number)?);
+fn check_range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict, CheckFinding)>, Error> {
+    let mut read = |base| master.read_number(drive_parameter(base, drive.number)?);
     let (numerator, denominator) = (read(NUMERATOR)?, read(DENOMINATOR)?);
-    let (lower, upper, position) = (read(LOWER)?, read(UPPER)?, read(POSITION)?);
+    let (lower, upper, position) = (read(LOWER_LIMIT)?, read(UPPER_LIMIT)?, read(POSITION)?);
     let mut findings = vec![(Verdict::Good, CheckFinding::Range { numerator, denominator, lower, upper })];
     if upper <= lower {
         findings.push((Verdict::Bad, CheckFinding::LimitsCrossed { lower, upper }));
@@ -324,7 +326,7 @@ fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict,
         Some(scale) => {
             let family = drive.variant.row().map(|row| row.family);
             let travel = Travel { family, scale: Some(scale) };
-            if let Some((family, steps)) = family.zip(travel.steps(StepLimit::Position)) {
+            if let Some((family, steps)) = family.zip(travel.max_steps(StepLimit::Position)) {
                 let beyond = [lower, upper].into_iter().filter(|limit| limit.abs() > steps);
                 findings.extend(beyond.map(|limit| {
                     let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.max_turns());

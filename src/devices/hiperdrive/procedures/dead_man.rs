@@ -306,7 +306,7 @@ impl DeadMan {
     /// safeguard.
     fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.is_moving();
-        if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::standing(actual) }
+        if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::holding(actual) }
     }
 
     const fn mark_now(&self, now: Moment) -> ReportMark {

@@ -23,8 +23,8 @@ impl DiscoveredDevice {
 }
 
 /// Time for collecting replies. A request may allow a device to delay its reply, but no delay is requested.
-const GATHER: Duration = Duration::from_secs(1);
-const SLICE: Duration = Duration::from_millis(50);
+const COLLECTION_TIME: Duration = Duration::from_secs(1);
+const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Broadcasts a request and collects replies for a second. Each device is returned once, in the order of addresses.
 ///
@@ -36,16 +36,18 @@ pub fn discover(
     cancel: &CancelToken,
 ) -> Result<Vec<DiscoveredDevice>, Error> {
     shout.broadcast(&Frame::list_identity([0; 8]).emit())?;
-    let until = clock.now() + GATHER;
+    let until = clock.now() + COLLECTION_TIME;
     let mut found: Vec<DiscoveredDevice> = Vec::new();
     let mut packet = Vec::new();
     while clock.now() < until {
         if cancel.is_requested() {
             return Err(Error::Cancelled);
         }
-        let Some(address) = shout.receive((clock.now() + SLICE).min(until), &mut packet)? else { continue };
+        let Some(address) = shout.receive((clock.now() + CANCEL_CHECK_INTERVAL).min(until), &mut packet)? else {
+            continue;
+        };
         let identity =
-            answer(&packet).map(|identity| DiscoveredDevice { address, port: identity.socket.port, identity });
+            parse_reply(&packet).map(|identity| DiscoveredDevice { address, port: identity.socket.port, identity });
         found
             .extend(identity.filter(|new| !found.iter().any(|old| old.address == new.address && old.port == new.port)));
     }
@@ -54,7 +56,7 @@ pub fn discover(
 }
 
 /// Parses a discovery reply, or returns `None` if the packet is not a discovery reply.
-fn answer(packet: &[u8]) -> Option<IdentityItem> {
+fn parse_reply(packet: &[u8]) -> Option<IdentityItem> {
     let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
     match frame.parse_body().ok()? {
         Body::List(items) => items.identity().cloned(),

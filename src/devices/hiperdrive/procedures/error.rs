@@ -42,7 +42,7 @@ impl fmt::Display for RequestedItem {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Damage {
+pub enum ReplyDamage {
     #[error(transparent)]
     Packet(#[from] PacketError),
     #[error(transparent)]
@@ -64,13 +64,13 @@ pub struct LateReplyError {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
+pub struct ErrorReply {
     pub service: Service,
     pub status: GeneralStatus,
     pub extended: Vec<u16>,
 }
 
-impl Refusal {
+impl ErrorReply {
     /// Returns the table row of the first extended status word, if the word is present and known.
     pub fn row(&self) -> Option<&'static ExtendedStatusTableRow> {
         find_extended_status(self.service, self.status, *self.extended.first()?)
@@ -82,7 +82,7 @@ impl Refusal {
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for ErrorReply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.status)?;
         match (self.extended.as_slice(), self.row()) {
@@ -120,11 +120,11 @@ pub enum Error {
         late: Option<LateReplyError>,
     },
     #[error("{requested}: {cause} (attempts: {tries})")]
-    Damaged { requested: RequestedItem, tries: u32, cause: Damage },
+    Damaged { requested: RequestedItem, tries: u32, cause: ReplyDamage },
     #[error("{requested}: {status}")]
     Encapsulation { requested: RequestedItem, status: EncapsulationStatus },
     #[error("{requested}: {refusal}")]
-    Refused { requested: RequestedItem, refusal: Refusal },
+    Refused { requested: RequestedItem, refusal: ErrorReply },
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
         /// Extended status word, either 0100h or 0106h.
@@ -188,7 +188,7 @@ pub enum Error {
         product: String,
     },
     /// The value read back differs from the value written.
-    #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
+    #[error("parameter {number} ({}) reads {reads} after {wanted} was written", parameter_name(*number))]
     NotTaken { number: ParameterNumber, wanted: i64, reads: i64 },
     /// The network settings read back differ from those written.
     #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
@@ -200,7 +200,7 @@ pub enum Error {
     Changed { item: String },
 }
 
-fn named(number: ParameterNumber) -> &'static str {
+fn parameter_name(number: ParameterNumber) -> &'static str {
     number.row().map_or("unknown", |row| row.name)
 }
 
@@ -238,7 +238,7 @@ impl Error {
     }
 
     /// Returns the refusal if the device has replied but refused the request.
-    pub const fn refusal(&self) -> Option<&Refusal> {
+    pub const fn as_refusal(&self) -> Option<&ErrorReply> {
         match self {
             Error::Refused { refusal, .. } => Some(refusal),
             _ => None,

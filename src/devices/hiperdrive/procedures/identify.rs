@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use super::network::{Network, network};
 use super::{Error, Master, WrongLength};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    ACKNOWLEDGE, NEWEST_ERROR, OLDEST_ERROR, POSITION, REQUESTED, SPEED, STATUS, VARIANT,
+    ACKNOWLEDGE, NEWEST_ERROR, OLDEST_ERROR, POSITION, REQUESTED_BY_BUS, SPEED, STATUS, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
-    Access, ActualValues, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
+    ActualValues, DriveNumber, ErrorCode, PARAMETERS, ParameterAccess, ParameterNumber, StatusWord, Topology, Value,
+    Variant,
 };
 use crate::units::Moment;
 
@@ -87,20 +88,20 @@ pub struct DriveStatus {
 /// Callback that receives the number of parameters read, their total, and the next parameter.
 pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
-struct Steps<'t> {
+struct ProgressSteps<'t> {
     done: u64,
     total: u64,
     progress: IdentifyProgress<'t>,
 }
 
-impl Steps<'_> {
+impl ProgressSteps<'_> {
     fn next(&mut self, number: ParameterNumber) -> ParameterNumber {
         (self.progress)(self.done, self.total, number);
         self.done += 1;
         number
     }
 
-    fn skip(&mut self, count: u64) {
+    fn advance(&mut self, count: u64) {
         self.done += count;
     }
 }
@@ -122,7 +123,7 @@ impl Identity {
     ///
     /// # Errors
     /// Returns [`Error::NoPlace`] if the device has no such port, or [`Error::NoDrive`] if the port is empty.
-    pub fn named(&self, drive: DriveNumber) -> Result<&DriveIdentity, Error> {
+    pub fn drive_identity(&self, drive: DriveNumber) -> Result<&DriveIdentity, Error> {
         let topology = self.topology;
         let is_place = drive.get() <= topology.drives();
         let missing = if is_place { Error::NoDrive { drive } } else { Error::NoPlace { drive, topology } };
@@ -139,45 +140,45 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     // Number of parameters of a drive, and of the device.
     const DRIVE: u64 = 6;
     const DEVICE: u64 = 5;
-    let category = category(master)?;
+    let category = read_category(master)?;
     let topology = Topology::from_category(&category).ok_or(Error::NotHiperdrive { product: category.clone() })?;
-    let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, progress };
+    let mut steps = ProgressSteps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, progress };
     let mut drives = Vec::new();
-    for number in DriveNumber::of(topology) {
-        let variant = master.read_number(steps.next(of(VARIANT, number)?))?;
+    for number in DriveNumber::all_for(topology) {
+        let variant = master.read_number(steps.next(drive_parameter(VARIANT, number)?))?;
         let variant = Variant::new(u16::try_from(variant).unwrap_or(Variant::OTHER.number()));
         if variant == Variant::NONE {
-            steps.skip(DRIVE - 1);
+            steps.advance(DRIVE - 1);
             continue;
         }
         let mut text = |base| {
-            steps.next(of(base, number)?);
+            steps.next(drive_parameter(base, number)?);
             drive_text(master, base, number)
         };
         let (name, article_number, serial_number, version) = (text(121)?, text(122)?, text(123)?, text(125)?);
-        steps.next(of(REQUESTED, number)?);
+        steps.next(drive_parameter(REQUESTED_BY_BUS, number)?);
         let requested = is_requested(master, number)?;
         drives.push(DriveIdentity { number, variant, name, article_number, serial_number, version, requested });
     }
-    master.learn(topology);
-    let mut text = |number| master.read_text(steps.next(own(number)?));
+    master.set_topology(topology);
+    let mut text = |number| master.read_text(steps.next(device_parameter(number)?));
     let (name, article_number, production_date, version) = (text(15)?, text(16)?, text(18)?, text(19)?);
-    let serial_number = master.read_number(steps.next(own(17)?))?.to_string();
+    let serial_number = master.read_number(steps.next(device_parameter(17)?))?.to_string();
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
 /// Reads a string of a drive. Returns an empty string if the drive does not provide it, which may be the case while the
 /// drive is not requested (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
-    match master.read_text(of(base, drive)?) {
+    match master.read_text(drive_parameter(base, drive)?) {
         Err(error) if error.is_unavailable() => Ok(String::new()),
         ended => ended,
     }
 }
 
 /// Reads the category, or the device name if there is no such parameter.
-fn category(master: &mut Master<'_>) -> Result<String, Error> {
-    match master.read_text(own(13)?) {
+fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
+    match master.read_text(device_parameter(13)?) {
         Err(Error::Refused { .. }) => {
             let product = master.identity_object()?.product_name;
             Err(Error::NotHiperdrive { product })
@@ -190,7 +191,7 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
 ///
 /// # Errors
 /// Returns the same errors as [`identify`].
-pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
+pub fn read_survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
     let identity = identify(master, progress)?;
     let numbers: Vec<ParameterNumber> = readable_parameters(&identity).collect();
     let total = numbers.len() as u64;
@@ -211,7 +212,7 @@ pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result
 }
 
 fn readable_parameters(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
-    let rows = || PARAMETERS.iter().filter(|row| row.access != Access::Write);
+    let rows = || PARAMETERS.iter().filter(|row| row.access != ParameterAccess::Write);
     let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
     let drives = identity
         .drives
@@ -228,28 +229,32 @@ const OF_STATUS: u64 = 15;
 /// # Errors
 /// Returns the same errors as [`identify`].
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
-    let topology = topology(master)?;
+    let topology = read_topology(master)?;
     // For each port, one read shows whether a drive is present. The other reads are those of its status.
-    let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
+    let mut steps = ProgressSteps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
-    for number in DriveNumber::of(topology) {
-        if master.read_number(steps.next(of(VARIANT, number)?))? == i64::from(Variant::NONE.number()) {
-            steps.skip(OF_STATUS);
+    for number in DriveNumber::all_for(topology) {
+        if master.read_number(steps.next(drive_parameter(VARIANT, number)?))? == i64::from(Variant::NONE.number()) {
+            steps.advance(OF_STATUS);
         } else {
-            drives.push(status_of(master, number, &mut steps)?);
+            drives.push(read_drive_status(master, number, &mut steps)?);
         }
     }
-    let mut device = |number| master.read_number(steps.next(own(number)?));
+    let mut device = |number| master.read_number(steps.next(device_parameter(number)?));
     let (supply_tenths, temperature) = (device(9)?, device(11)?);
     Ok(Status { drives, supply_tenths, temperature })
 }
 
 pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Result<DriveStatus, Error> {
-    status_of(master, number, &mut Steps { done: 0, total: OF_STATUS, progress: &mut |_, _, _| {} })
+    read_drive_status(master, number, &mut ProgressSteps { done: 0, total: OF_STATUS, progress: &mut |_, _, _| {} })
 }
 
-fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>) -> Result<DriveStatus, Error> {
-    let mut read = |base| master.read_number(steps.next(of(base, number)?));
+fn read_drive_status(
+    master: &mut Master<'_>,
+    number: DriveNumber,
+    steps: &mut ProgressSteps<'_>,
+) -> Result<DriveStatus, Error> {
+    let mut read = |base| master.read_number(steps.next(drive_parameter(base, number)?));
     // These parameters are words of 16 bits.
     let mut word = |base| Ok::<_, Error>(read(base)? as u16);
     let mut buffer = Vec::new();
@@ -266,7 +271,7 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
         words,
         faults: u8::try_from(read(ACKNOWLEDGE)?).unwrap_or(u8::MAX),
         temperature: read(119)?,
-        requested: read(REQUESTED)? != 0,
+        requested: read(REQUESTED_BY_BUS)? != 0,
     })
 }
 
@@ -275,37 +280,37 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
 /// # Errors
 /// Returns [`Error::NoPlace`] or [`Error::NoDrive`] if the drive does not exist, or an error if the exchange fails.
 pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
-    let status = StatusWord::new(word(master, STATUS, drive)?);
+    let status = StatusWord::new(read_word(master, STATUS, drive)?);
     // The types of both parameters have this width.
-    let speed = master.read_number(of(SPEED, drive)?)? as i16;
-    let position = master.read_number(of(POSITION, drive)?)? as i32;
+    let speed = master.read_number(drive_parameter(SPEED, drive)?)? as i16;
+    let position = master.read_number(drive_parameter(POSITION, drive)?)? as i32;
     Ok(DriveReading { at: master.now(), drive, actual: ActualValues { status, speed, position } })
 }
 
 /// Returns the topology, which is read once per session.
-pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
+pub(super) fn read_topology(master: &mut Master<'_>) -> Result<Topology, Error> {
     if let Some(topology) = master.station().topology() {
         return Ok(topology);
     }
-    let category = category(master)?;
+    let category = read_category(master)?;
     let topology = Topology::from_category(&category).ok_or(Error::NotHiperdrive { product: category })?;
-    master.learn(topology);
+    master.set_topology(topology);
     Ok(topology)
 }
 
 fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
-    Ok(master.read_number(of(REQUESTED, drive)?)? != 0)
+    Ok(master.read_number(drive_parameter(REQUESTED_BY_BUS, drive)?)? != 0)
 }
 
-fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
-    Ok(master.read_number(of(base, drive)?)? as u16)
+fn read_word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
+    Ok(master.read_number(drive_parameter(base, drive)?)? as u16)
 }
 
-pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
+pub(super) fn device_parameter(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
 /// Returns a drive's parameter number, given the corresponding number of drive 1.
-pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
+pub(super) fn drive_parameter(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::for_drive(base, drive).ok_or(Error::NoNumber(base))
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::dead_man::{MotionLock, Permit};
 use super::rules::{GROUPS, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
+    DENOMINATOR, LOWER_LIMIT, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{ParameterNumber, PositionScale, Topology, Variant};
 use crate::units::Moment;
@@ -43,7 +43,7 @@ const VALIDITY: Duration = Duration::from_secs(4);
 /// does not define do not qualify.
 pub(super) fn stops_on_timeout(timeout: i64) -> bool {
     let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
-    timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.holds(timeout))
+    timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.contains(timeout))
 }
 
 impl DriveLimits {
@@ -182,7 +182,8 @@ impl MotionLimitParameters {
             let row = ParameterNumber::new(number).and_then(ParameterNumber::row)?;
             row.factory_value(topology, variant.row()?.family)
         };
-        let (scale, limits) = (factory(NUMERATOR).zip(factory(DENOMINATOR)), factory(LOWER).zip(factory(UPPER)));
+        let (scale, limits) =
+            (factory(NUMERATOR).zip(factory(DENOMINATOR)), factory(LOWER_LIMIT).zip(factory(UPPER_LIMIT)));
         scale.is_some() && limits.is_some() && (self.scale, self.limits) == (scale, limits)
     }
 }

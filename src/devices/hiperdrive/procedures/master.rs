@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub use connection::OpenedConnection;
 
-use super::error::{Damage, LateReplyError, Refusal, RequestedItem, WrongLength};
+use super::error::{ErrorReply, LateReplyError, ReplyDamage, RequestedItem, WrongLength};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
 use crate::buses::ethernet_ip::protocol::{
@@ -20,17 +20,17 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, CONTROL, REFERENCE, RESET, SERVICE, TARGET};
 use crate::devices::hiperdrive::protocol::{
-    Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError,
+    ParameterAccess, ParameterNumber, ParameterRow, STORE_TIME, Topology, Travel, Value, ValueError,
 };
 use crate::link::Ctx;
 use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
 /// Pause after bytes that are not a frame; the next bytes start a new frame.
-const QUIET: Duration = Duration::from_millis(50);
-const SLICE: Duration = Duration::from_millis(50);
+const RESYNC_PAUSE: Duration = Duration::from_millis(50);
+const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Margin added to the time that the manual states for a long operation.
-const SPARE: Duration = Duration::from_millis(500);
+const REPLY_TIME_MARGIN: Duration = Duration::from_millis(500);
 
 /// Host side of a device's explicit messages, for one job.
 pub struct Master<'a> {
@@ -40,11 +40,11 @@ pub struct Master<'a> {
 
 enum ExchangeError {
     Silence,
-    Damage(Damage),
+    Damage(ReplyDamage),
     Status(EncapsulationStatus),
 }
 
-impl<D: Into<Damage>> From<D> for ExchangeError {
+impl<D: Into<ReplyDamage>> From<D> for ExchangeError {
     fn from(damage: D) -> Self {
         ExchangeError::Damage(damage.into())
     }
@@ -61,7 +61,7 @@ enum RetryPolicy {
 }
 
 /// Setting for requests that are sent once, with the usual time limit.
-const ONCE: RetryPolicy = RetryPolicy::Never { takes: None };
+const SEND_ONCE: RetryPolicy = RetryPolicy::Never { takes: None };
 
 impl<'a> Master<'a> {
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
@@ -77,7 +77,7 @@ impl<'a> Master<'a> {
         self.station
     }
 
-    pub(super) fn learn(&mut self, topology: Topology) {
+    pub(super) fn set_topology(&mut self, topology: Topology) {
         self.station.known.topology = Some(topology);
     }
 
@@ -109,7 +109,7 @@ impl<'a> Master<'a> {
     /// exchange fails.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
-        if row.access == Access::Write {
+        if row.access == ParameterAccess::Write {
             return Err(Error::WriteOnly { number, name: row.name });
         }
         let requested = RequestedItem::Parameter(number);
@@ -152,14 +152,14 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::ShaftMotion`] without sending anything. Returns
     /// [`Error::Refuses`] or [`Error::Refused`] if the device refuses the value, or an error if the exchange fails.
-    pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+    pub(super) fn set_parameter(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
         // The plan has already checked the travel.
-        row.check(number, wanted, Travel::UNKNOWN)?;
+        row.check_value(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let requested = RequestedItem::Set(number);
         let request = Request::set_attribute(number.class(), 1, number.attribute(), data);
-        let once = RetryPolicy::Never { takes: row.takes(wanted, self.station.known.topology) };
+        let once = RetryPolicy::Never { takes: row.write_duration(wanted, self.station.known.topology) };
         let mut tries = 0;
         loop {
             tries += 1;
@@ -193,7 +193,12 @@ impl<'a> Master<'a> {
         })
     }
 
-    pub(super) fn attribute(&mut self, requested: RequestedItem, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
+    pub(super) fn read_attribute(
+        &mut self,
+        requested: RequestedItem,
+        class: u16,
+        attribute: u16,
+    ) -> Result<Vec<u8>, Error> {
         Ok(self.request(requested, &Request::get(class, 1, attribute), RetryPolicy::Always)?.data)
     }
 
@@ -211,15 +216,15 @@ impl<'a> Master<'a> {
         self.request(
             requested,
             &Request::set_attribute(class, 1, attribute, data),
-            RetryPolicy::Never { takes: Some(STORES) },
+            RetryPolicy::Never { takes: Some(STORE_TIME) },
         )?;
         Ok(())
     }
 
     /// Returns how long to wait for the operation that is started by setting a parameter to this value.
     pub(super) fn max_wait(&self, number: ParameterNumber, value: i64) -> Duration {
-        let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
-        RetryPolicy::Never { takes }.within(self.station.link.timeout)
+        let takes = number.row().and_then(|row| row.write_duration(value, self.station.known.topology));
+        RetryPolicy::Never { takes }.reply_timeout(self.station.link.timeout)
     }
 
     fn request(&mut self, requested: RequestedItem, request: &Request, repeats: RetryPolicy) -> Result<Reply, Error> {
@@ -235,13 +240,13 @@ impl<'a> Master<'a> {
         beside: &[Item],
         repeats: RetryPolicy,
     ) -> Result<(Reply, ItemList), Error> {
-        let (reply, items) = self.again(requested, repeats, |master| {
+        let (reply, items) = self.send_with_retries(requested, repeats, |master| {
             let session = master.session()?;
             let items = ItemList([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
             let body = Body::Data { interface: 0, timeout_s: 0, items };
             let frame = Frame { session, data: body.emit(), ..Frame::unconnected_message(session, [0; 8], Vec::new()) };
             Ok(match master.exchange(frame, repeats)? {
-                Ok(frame) => judge(request, &frame),
+                Ok(frame) => parse_reply(request, &frame),
                 Err(trouble) => Err(trouble),
             })
         })?;
@@ -249,7 +254,7 @@ impl<'a> Master<'a> {
             return Ok((reply, items));
         }
         let Reply { service, status, extended, .. } = reply;
-        Err(Error::Refused { requested, refusal: Refusal { service, status, extended } })
+        Err(Error::Refused { requested, refusal: ErrorReply { service, status, extended } })
     }
 
     /// Returns the session number. The first request on a connection opens the session.
@@ -257,7 +262,7 @@ impl<'a> Master<'a> {
         if let Some(session) = self.station.session {
             return Ok(session);
         }
-        let frame = self.again(RequestedItem::Session, RetryPolicy::Always, |master| {
+        let frame = self.send_with_retries(RequestedItem::Session, RetryPolicy::Always, |master| {
             master.exchange(Frame::register([0; 8]), RetryPolicy::Always)
         })?;
         self.station.session = Some(frame.session);
@@ -268,7 +273,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
-    pub fn unregister(&mut self) -> Result<(), Error> {
+    pub fn unregister_session(&mut self) -> Result<(), Error> {
         let Some(session) = self.station.session.take() else { return Ok(()) };
         let bytes = Frame::unregister_session(session).emit();
         let now = self.line.now();
@@ -276,14 +281,14 @@ impl<'a> Master<'a> {
     }
 
     /// Sends a request, and repeats it if a repetition is useful and harmless.
-    fn again<T>(
+    fn send_with_retries<T>(
         &mut self,
         requested: RequestedItem,
         repeats: RetryPolicy,
         mut once: impl FnMut(&mut Self) -> Result<Result<T, ExchangeError>, Error>,
     ) -> Result<T, Error> {
         let (mut tries, late) = (0, self.station.late);
-        let (usual, within) = (self.station.link.timeout, repeats.within(self.station.link.timeout));
+        let (usual, within) = (self.station.link.timeout, repeats.reply_timeout(self.station.link.timeout));
         loop {
             tries += 1;
             let trouble = match once(self)? {
@@ -333,11 +338,11 @@ impl<'a> Master<'a> {
         self.line.start()?;
         let sent_at = self.line.now();
         let takes_long = matches!(repeats, RetryPolicy::Never { takes: Some(_) });
-        frame.context = self.station.begin(sent_at, takes_long).to_le_bytes();
+        frame.context = self.station.begin_request(sent_at, takes_long).to_le_bytes();
         let bytes = frame.emit();
         self.station.line.mark_sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
-        let deadline = sent_at + repeats.within(self.station.link.timeout) + self.station.line.margin;
+        let deadline = sent_at + repeats.reply_timeout(self.station.link.timeout) + self.station.line.margin;
         let mut heard = Vec::new();
         loop {
             loop {
@@ -358,7 +363,7 @@ impl<'a> Master<'a> {
                     Ok(None) => break,
                     Err(cause) => {
                         self.trace_unparsed_bytes();
-                        self.line.wait_for_silence(&mut self.station.line, QUIET)?;
+                        self.line.wait_for_silence(&mut self.station.line, RESYNC_PAUSE)?;
                         self.station.receiver = Receiver::default();
                         return Ok(Err(cause.into()));
                     }
@@ -369,14 +374,14 @@ impl<'a> Master<'a> {
                 let bytes = self.station.receiver.pending_len();
                 self.trace_unparsed_bytes();
                 self.station.receiver = Receiver::default();
-                return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
+                return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { ReplyDamage::Cut { bytes }.into() }));
             }
             // The reply to a request that sets something is always awaited.
             if repeats == RetryPolicy::Always {
                 self.line.check_cancel()?;
             }
             heard.clear();
-            self.line.receive((now + SLICE).min(deadline), &mut heard)?;
+            self.line.receive((now + CANCEL_CHECK_INTERVAL).min(deadline), &mut heard)?;
             self.station.receiver.push(&heard);
         }
     }
@@ -390,13 +395,13 @@ fn has_session(answer: &Frame) -> bool {
         && answer.session != 0
 }
 
-fn judge(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), ExchangeError> {
-    let Body::Data { items, .. } = frame.parse_body()? else { return Err(Damage::Empty.into()) };
-    let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
+fn parse_reply(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), ExchangeError> {
+    let Body::Data { items, .. } = frame.parse_body()? else { return Err(ReplyDamage::Empty.into()) };
+    let reply = Reply::parse(items.unconnected_data().ok_or(ReplyDamage::Empty)?)?;
     let services = (request.service.code(), reply.service.code());
     match services {
         (requested, got) if requested == got => Ok((reply, items)),
-        (requested, got) => Err(Damage::Service { requested, got }.into()),
+        (requested, got) => Err(ReplyDamage::Service { requested, got }.into()),
     }
 }
 
@@ -405,7 +410,7 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), Exchange
 fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
-        (Access::Read, _) => Err(Error::ReadOnly { number, name: row.name }),
+        (ParameterAccess::Read, _) => Err(Error::ReadOnly { number, name: row.name }),
         (_, CONTROL..=TARGET) => Err(Error::Motion { number, name: row.name }),
         _ => Ok(row),
     }
@@ -418,9 +423,9 @@ const fn triggers_action(row: &ParameterRow) -> bool {
 
 impl RetryPolicy {
     /// Returns the time limit of a reply, excluding the line margin; `timeout` is the usual time limit.
-    fn within(self, timeout: Duration) -> Duration {
+    fn reply_timeout(self, timeout: Duration) -> Duration {
         match self {
-            RetryPolicy::Never { takes: Some(takes) } => timeout.max(takes + SPARE),
+            RetryPolicy::Never { takes: Some(takes) } => timeout.max(takes + REPLY_TIME_MARGIN),
             RetryPolicy::Always | RetryPolicy::Never { takes: None } => timeout,
         }
     }

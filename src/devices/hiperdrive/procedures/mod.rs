@@ -22,9 +22,9 @@ mod temperature;
 pub mod write;
 
 pub use discover::{DiscoveredDevice, discover};
-pub use error::{Damage, Error, LateReplyError, Refusal, RequestedItem, WrongLength};
+pub use error::{Error, ErrorReply, LateReplyError, ReplyDamage, RequestedItem, WrongLength};
 pub use identify::{
-    DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, survey,
+    DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, read_survey,
 };
 pub use limits::{DisplayedLimits, DriveLimits};
 pub use master::{Master, OpenedConnection};
@@ -32,4 +32,4 @@ pub use network::{Network, network, settings};
 pub use rules::{GROUPS, MotionLimitParameters, read_rule_group, read_rules};
 pub use save::{read_state, save};
 pub use station::{LinkParameters, Station};
-pub use temperature::{Sample, Temperature, TemperatureReading, temperature};
+pub use temperature::{PolledSample, Temperature, TemperatureReading, temperature};

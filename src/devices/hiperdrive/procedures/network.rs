@@ -1,7 +1,7 @@
 //! IP address and its source: address switches and TCP/IP object (reference 1).
 
 use super::error::RequestedItem;
-use super::identify::own;
+use super::identify::device_parameter;
 use super::{Error, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration, PacketError};
 use crate::devices::hiperdrive::profile::NetworkSettings;
@@ -34,13 +34,14 @@ impl Network {
 /// # Errors
 /// Returns an error if the exchange fails.
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
-    let switch = master.read_number(own(12)?)?;
-    let control = optional_if_refused(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
+    let switch = master.read_number(device_parameter(12)?)?;
+    let control =
+        optional_if_refused(read_attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
     let interface =
-        optional_if_refused(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
+        optional_if_refused(read_attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
     let (class, number) = MAC;
-    let mac =
-        optional_if_refused(master.attribute(RequestedItem::Mac, class, number))?.and_then(|data| data.try_into().ok());
+    let mac = optional_if_refused(master.read_attribute(RequestedItem::Mac, class, number))?
+        .and_then(|data| data.try_into().ok());
     Ok(Network { switch, control, interface, mac })
 }
 
@@ -50,18 +51,18 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
 /// Returns [`Error::Refused`] if the device has no such settings, or an error if the exchange fails.
 pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     let (control, interface) = (ConfigurationControl::ATTRIBUTE, InterfaceConfiguration::ATTRIBUTE);
-    let control = attribute(master, control, ConfigurationControl::parse)?;
-    let interface = attribute(master, interface, InterfaceConfiguration::parse)?;
+    let control = read_attribute(master, control, ConfigurationControl::parse)?;
+    let interface = read_attribute(master, interface, InterfaceConfiguration::parse)?;
     Ok(NetworkSettings { source: control.source(), interface })
 }
 
-fn attribute<T>(
+fn read_attribute<T>(
     master: &mut Master<'_>,
     attribute: u16,
     parse: impl FnOnce(&[u8]) -> Result<T, PacketError>,
 ) -> Result<T, Error> {
     let requested = RequestedItem::Network { attribute };
-    let data = master.attribute(requested, ConfigurationControl::CLASS, attribute)?;
+    let data = master.read_attribute(requested, ConfigurationControl::CLASS, attribute)?;
     parse(&data).map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })
 }
 

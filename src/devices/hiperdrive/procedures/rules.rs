@@ -1,10 +1,10 @@
 //! The parameters that limit the motion of a drive, read all at once or one group after another.
 
-use super::identify::of;
+use super::identify::drive_parameter;
 use super::{Error, Master};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, NUMERATOR, REFERENCE, REQUESTED, TIMEOUT, UPPER,
+    DENOMINATOR, LOWER_LIMIT, NUMERATOR, REFERENCE, REQUESTED_BY_BUS, TIMEOUT, UPPER_LIMIT,
 };
 
 /// Parameters that limit the motion of a drive. Parameters that were not read are `None`.
@@ -26,9 +26,9 @@ impl MotionLimitParameters {
     /// Creates the rules from parameters. `read` is called with the parameter numbers of drive 1.
     pub fn from_parameters(read: impl Fn(u16) -> Option<i64>) -> Self {
         MotionLimitParameters {
-            requested: read(REQUESTED),
+            requested: read(REQUESTED_BY_BUS),
             scale: read(NUMERATOR).zip(read(DENOMINATOR)),
-            limits: read(LOWER).zip(read(UPPER)),
+            limits: read(LOWER_LIMIT).zip(read(UPPER_LIMIT)),
             timeout: read(TIMEOUT),
             reference: read(REFERENCE),
         }
@@ -41,8 +41,8 @@ impl MotionLimitParameters {
 /// Returns an error if the exchange fails.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionLimitParameters, Error> {
     let mut values = Vec::new();
-    for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT, REFERENCE] {
-        match master.read_number(of(base, drive)?) {
+    for base in [REQUESTED_BY_BUS, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT, REFERENCE] {
+        match master.read_number(drive_parameter(base, drive)?) {
             Ok(value) => values.push((base, value)),
             Err(error) if error.is_unavailable() => {}
             Err(error) => return Err(error),
@@ -66,15 +66,19 @@ pub fn read_rule_group(
     known: MotionLimitParameters,
     group: usize,
 ) -> Result<MotionLimitParameters, Error> {
-    let mut read = |base| match master.read_number(of(base, drive)?) {
+    let mut read = |base| match master.read_number(drive_parameter(base, drive)?) {
         Ok(value) => Ok(Some(value)),
         Err(error) if error.is_unavailable() => Ok(None),
         Err(error) => Err(error),
     };
     Ok(match group % GROUPS {
-        0 => MotionLimitParameters { requested: read(REQUESTED)?, ..known },
+        0 => MotionLimitParameters { requested: read(REQUESTED_BY_BUS)?, ..known },
         1 => MotionLimitParameters { timeout: read(TIMEOUT)?, ..known },
         2 => MotionLimitParameters { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
-        _ => MotionLimitParameters { limits: read(LOWER)?.zip(read(UPPER)?), reference: read(REFERENCE)?, ..known },
+        _ => MotionLimitParameters {
+            limits: read(LOWER_LIMIT)?.zip(read(UPPER_LIMIT)?),
+            reference: read(REFERENCE)?,
+            ..known
+        },
     })
 }

@@ -1,6 +1,6 @@
 //! Reading of the values that are saved or needed for planning.
 
-use super::identify::{IdentifyProgress, identify, of};
+use super::identify::{IdentifyProgress, drive_parameter, identify};
 use super::{DriveIdentity, Error, Identity, Master};
 use crate::devices::hiperdrive::profile::{
     DeviceState, HiperdriveProfile, Image, Positions, ProfileDrive, ProfileIdentity,
@@ -17,7 +17,7 @@ impl Identity {
             article_number: drive.article_number.clone(),
             serial_number: drive.serial_number.clone(),
             version: drive.version.clone(),
-            ..ProfileDrive::at(drive.number)
+            ..ProfileDrive::unknown_drive(drive.number)
         };
         ProfileIdentity {
             topology: Some(self.topology),
@@ -32,7 +32,7 @@ impl Identity {
 
     /// Returns all parameters that a device stores for itself and its connected drives.
     pub fn stored_parameters(&self) -> impl Iterator<Item = ParameterNumber> {
-        let rows = || PARAMETERS.iter().filter(|row| Image::holds(row));
+        let rows = || PARAMETERS.iter().filter(|row| Image::contains_row(row));
         let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
         let drives = self
             .drives
@@ -49,7 +49,7 @@ impl Identity {
 pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
     let identity = identify(master, progress)?;
     let image = read_image(master, identity.stored_parameters().collect(), progress)?;
-    Ok(HiperdriveProfile::of(identity.profile(), image))
+    Ok(HiperdriveProfile::from_image(identity.profile(), image))
 }
 
 /// Reads everything that a plan requires: all stored values, the given additional parameters, and the drive positions.
@@ -68,7 +68,7 @@ pub fn read_state(
     let image = read_image(master, numbers, progress)?;
     let mut positions = Positions::new();
     for drive in &identity.drives {
-        match master.read_number(of(POSITION, drive.number)?) {
+        match master.read_number(drive_parameter(POSITION, drive.number)?) {
             // The position has 32 bits.
             Ok(position) => {
                 positions.insert(drive.number, position as i32);

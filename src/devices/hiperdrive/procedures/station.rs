@@ -20,7 +20,7 @@ parameters! {
     pub struct LinkParameters: UrlError {
         pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
         /// Byte order of process data.
-        pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
+        pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::KEYWORDS;
         /// UDP port of cyclic data, unless the device reports another.
         pub udp: Option<u16> = None, "udp" => OptionalValue(WholeNumbers(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
         /// Time limit of a reply, excluding the line margin.
@@ -112,7 +112,7 @@ impl Station {
     }
 
     /// Records that a request is being sent, and returns its number.
-    pub(super) fn begin(&mut self, at: Moment, takes_long: bool) -> u64 {
+    pub(super) fn begin_request(&mut self, at: Moment, takes_long: bool) -> u64 {
         let number = self.next;
         self.next = number.wrapping_add(1);
         self.open.truncate(Self::OPEN - 1);
@@ -132,7 +132,7 @@ impl Station {
 
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (interval, order) = (self.link.interval.as_millis(), ByteOrder::WORDS.format_example(&self.link.order));
+        let (interval, order) = (self.link.interval.as_millis(), ByteOrder::KEYWORDS.format_example(&self.link.order));
         write!(f, "every {interval} ms, {order} endian, UDP port {}", self.udp)
     }
 }

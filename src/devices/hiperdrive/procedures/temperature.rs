@@ -1,6 +1,6 @@
 //! Temperatures of the device (parameter 11) and of a drive (119), which are watched together with the position.
 
-use super::identify::{of, own};
+use super::identify::{device_parameter, drive_parameter};
 use super::{DriveReading, Error, Master};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::units::Moment;
@@ -22,7 +22,7 @@ pub struct TemperatureReading {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sample {
+pub enum PolledSample {
     Position(DriveReading),
     Temperature(TemperatureReading),
 }
@@ -34,8 +34,8 @@ impl Temperature {
     /// Returns [`Error::NoNumber`] if there is no such parameter.
     pub fn parameter(self) -> Result<ParameterNumber, Error> {
         match self {
-            Temperature::Device => own(11),
-            Temperature::Drive(drive) => of(119, drive),
+            Temperature::Device => device_parameter(11),
+            Temperature::Drive(drive) => drive_parameter(119, drive),
         }
     }
 }

@@ -6,13 +6,13 @@ use std::time::Duration;
 pub use crate::profile::WrittenChanges;
 
 use super::error::RequestedItem;
-use super::identify::{drive_status, drive_text, of, own, topology};
+use super::identify::{device_parameter, drive_parameter, drive_status, drive_text, read_topology};
 use super::network::settings;
 use super::{Error, Identity, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
 use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, Item, NetworkSettings, Op, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    ACKNOWLEDGE, DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, STATUS, UPPER,
+    ACKNOWLEDGE, DENOMINATOR, LOWER_LIMIT, NUMERATOR, POSITION, REFERENCE, STATUS, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
@@ -20,20 +20,20 @@ use crate::devices::hiperdrive::protocol::{
 use crate::profile::{ConfirmedPlan, Write};
 
 /// A write that ended early. Values written before that may be lost at power-off unless they are saved.
-pub type Interrupted = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, ()>;
+pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, ()>;
 
-impl Interrupted {
+impl InterruptedWrite {
     /// Returns the change made by the unfinished operation if it may have been carried out in part. Returns `None` if
     /// the operation did not start, for example after a cancellation.
     pub fn uncertain_write(&self) -> Option<String> {
-        self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
+        self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item_name)
     }
 }
 
 /// Interval between two reads of parameter 47.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Wait before the first read after an operation that includes a reset. The reset may not have started before that.
-const BEGINS: Duration = Duration::from_millis(100);
+const RESET_START_DELAY: Duration = Duration::from_millis(100);
 
 pub struct DeviceWriter<'w, 'm> {
     pub master: Master<'m>,
@@ -51,7 +51,7 @@ impl Write for DeviceWriter<'_, '_> {
     fn confirm_base(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let changed = |item: String| Err(Error::Changed { item });
-        if master.read_number(own(17)?)?.to_string() != identity.serial_number {
+        if master.read_number(device_parameter(17)?)?.to_string() != identity.serial_number {
             return changed("the device itself".to_owned());
         }
         for drive in affected_drives(plan, identity) {
@@ -60,7 +60,7 @@ impl Write for DeviceWriter<'_, '_> {
             {
                 return changed(format!("drive {}", drive.get()));
             }
-            let status = master.read_number(of(STATUS, drive)?)?;
+            let status = master.read_number(drive_parameter(STATUS, drive)?)?;
             // The status word has 16 bits.
             if StatusWord::new(status as u16).state() == State::Moving {
                 return Err(Error::Moving { drive });
@@ -88,8 +88,8 @@ impl Write for DeviceWriter<'_, '_> {
         if !are_scale_or_limits_incomplete(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
         }
-        self.master.run_uncancellable(|master| perform(master, op, done))?;
-        done.count_operation(op.weight());
+        self.master.run_uncancellable(|master| execute(master, op, done))?;
+        done.count_operation(op.change_count());
         Ok(())
     }
 
@@ -117,14 +117,18 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
 /// there, because the same limits denote other positions under another scale.
 fn are_scale_or_limits_incomplete(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
-        Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
+        Op::Write { number, .. }
+            if matches!(number.drive1_number(), NUMERATOR | DENOMINATOR | LOWER_LIMIT | UPPER_LIMIT) =>
+        {
+            number.drive()
+        }
         _ => None,
     };
     let (begun, left) = ops.split_at_checked(at).unwrap_or((ops, &[]));
     left.iter().filter_map(place).any(|drive| begun.iter().filter_map(place).any(|own| own == drive))
 }
 
-fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Result<(), Error> {
+fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Result<(), Error> {
     match op {
         Op::Write { number, new, .. } => {
             write(master, *number, *new)?;
@@ -143,18 +147,20 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
 /// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4) and then becomes the
 /// position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
-    master.set(number, wanted)?;
+    master.set_parameter(number, wanted)?;
     let reads = master.read_number(number)?;
-    let Some(drive) = number.drive().filter(|_| number.base() == REFERENCE) else {
+    let Some(drive) = number.drive().filter(|_| number.drive1_number() == REFERENCE) else {
         return if reads == wanted { Ok(()) } else { Err(Error::NotTaken { number, wanted, reads }) };
     };
     let rounded = i32::try_from(wanted).ok().and_then(nearest_reference).map_or(wanted, i64::from);
     if reads != rounded && reads != wanted {
         return Err(Error::NotTaken { number, wanted, reads });
     }
-    let number = of(POSITION, drive)?;
-    let (numerator, denominator) =
-        (master.read_number(of(NUMERATOR, drive)?)?, master.read_number(of(DENOMINATOR, drive)?)?);
+    let number = drive_parameter(POSITION, drive)?;
+    let (numerator, denominator) = (
+        master.read_number(drive_parameter(NUMERATOR, drive)?)?,
+        master.read_number(drive_parameter(DENOMINATOR, drive)?)?,
+    );
     // A drive at standstill readjusts its position by less than five degrees, which is 1/72 of a turn. A turn has 256 ·
     // 154 / 156 steps.
     let near = (256 * numerator / denominator.max(1) / 72).max(64);
@@ -174,8 +180,8 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
     }
     let Some(code) = service.code() else { return Ok(()) };
     // The time limit depends on the topology.
-    topology(master)?;
-    master.set(ParameterNumber::SAVE, code)?;
+    read_topology(master)?;
+    master.set_parameter(ParameterNumber::SAVE, code)?;
     let patience = master.max_wait(ParameterNumber::SAVE, code);
     await_idle(master, service, patience)
 }
@@ -184,7 +190,7 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
 fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
-        master.wait(BEGINS)?;
+        master.wait(RESET_START_DELAY)?;
     }
     loop {
         let waited = master.now().duration_since(begun);
@@ -198,7 +204,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
         if waited >= patience {
             return Err(Error::Busy { reads, milliseconds: waited.as_millis() as u64 });
         }
-        master.wait(LOOK)?;
+        master.wait(POLL_INTERVAL)?;
     }
 }
 
@@ -217,7 +223,7 @@ pub enum FaultReset {
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
-pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset, Error> {
+pub fn find_remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset, Error> {
     let status = drive_status(master, drive)?;
     // Older errors are already acknowledged.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
@@ -232,8 +238,8 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset,
 
 /// Clears a drive's fault by writing 197 = 0. If a reset is required first, it is a separate operation.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
-    let number = of(ACKNOWLEDGE, drive)?;
-    master.set(number, 0)?;
+    let number = drive_parameter(ACKNOWLEDGE, drive)?;
+    master.set_parameter(number, 0)?;
     match master.read_number(number)? {
         0 => Ok(()),
         reads => Err(Error::NotTaken { number, wanted: 0, reads }),
@@ -246,7 +252,7 @@ fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSe
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;
         let requested = RequestedItem::Network { attribute };
-        let before = master.attribute(requested, ConfigurationControl::CLASS, attribute)?;
+        let before = master.read_attribute(requested, ConfigurationControl::CLASS, attribute)?;
         let before = ConfigurationControl::parse(&before);
         let before = before.map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })?;
         set_network(master, attribute, before.with_source(to.source).emit().to_vec())?;

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 
 use super::{Base, DeviceState, HiperdrivePlan, Image, Item, Op, PlanError, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    CONTROL, DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REFERENCE, REQUESTED, RESET, SERVICE, SPEED_DENOMINATOR,
-    SPEED_NUMERATOR, TARGET, UPPER,
+    CONTROL, DENOMINATOR, LOWER_LIMIT, MAXIMUM_SPEED, NUMERATOR, REFERENCE, REQUESTED_BY_BUS, RESET, SERVICE,
+    SPEED_DENOMINATOR, SPEED_NUMERATOR, TARGET, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{
-    Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
+    DriveNumber, ParameterAccess, ParameterNumber, PositionScale, Travel, nearest_reference,
 };
 
 /// Positions of the drives in scaled steps, parameter 107.
@@ -31,26 +31,32 @@ pub type Positions = BTreeMap<DriveNumber, i32>;
 /// Returns a [`PlanError`] if a change is not allowed.
 pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan, PlanError> {
     let DeviceState { image: device, positions, .. } = state;
-    let after = device.with(wanted);
+    let after = device.overlaid_with(wanted);
     let mut writes = Vec::new();
     for (&number, &new) in &wanted.values {
         let item = Item(number);
         let old = device.get(number).ok_or(PlanError::NotRead { item })?;
         if old != new {
-            check(number, new, state.travel(number, &after))?;
+            check_value(number, new, state.travel(number, &after))?;
             writes.push(Write { number, old, new });
         }
     }
-    let mut base = device.of(writes.iter().map(|write| write.number));
+    let mut base = device.values_of(writes.iter().map(|write| write.number));
     let mut upper_first = Vec::new();
     for drive in after.drives() {
         let touches = |numbers: &[u16]| {
-            writes.iter().any(|write| write.number.drive() == Some(drive) && numbers.contains(&write.number.base()))
+            writes
+                .iter()
+                .any(|write| write.number.drive() == Some(drive) && numbers.contains(&write.number.drive1_number()))
         };
-        if touches(&PLACE) {
-            base.extend(device.of(PLACE.iter().filter_map(|number| ParameterNumber::for_drive(*number, drive))));
+        if touches(&POSITION_PARAMETERS) {
+            base.extend(
+                device.values_of(
+                    POSITION_PARAMETERS.iter().filter_map(|number| ParameterNumber::for_drive(*number, drive)),
+                ),
+            );
             let order = check_position_limits(device, &after, drive, positions.get(&drive).copied())?;
-            upper_first.extend((order == Order::UpperFirst).then_some(drive));
+            upper_first.extend((order == WriteOrder::UpperFirst).then_some(drive));
         }
     }
     writes.sort_by_key(|write| {
@@ -58,7 +64,7 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
         write.sort_key(upper_first)
     });
     let saves = writes.iter().any(|write| write.number.row().is_some_and(|row| row.saved));
-    let mut ops: Vec<Op> = writes.into_iter().map(Write::op).collect();
+    let mut ops: Vec<Op> = writes.into_iter().map(Write::into_operation).collect();
     ops.extend(saves.then_some(Op::Service(Service::Save)));
     let values = if ops.is_empty() { BTreeMap::new() } else { base };
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
@@ -79,7 +85,7 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
         PlanError::NotRead { item: Item(number) }
     };
     let (number, old) = known(REFERENCE).ok_or_else(|| not_read(REFERENCE))?;
-    let (lower, upper) = device.limits(drive).ok_or_else(|| not_read(LOWER))?;
+    let (lower, upper) = device.limits(drive).ok_or_else(|| not_read(LOWER_LIMIT))?;
     // Near the end of the 32-bit range, the next multiple of 64 may not fit.
     let becomes = nearest_reference(position).map_or(i64::from(i32::MAX) + 1, i64::from);
     if !(lower..=upper).contains(&becomes) {
@@ -87,9 +93,9 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     }
     // After a change of scale, limits beyond the travel do not limit anything.
     if let Some(row) = number.row() {
-        row.check(number, becomes, state.travel(number, device))?;
+        row.check_value(number, becomes, state.travel(number, device))?;
     }
-    let values = device.of(PLACE.into_iter().chain([REFERENCE]).filter_map(own));
+    let values = device.values_of(POSITION_PARAMETERS.into_iter().chain([REFERENCE]).filter_map(own));
     let ops = vec![Op::Write { number, old: Some(old), new: becomes }, Op::Service(Service::Save)];
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
@@ -105,7 +111,7 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
 }
 
 /// Numbers of the parameters that must be consistent with each other: position scale and limits.
-const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
+const POSITION_PARAMETERS: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT];
 
 #[derive(Clone, Copy)]
 struct Write {
@@ -115,33 +121,33 @@ struct Write {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Order {
+enum WriteOrder {
     LowerFirst,
     UpperFirst,
 }
 
 impl Write {
-    fn op(self) -> Op {
+    fn into_operation(self) -> Op {
         Op::Write { number: self.number, old: Some(self.old), new: self.new }
     }
 
     /// Returns the sort key of a write. The lowest key is written first.
     fn sort_key(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
-        let base = self.number.base();
+        let base = self.number.drive1_number();
         let turn = match (base, self.new) {
-            (REQUESTED, 1) => 0,
-            (REQUESTED, _) => 2,
+            (REQUESTED_BY_BUS, 1) => 0,
+            (REQUESTED_BY_BUS, _) => 2,
             _ => 1,
         };
         let group = match base {
             NUMERATOR | DENOMINATOR => 0,
             SPEED_NUMERATOR | SPEED_DENOMINATOR => 1,
             MAXIMUM_SPEED => 2,
-            LOWER | UPPER => 3,
+            LOWER_LIMIT | UPPER_LIMIT => 3,
             _ => 4,
         };
         let is_first = match base {
-            UPPER => upper_first,
+            UPPER_LIMIT => upper_first,
             // Between the two writes, a turn never has more steps than before or after.
             DENOMINATOR => self.new > self.old,
             _ => false,
@@ -151,14 +157,14 @@ impl Write {
 }
 
 /// Checks that a parameter may be written with the given value.
-fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), PlanError> {
+fn check_value(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), PlanError> {
     let item = Item(number);
     let row = number.row().ok_or(PlanError::NotRead { item })?;
-    match (number.base(), row.access) {
+    match (number.drive1_number(), row.access) {
         (CONTROL..=TARGET, _) => Err(PlanError::Moves { item }),
         (SERVICE | REFERENCE | RESET, _) => Err(PlanError::Acts { item }),
-        (_, Access::Read) => Err(PlanError::ReadOnly { item }),
-        _ => Ok(row.check(number, value, travel).map(|_| ())?),
+        (_, ParameterAccess::Read) => Err(PlanError::ReadOnly { item }),
+        _ => Ok(row.check_value(number, value, travel).map(|_| ())?),
     }
 }
 
@@ -169,8 +175,8 @@ fn check_position_limits(
     after: &Image,
     drive: DriveNumber,
     position: Option<i32>,
-) -> Result<Order, PlanError> {
-    let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::for_drive(number, drive));
+) -> Result<WriteOrder, PlanError> {
+    let missing = POSITION_PARAMETERS.into_iter().filter_map(|number| ParameterNumber::for_drive(number, drive));
     for number in missing {
         device.get(number).ok_or(PlanError::NotRead { item: Item(number) })?;
     }
@@ -178,7 +184,7 @@ fn check_position_limits(
     let (Some((lower, upper)), Some(new), Some((_, old_upper))) =
         (after.limits(drive), after.scale(drive), device.limits(drive))
     else {
-        return Ok(Order::LowerFirst);
+        return Ok(WriteOrder::LowerFirst);
     };
     if lower >= upper {
         return Err(PlanError::LimitsCrossed { drive, lower, upper });
@@ -194,7 +200,7 @@ fn check_position_limits(
     }
     // With the old upper limit, the new lower limit would be above it, or the drive would be outside.
     let too_low = old_upper <= lower || position.is_some_and(|position| position > old_upper);
-    Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
+    Ok(if too_low { WriteOrder::UpperFirst } else { WriteOrder::LowerFirst })
 }
 
 /// Returns the position of a drive in steps of another scale, which has 256 · numerator / denominator steps per turn.

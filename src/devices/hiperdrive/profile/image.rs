@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, UPPER};
-use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber, ParameterRow, PositionScale};
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER_LIMIT, NUMERATOR, UPPER_LIMIT};
+use crate::devices::hiperdrive::protocol::{
+    DriveNumber, ParameterAccess, ParameterNumber, ParameterRow, PositionScale,
+};
 
 /// Parameter values by absolute number. The image of a device holds all saved and writable parameters of the device and
 /// its drives. Values are missing if they were not read, are not in the profile, or belong to an empty port.
@@ -15,8 +17,8 @@ pub struct Image {
 
 impl Image {
     /// Returns whether an image contains a parameter. The parameter must be saved and writable.
-    pub fn holds(row: &ParameterRow) -> bool {
-        row.saved && row.access == Access::ReadWrite
+    pub fn contains_row(row: &ParameterRow) -> bool {
+        row.saved && row.access == ParameterAccess::ReadWrite
     }
 
     /// Returns the value of a parameter, if known.
@@ -45,16 +47,16 @@ impl Image {
 
     /// Returns the lower and upper limits of a drive (158, 160), in scaled steps.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
-        Some((self.for_drive(drive, LOWER)?, self.for_drive(drive, UPPER)?))
+        Some((self.for_drive(drive, LOWER_LIMIT)?, self.for_drive(drive, UPPER_LIMIT)?))
     }
 
     /// Returns the known values of the given parameters.
-    pub fn of(&self, numbers: impl IntoIterator<Item = ParameterNumber>) -> BTreeMap<ParameterNumber, i64> {
+    pub fn values_of(&self, numbers: impl IntoIterator<Item = ParameterNumber>) -> BTreeMap<ParameterNumber, i64> {
         numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
     }
 
     /// Returns a copy in which the values of `other` take precedence.
-    pub fn with(&self, other: &Image) -> Image {
+    pub fn overlaid_with(&self, other: &Image) -> Image {
         let mut image = self.clone();
         image.values.extend(&other.values);
         image

@@ -37,7 +37,7 @@ impl Item {
     ///
     /// # Errors
     /// Returns [`ItemError`] if the parameter does not exist, or if the drive does not have it.
-    pub fn of(number: u16, drive: Option<u8>) -> Result<Self, ItemError> {
+    pub fn new(number: u16, drive: Option<u8>) -> Result<Self, ItemError> {
         let own = ParameterNumber::new(number).ok_or(ItemError::NoParameter(number))?;
         let own = match drive {
             None => own,
@@ -65,7 +65,7 @@ impl fmt::Display for Item {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0.drive() {
             None | Some(DriveNumber::FIRST) => write!(f, "{}", self.0),
-            Some(drive) => write!(f, "{} drive {}", self.0.base(), drive.get()),
+            Some(drive) => write!(f, "{} drive {}", self.0.drive1_number(), drive.get()),
         }
     }
 }
@@ -79,13 +79,13 @@ impl FromStr for Item {
             Some((number, drive)) => (number, Some(drive.parse().map_err(|_| unknown())?)),
             None => (text, None),
         };
-        Item::of(Item::number(number).ok_or_else(unknown)?, drive)
+        Item::new(Item::parse_number(number).ok_or_else(unknown)?, drive)
     }
 }
 
 impl Item {
     /// Parses a parameter number without a sign, either decimal or hexadecimal with `0x`.
-    pub fn number(text: &str) -> Option<u16> {
+    pub fn parse_number(text: &str) -> Option<u16> {
         let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
             Some(digits) => (digits, 16),
             None => (text, 10),

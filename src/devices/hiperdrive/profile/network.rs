@@ -45,7 +45,7 @@ pub(super) const SWITCH: u16 = 12;
 mod tests {
     use super::*;
     use crate::buses::ethernet_ip::protocol::AddressError;
-    use crate::devices::hiperdrive::profile::{Warning, warnings};
+    use crate::devices::hiperdrive::profile::{Warning, plan_warnings};
     use crate::devices::hiperdrive::protocol::AddressSwitch;
     use crate::profile::Operation;
 
@@ -67,7 +67,7 @@ mod tests {
         let plan = plan_network(&now, Some(0), &wanted).unwrap();
         assert_eq!(plan.ops, [Op::Network { from: now.clone(), to: wanted.clone() }]);
         assert_eq!((plan.ops[0].write_cycles(), plan.base.network.as_ref()), (1, Some(&now)));
-        assert_eq!(warnings(&plan), []);
+        assert_eq!(plan_warnings(&plan), []);
         // DHCP assigns an address: none is written.
         let plan = plan_network(&wanted, Some(0), &settings(AddressSource::Dhcp, [10, 0, 0, 9])).unwrap();
         let to = NetworkSettings { source: AddressSource::Dhcp, ..wanted.clone() };
@@ -85,6 +85,6 @@ mod tests {
         assert_eq!(refused(settings(AddressSource::Unknown(3), [10, 0, 0, 7])), PlanError::Source(3));
         let plan = plan_network(&now, Some(17), &settings(AddressSource::Bootp, [0; 4])).unwrap();
         let fixed = AddressSwitch::Fixed([192, 168, 1, 17].into());
-        assert_eq!(warnings(&plan), [Warning::SwitchDecides(fixed)]);
+        assert_eq!(plan_warnings(&plan), [Warning::SwitchDecides(fixed)]);
     }
 }

@@ -29,7 +29,7 @@ impl Base {
 }
 
 /// Returns the parameters that a plan writes, with their new values.
-pub fn written(plan: &HiperdrivePlan) -> Image {
+pub fn written_values(plan: &HiperdrivePlan) -> Image {
     let written = plan.ops.iter().filter_map(|op| match op {
         Op::Write { number, new, .. } => Some((*number, *new)),
         Op::Service(_) | Op::Network { .. } => None,
@@ -127,7 +127,7 @@ impl Operation for Op {
 
 impl Op {
     /// Returns the name of the changed item, in a form that `read` accepts if the item is readable.
-    pub fn item(&self) -> String {
+    pub fn item_name(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
             Op::Service(Service::Acknowledge(drive)) => ParameterNumber::for_drive(ACKNOWLEDGE, *drive)
@@ -138,7 +138,7 @@ impl Op {
     }
 
     /// Returns the number of changes, counted as in a comparison. A save does not count.
-    pub const fn weight(&self) -> u64 {
+    pub const fn change_count(&self) -> u64 {
         match self {
             Op::Write { .. } | Op::Network { .. } => 1,
             Op::Service(_) => 0,
@@ -163,7 +163,7 @@ impl Op {
             Op::Service(Service::Factory) => service(-1, "own parameters of the device from the factory, not saved"),
             Op::Service(Service::FactoryAll) => service(-3, "from the factory with the address by DHCP, saved"),
             Op::Service(Service::Reset) => service(-4, "presence test and reset of the drives"),
-            Op::Service(Service::Acknowledge(drive)) => ChangedItem::new(self.item(), None, None)
+            Op::Service(Service::Acknowledge(drive)) => ChangedItem::new(self.item_name(), None, None)
                 .with_manual_name(format!("fault of drive {} acknowledged", drive.get())),
             Op::Network { from, to } => {
                 ChangedItem::new("network", Some(network_change_note(from)), Some(network_change_note(to)))

@@ -67,7 +67,7 @@ pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Val
 
 impl HiperdriveProfile {
     /// Creates a profile from the values read and marks those that depend on how a drive is mounted.
-    pub fn of(identity: ProfileIdentity, image: Image) -> Self {
+    pub fn from_image(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
         profile.mark_mounting_dependent_values();
@@ -76,7 +76,8 @@ impl HiperdriveProfile {
 
     /// Marks the reference of each drive (198), since it depends on how the drive is mounted. Existing marks are kept.
     pub fn mark_mounting_dependent_values(&mut self) {
-        let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
+        let references =
+            self.image.values.keys().copied().filter(|number| number.drive1_number() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
             if !self.is_marked(item) {
                 let meaning = "the position that was set".to_owned();
@@ -88,7 +89,7 @@ impl HiperdriveProfile {
     /// Returns whether an item depends on how the drive is mounted. It does if it is marked or is the reference of a
     /// drive.
     pub fn depends_on_mounting(&self, item: Item) -> bool {
-        item.0.base() == REFERENCE || self.is_marked(item)
+        item.0.drive1_number() == REFERENCE || self.is_marked(item)
     }
 
     /// Returns the items of the profile in comparison order.
@@ -120,7 +121,7 @@ impl ProfileDrive {
     }
 
     /// Creates the identity of an unknown drive in a port.
-    pub fn at(number: DriveNumber) -> Self {
+    pub fn unknown_drive(number: DriveNumber) -> Self {
         ProfileDrive {
             number,
             variant: None,

@@ -116,7 +116,7 @@ fn is_unchanged_on_device(
     item: Item,
     options: RestoreOptions,
 ) -> bool {
-    item.0.base() == REFERENCE || !options.with_mounting && depends_on_other_mounting(profile, device, item)
+    item.0.drive1_number() == REFERENCE || !options.with_mounting && depends_on_other_mounting(profile, device, item)
 }
 
 /// Returns whether an item depends on the mounting of another device or drive.

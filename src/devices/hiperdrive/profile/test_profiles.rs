@@ -20,7 +20,7 @@ const DRIVE: [(u16, i64); 13] = [
     (198, 0),
 ];
 
-pub(super) fn number(own: u16) -> ParameterNumber {
+pub(super) fn parameter(own: u16) -> ParameterNumber {
     ParameterNumber::new(own).unwrap()
 }
 
@@ -28,12 +28,12 @@ pub(super) fn drive(place: u8) -> DriveNumber {
     DriveNumber::new(place).unwrap()
 }
 
-pub(super) fn image_of(values: &[(u16, i64)]) -> Image {
-    Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
+pub(super) fn image_with_values(values: &[(u16, i64)]) -> Image {
+    Image { values: values.iter().map(|(own, value)| (parameter(*own), *value)).collect() }
 }
 
 pub(super) fn image(places: &[u8]) -> Image {
-    let mut image = image_of(&[(24, 0), (26, 7)]);
+    let mut image = image_with_values(&[(24, 0), (26, 7)]);
     for place in places {
         let own = DRIVE.iter().map(|(own, value)| (ParameterNumber::for_drive(*own, drive(*place)).unwrap(), *value));
         image.values.extend(own);
@@ -54,7 +54,7 @@ pub(super) fn identity(serial_number: &str, drives: &[(u8, &str)]) -> ProfileIde
                 variant: Some(Variant::new(7)),
                 name: "HDA30A".to_owned(),
                 serial_number: (*serial_number).to_owned(),
-                ..ProfileDrive::at(drive(*place))
+                ..ProfileDrive::unknown_drive(drive(*place))
             })
             .collect(),
         unknown: Default::default(),
@@ -63,5 +63,5 @@ pub(super) fn identity(serial_number: &str, drives: &[(u8, &str)]) -> ProfileIde
 
 /// Creates the profile of hub 100 with drives 4711 and 4712 in ports 1 and 3.
 pub(super) fn profile() -> HiperdriveProfile {
-    HiperdriveProfile::of(identity("100", &[(1, "4711"), (3, "4712")]), image(&[1, 3]))
+    HiperdriveProfile::from_image(identity("100", &[(1, "4711"), (3, "4712")]), image(&[1, 3]))
 }

@@ -4,13 +4,13 @@
 //! the device, which are below 100. In such a list, the number of another drive refers to that drive.
 
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
-use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, UPPER};
+use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER_LIMIT, UPPER_LIMIT};
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
 use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, Writer, value_text};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const PLACE: AllowedValues = AllowedValues::whole_range(1, 8);
+const PORT_NUMBER: AllowedValues = AllowedValues::whole_range(1, 8);
 const VARIANT: AllowedValues = AllowedValues::whole_range(0, 65_535);
 const CATEGORY: AllowedValues =
     AllowedValues::words(&["\"HIPERDRIVE SINGLE\"", "\"HIPERDRIVE HUB-4\"", "\"HIPERDRIVE HUB-8\""]);
@@ -28,9 +28,9 @@ impl Profile for HiperdriveProfile {
         read_parameters(entries, None, &mut image, &mut unknown)?;
         for mut entries in entries.take_structures("drives")? {
             let path = entries.entry_path("number");
-            let place: u8 = entries.take_required("number", PLACE)?;
-            let number =
-                DriveNumber::new(place).ok_or_else(|| ProfileError::Shape { path: path.clone(), expected: PLACE })?;
+            let place: u8 = entries.take_required("number", PORT_NUMBER)?;
+            let number = DriveNumber::new(place)
+                .ok_or_else(|| ProfileError::Shape { path: path.clone(), expected: PORT_NUMBER })?;
             if identity.drives.iter().any(|drive| drive.number == number) {
                 return Err(ProfileError::invalid_entry(path, EntryError::DriveTwice(number)));
             }
@@ -74,7 +74,7 @@ impl Profile for HiperdriveProfile {
     /// Compares the stored parameters. Identities and measured values are not compared.
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
-        for number in self.image.with(&other.image).values.into_keys() {
+        for number in self.image.overlaid_with(&other.image).values.into_keys() {
             comparison.compare_item(Item(number).to_string(), self.image.get(number), other.image.get(number));
         }
         comparison
@@ -96,7 +96,11 @@ impl HiperdriveProfile {
         }
         writer.open("parameters", '{');
         for (number, value) in own {
-            writer.entry(&number.base().to_string(), &value.to_string(), &self.comment(number, value));
+            writer.entry(
+                &number.drive1_number().to_string(),
+                &value.to_string(),
+                &self.parameter_comment(number, value),
+            );
         }
         for (name, value) in unknown {
             writer.entry(&value_text(name), &value_text(value), "");
@@ -105,12 +109,14 @@ impl HiperdriveProfile {
     }
 
     /// Returns the comment for a parameter: its name and, for a limit, the number of turns.
-    fn comment(&self, number: ParameterNumber, value: i64) -> String {
+    fn parameter_comment(&self, number: ParameterNumber, value: i64) -> String {
         let Some(row) = number.row() else { return String::new() };
         let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
-        let scale =
-            number.drive().filter(|_| matches!(row.number, LOWER | UPPER)).and_then(|drive| self.image.scale(drive));
-        let turns = scale.zip(i32::try_from(value).ok()).map(|(scale, steps)| scale.turns(steps));
+        let scale = number
+            .drive()
+            .filter(|_| matches!(row.number, LOWER_LIMIT | UPPER_LIMIT))
+            .and_then(|drive| self.image.scale(drive));
+        let turns = scale.zip(i32::try_from(value).ok()).map(|(scale, steps)| scale.to_turns(steps));
         let turns = turns.map(|turns| format!(", {turns:.3} turns")).unwrap_or_default();
         format!("{}{unit}{turns}", row.name)
     }
@@ -183,7 +189,7 @@ fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive,
 
 fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
     let item = text.parse::<Item>()?;
-    if item.0.row().is_none_or(|row| !Image::holds(row)) {
+    if item.0.row().is_none_or(|row| !Image::contains_row(row)) {
         return Err(EntryError::NoMounting(item));
     }
     Ok(item)
@@ -214,14 +220,14 @@ fn read_parameters(
         };
         let path = format!("{}.{}", entries.entry_path("parameters"), row.number);
         let wrong = |error: EntryError| ProfileError::invalid_entry(path.clone(), error);
-        if !Image::holds(row) {
+        if !Image::contains_row(row) {
             return Err(wrong(EntryError::NotKept(Item(number))));
         }
         let value: i64 = value
             .into_rust()
             .map_err(|_| ProfileError::Shape { path: path.clone(), expected: AllowedValues::Whole })?;
         // The travel depends on the drive to be written, so the plan checks it.
-        let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.into()))?;
+        let value = row.check_value(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.into()))?;
         if image.values.insert(number, value).is_some() {
             return Err(wrong(EntryError::Twice(Item(number))));
         }

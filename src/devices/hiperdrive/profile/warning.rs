@@ -1,9 +1,9 @@
 //! Warnings about a plan before its execution.
 
 use super::network::SWITCH;
-use super::{HiperdrivePlan, Image, Item, written};
+use super::{HiperdrivePlan, Image, Item, written_values};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    NO_TIMEOUT, REQUESTED, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, TIMEOUT,
+    NO_TIMEOUT, REQUESTED_BY_BUS, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, TIMEOUT,
 };
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
@@ -31,13 +31,14 @@ pub enum Warning {
 }
 
 /// Returns all warnings of a plan.
-pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
-    let (now, written) = (plan.base.image(), written(plan));
-    let then = now.with(&written);
-    let mut warnings: Vec<Warning> = then.drives().into_iter().filter_map(|drive| moved(&now, &then, drive)).collect();
+pub fn plan_warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
+    let (now, written) = (plan.base.image(), written_values(plan));
+    let then = now.overlaid_with(&written);
+    let mut warnings: Vec<Warning> =
+        then.drives().into_iter().filter_map(|drive| moved_limits_warning(&now, &then, drive)).collect();
     for (&number, &new) in &written.values {
-        warnings.extend(match (number.base(), number.drive(), new) {
-            (REQUESTED, Some(drive), 0) => Some(Warning::NotRequested(drive)),
+        warnings.extend(match (number.drive1_number(), number.drive(), new) {
+            (REQUESTED_BY_BUS, Some(drive), 0) => Some(Warning::NotRequested(drive)),
             (TIMEOUT, Some(drive), NO_TIMEOUT) => Some(Warning::NoTimeout(drive)),
             (RS485_ADDRESS | RS485_BAUD | RS485_COMPLETE, ..) => Some(Warning::AfterReset(Item(number))),
             _ => None,
@@ -50,7 +51,7 @@ pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
 }
 
 /// Returns a warning if a changed scale moves the limits of a drive by more than one step.
-fn moved(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
+fn moved_limits_warning(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
     let (before, after) = (now.scale(drive)?, then.scale(drive)?);
     if before == after {
         return None;

@@ -26,15 +26,15 @@ pub const OLDEST_ERROR: u16 = 115;
 /// Variant of the drive; 0 if no drive is connected.
 pub const VARIANT: u16 = 120;
 /// Whether the drive is requested by the bus.
-pub const REQUESTED: u16 = 152;
+pub const REQUESTED_BY_BUS: u16 = 152;
 /// Numerator of the position scale.
 pub const NUMERATOR: u16 = 154;
 /// Denominator of the position scale.
 pub const DENOMINATOR: u16 = 156;
 /// Lower limit.
-pub const LOWER: u16 = 158;
+pub const LOWER_LIMIT: u16 = 158;
 /// Upper limit.
-pub const UPPER: u16 = 160;
+pub const UPPER_LIMIT: u16 = 160;
 /// Numerator of the speed scale.
 pub const SPEED_NUMERATOR: u16 = 162;
 /// Denominator of the speed scale.

@@ -45,7 +45,7 @@ pub const ERROR_CODES: [ErrorCodeRow; 16] = [
         "let the drive cool down. Use longer pauses, a lower load or better ventilation",
     ),
     row(
-        ErrorCode::FOLLOWING,
+        ErrorCode::FOLLOWING_ERROR,
         "following error",
         "the drive could not maintain its set speed",
         "less speed or more torque; look for what makes the spindle heavy",
@@ -134,7 +134,7 @@ impl ErrorCode {
     /// Temperature too high.
     pub const OVER_TEMPERATURE: ErrorCode = ErrorCode(0x8202);
     /// Following error, because the drive is too slow.
-    pub const FOLLOWING: ErrorCode = ErrorCode(0x8203);
+    pub const FOLLOWING_ERROR: ErrorCode = ErrorCode(0x8203);
     /// Blocked while turning backward.
     pub const BLOCK_REVERSE: ErrorCode = ErrorCode(0x8300);
     /// Blocked while turning forward.

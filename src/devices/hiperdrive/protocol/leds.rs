@@ -110,7 +110,12 @@ const fn port(light: PortLedState, meaning: &'static str, remedy: &'static str) 
     PortLedRow { light, meaning, remedy }
 }
 
-const fn bus(lamp: NetworkLed, light: NetworkLedState, meaning: &'static str, remedy: &'static str) -> NetworkLedRow {
+const fn network_led_row(
+    lamp: NetworkLed,
+    light: NetworkLedState,
+    meaning: &'static str,
+    remedy: &'static str,
+) -> NetworkLedRow {
     NetworkLedRow { lamp, light, meaning, remedy }
 }
 
@@ -189,38 +194,53 @@ pub const PORT_LEDS: [PortLedRow; 3] = [
 
 /// States of the MS and NS LEDs.
 pub const BUS_LEDS: [NetworkLedRow; 12] = [
-    bus(NetworkLed::Module, NetworkLedState::Off, "no supply", "check the control supply and its fuse"),
-    bus(NetworkLed::Module, NetworkLedState::Green, "the device is operating", "no action needed"),
-    bus(NetworkLed::Module, NetworkLedState::GreenFlashing, "not configured", "open a connection to the device"),
-    bus(NetworkLed::Module, NetworkLedState::RedFlashing, "recoverable fault", "read the errors and remove the cause"),
-    bus(
+    network_led_row(NetworkLed::Module, NetworkLedState::Off, "no supply", "check the control supply and its fuse"),
+    network_led_row(NetworkLed::Module, NetworkLedState::Green, "the device is operating", "no action needed"),
+    network_led_row(
+        NetworkLed::Module,
+        NetworkLedState::GreenFlashing,
+        "not configured",
+        "open a connection to the device",
+    ),
+    network_led_row(
+        NetworkLed::Module,
+        NetworkLedState::RedFlashing,
+        "recoverable fault",
+        "read the errors and remove the cause",
+    ),
+    network_led_row(
         NetworkLed::Module,
         NetworkLedState::Red,
         "unrecoverable fault",
         "switch the device off and on. If the fault remains, have it repaired",
     ),
-    bus(NetworkLed::Module, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
-    bus(
+    network_led_row(NetworkLed::Module, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
+    network_led_row(
         NetworkLed::Network,
         NetworkLedState::Off,
         "no address or no supply",
         "check the switches S1 and S2 and the DHCP server",
     ),
-    bus(NetworkLed::Network, NetworkLedState::Green, "a connection is open", "no action needed"),
-    bus(NetworkLed::Network, NetworkLedState::GreenFlashing, "no connection", "connect, or start the control (PLC)"),
-    bus(
+    network_led_row(NetworkLed::Network, NetworkLedState::Green, "a connection is open", "no action needed"),
+    network_led_row(
+        NetworkLed::Network,
+        NetworkLedState::GreenFlashing,
+        "no connection",
+        "connect, or start the control (PLC)",
+    ),
+    network_led_row(
         NetworkLed::Network,
         NetworkLedState::RedFlashing,
         "a connection has timed out",
         "check the cables and network switches, then reopen the connection",
     ),
-    bus(
+    network_led_row(
         NetworkLed::Network,
         NetworkLedState::Red,
         "another device has the same address",
         "assign a different address to one of them",
     ),
-    bus(NetworkLed::Network, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
+    network_led_row(NetworkLed::Network, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
 ];
 
 impl LedSubject {

@@ -39,15 +39,19 @@ pub use leds::{
     BUS_LEDS, DriveLedState, LedRow, LedSubject, NetworkLed, NetworkLedRow, NetworkLedState, PORT_LEDS, PortLedRow,
     PortLedState,
 };
-pub use parameter::{Access, DriveNumber, FactoryValue, OutOfRange, ParameterNumber, ParameterRow, Range, SlowValue};
-pub use parameters::{PARAMETERS, STORES};
+pub use parameter::{
+    DriveNumber, FactoryValue, OutOfRange, ParameterAccess, ParameterNumber, ParameterRange, ParameterRow, SlowValue,
+};
+pub use parameters::{PARAMETERS, STORE_TIME};
 pub use pkw::{Answer, Pkw, PkwError, Task};
 pub use process_data::{
     ActualValues, ByteOrder, InputImage, Layout, OutputData, OutputImage, Percent, ProcessImageError, Setpoint,
     Topology,
 };
 pub use recipe::{ACKNOWLEDGE, ENABLE, Step, UNLOCK};
-pub use scaling::{Family, Length, PositionScale, ScaleError, SpeedScale, effective_torque, nearest_reference, turns};
+pub use scaling::{
+    Family, Length, PositionScale, ScaleError, SpeedScale, effective_torque, nearest_reference, split_turns,
+};
 pub use state::{State, TRANSITIONS, Transition, Trigger};
 pub use status_word::{StatusBit, StatusWord};
 pub use switches::AddressSwitch;

@@ -29,13 +29,13 @@ pub struct ParameterRow {
     /// Type of the value.
     pub kind: Kind,
     /// Allowed access.
-    pub access: Access,
+    pub access: ParameterAccess,
     /// Whether the value survives a power cycle after it has been saved.
     pub saved: bool,
     /// Whether the adapter or hub stores the value, rather than a drive.
     pub(super) kept_by_device: bool,
     /// Allowed values.
-    pub range: Range,
+    pub range: ParameterRange,
     /// Limit given by the turns of the drive around 0, in addition to `range`. It is `None` if turns do not limit the
     /// value.
     pub reach: Option<StepLimit>,
@@ -59,7 +59,7 @@ pub struct SlowValue {
 
 /// Access to a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Access {
+pub enum ParameterAccess {
     /// Read only.
     Read,
     /// Read and write.
@@ -70,7 +70,7 @@ pub enum Access {
 
 /// Allowed values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
+pub enum ParameterRange {
     /// Any value of the parameter's type.
     Any,
     /// A value between two numbers, inclusive.
@@ -110,8 +110,8 @@ pub struct OutOfRange {
     pub name: &'static str,
     /// Rejected value.
     pub value: i64,
-    /// Allowed values; never [`Range::Any`].
-    pub range: Range,
+    /// Allowed values; never [`ParameterRange::Any`].
+    pub range: ParameterRange,
 }
 
 /// CIP class of the device parameters. The class of drive 1 follows it.
@@ -132,7 +132,7 @@ impl DriveNumber {
     }
 
     /// Returns the numbers of all drives for which a topology has a port.
-    pub fn of(topology: Topology) -> impl Iterator<Item = DriveNumber> {
+    pub fn all_for(topology: Topology) -> impl Iterator<Item = DriveNumber> {
         (1..=topology.drives()).map(DriveNumber)
     }
 }
@@ -171,13 +171,13 @@ impl ParameterNumber {
     }
 
     /// Returns the number of the same parameter for drive 1, or the number itself for a device parameter.
-    pub const fn base(self) -> u16 {
+    pub const fn drive1_number(self) -> u16 {
         if self.0 < 100 { self.0 } else { 100 + self.0 % 100 }
     }
 
     /// Returns the table row, or `None` if the manual does not list the parameter.
     pub fn row(self) -> Option<&'static ParameterRow> {
-        super::parameters::PARAMETERS.iter().find(|row| row.number == self.base())
+        super::parameters::PARAMETERS.iter().find(|row| row.number == self.drive1_number())
     }
 
     /// Returns the CIP class that contains the parameter.
@@ -187,7 +187,7 @@ impl ParameterNumber {
 
     /// Returns the attribute number within instance 1 of the class.
     pub const fn attribute(self) -> u16 {
-        self.base()
+        self.drive1_number()
     }
 
     /// Returns the parameter number for a class and attribute, or `None` if they do not address a parameter.
@@ -208,11 +208,11 @@ impl fmt::Display for ParameterNumber {
 impl ParameterRow {
     /// Returns the allowed values, or `None` for strings. They come from the table or, if it gives none, from the data
     /// type. The turns of the drive restrict them as far as they are known.
-    pub fn allowed(&self, travel: Travel) -> Option<Range> {
+    pub fn allowed_values(&self, travel: Travel) -> Option<ParameterRange> {
         let (low, high) = self.kind.limits()?;
-        Some(match (self.range, self.reach.and_then(|reach| travel.steps(reach))) {
-            (Range::Any, Some(most)) => Range::Within(low.max(-most), high.min(most)),
-            (Range::Any, None) => Range::Within(low, high),
+        Some(match (self.range, self.reach.and_then(|reach| travel.max_steps(reach))) {
+            (ParameterRange::Any, Some(most)) => ParameterRange::Within(low.max(-most), high.min(most)),
+            (ParameterRange::Any, None) => ParameterRange::Within(low, high),
             (range, _) => range,
         })
     }
@@ -222,14 +222,14 @@ impl ParameterRow {
     ///
     /// # Errors
     /// Returns [`OutOfRange`] with the allowed values. Strings accept no number.
-    pub fn check(&self, number: ParameterNumber, value: i64, travel: Travel) -> Result<i64, OutOfRange> {
-        let range = self.allowed(travel).unwrap_or(Range::OneOf(&[]));
-        if range.holds(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
+    pub fn check_value(&self, number: ParameterNumber, value: i64, travel: Travel) -> Result<i64, OutOfRange> {
+        let range = self.allowed_values(travel).unwrap_or(ParameterRange::OneOf(&[]));
+        if range.contains(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
     }
 
     /// Returns how long the device may take to reply when this value is written, or `None` if it takes no longer than
     /// for other replies. For an unknown topology, the time of a hub applies.
-    pub fn takes(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
+    pub fn write_duration(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
         let slow = self.slow.iter().find(|slow| slow.value == value)?;
         Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })
     }
@@ -248,26 +248,26 @@ impl ParameterRow {
     }
 }
 
-impl Range {
+impl ParameterRange {
     /// Returns whether the range contains a number.
-    pub fn holds(self, value: i64) -> bool {
+    pub fn contains(self, value: i64) -> bool {
         match self {
-            Range::Any => true,
-            Range::Within(low, high) => (low..=high).contains(&value),
-            Range::WithinOr(low, high, also) => (low..=high).contains(&value) || value == also,
-            Range::OneOf(values) => values.contains(&value),
+            ParameterRange::Any => true,
+            ParameterRange::Within(low, high) => (low..=high).contains(&value),
+            ParameterRange::WithinOr(low, high, also) => (low..=high).contains(&value) || value == also,
+            ParameterRange::OneOf(values) => values.contains(&value),
         }
     }
 }
 
-impl fmt::Display for Range {
+impl fmt::Display for ParameterRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Range::Any => f.write_str("any number"),
-            Range::Within(only, same) if only == same => write!(f, "{only} alone"),
-            Range::Within(low, high) => write!(f, "{low} to {high}"),
-            Range::WithinOr(low, high, also) => write!(f, "{low} to {high} or {also}"),
-            Range::OneOf(values) => {
+            ParameterRange::Any => f.write_str("any number"),
+            ParameterRange::Within(only, same) if only == same => write!(f, "{only} alone"),
+            ParameterRange::Within(low, high) => write!(f, "{low} to {high}"),
+            ParameterRange::WithinOr(low, high, also) => write!(f, "{low} to {high} or {also}"),
+            ParameterRange::OneOf(values) => {
                 let values: Vec<String> = values.iter().map(i64::to_string).collect();
                 f.write_str(&values.join(", "))
             }
@@ -279,7 +279,7 @@ impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let OutOfRange { number, name, value, range } = self;
         match range {
-            Range::OneOf([]) => write!(f, "parameter {number} ({name}) is a text and cannot be {value}"),
+            ParameterRange::OneOf([]) => write!(f, "parameter {number} ({name}) is a text and cannot be {value}"),
             _ => write!(f, "parameter {number} ({name}) cannot be {value}: it may be {range}"),
         }
     }

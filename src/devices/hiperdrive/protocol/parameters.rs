@@ -5,14 +5,14 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use Kind::{I8, I16, I32, Text, U8, U16, U32};
-use Range::{Any, OneOf, Within, WithinOr};
+use ParameterRange::{Any, OneOf, Within, WithinOr};
 
 use super::drive_parameter::{
-    ACKNOWLEDGE, DENOMINATOR, HAND_DRIVE_WAIT, LOWER, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NO_TIMEOUT, NUMERATOR, POSITION,
-    REFERENCE, REQUESTED, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR, SPEED_NUMERATOR,
-    TIMEOUT, UPPER, VARIANT,
+    ACKNOWLEDGE, DENOMINATOR, HAND_DRIVE_WAIT, LOWER_LIMIT, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NO_TIMEOUT, NUMERATOR,
+    POSITION, REFERENCE, REQUESTED_BY_BUS, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR,
+    SPEED_NUMERATOR, TIMEOUT, UPPER_LIMIT, VARIANT,
 };
-use super::parameter::{Access, FactoryValue, ParameterRow, Range, SlowValue};
+use super::parameter::{FactoryValue, ParameterAccess, ParameterRange, ParameterRow, SlowValue};
 use super::travel::StepLimit;
 use super::value::Kind;
 
@@ -22,10 +22,10 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
         name,
         unit,
         kind,
-        access: Access::Read,
+        access: ParameterAccess::Read,
         saved: false,
         kept_by_device: number < 100,
-        range: Range::Any,
+        range: ParameterRange::Any,
         reach: None,
         factory: FactoryValue::None,
         slow: &[],
@@ -34,8 +34,8 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
 
 impl ParameterRow {
     /// Makes the row writable, with a value that is lost at power-off.
-    const fn written(self, range: Range, factory: FactoryValue) -> Self {
-        ParameterRow { access: Access::ReadWrite, range, factory, ..self }
+    const fn writable(self, range: ParameterRange, factory: FactoryValue) -> Self {
+        ParameterRow { access: ParameterAccess::ReadWrite, range, factory, ..self }
     }
 
     /// Marks a drive parameter whose value the adapter or hub stores. See the manual, sections 3.4 and 4.5 for 152, and
@@ -44,8 +44,8 @@ impl ParameterRow {
         ParameterRow { kept_by_device: true, ..self }
     }
 
-    const fn kept(self, range: Range, factory: FactoryValue) -> Self {
-        ParameterRow { saved: true, ..self.written(range, factory) }
+    const fn saved(self, range: ParameterRange, factory: FactoryValue) -> Self {
+        ParameterRow { saved: true, ..self.writable(range, factory) }
     }
 
     const fn with_step_limit(self, reach: StepLimit) -> Self {
@@ -59,14 +59,14 @@ impl ParameterRow {
 
 /// Maximum time for storing to EEPROM. It also applies to the TCP/IP object, which is stored on every change. See
 /// manual 6.2, parameter 47, and 5.
-pub const STORES: Duration = Duration::from_millis(200);
+pub const STORE_TIME: Duration = Duration::from_millis(200);
 /// Maximum time for resetting a single drive. The value −4 of parameter 47 takes this time on an adapter.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time for resetting all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
 
-const fn stores(value: i64) -> SlowValue {
-    SlowValue { value, adapter: STORES, hub: STORES }
+const fn store_duration(value: i64) -> SlowValue {
+    SlowValue { value, adapter: STORE_TIME, hub: STORE_TIME }
 }
 
 const fn slow_for_all_drives(value: i64) -> SlowValue {
@@ -79,8 +79,13 @@ const fn slow_for_one_drive(value: i64) -> SlowValue {
 
 /// Slow values of parameter 47. The manual states no time for −3, −2 and −1. The time for −4 is used instead, since all
 /// of them send all parameters to all drives over RS-485 (`D`).
-const SAVE_AND_RESET: &[SlowValue] =
-    &[slow_for_all_drives(-4), slow_for_all_drives(-3), slow_for_all_drives(-2), slow_for_all_drives(-1), stores(1)];
+const SAVE_AND_RESET: &[SlowValue] = &[
+    slow_for_all_drives(-4),
+    slow_for_all_drives(-3),
+    slow_for_all_drives(-2),
+    slow_for_all_drives(-1),
+    store_duration(1),
+];
 /// Slow values of parameter 152. A change from 0 to 1 resets the drive. The time is derived (`D`).
 const REQUEST: &[SlowValue] = &[slow_for_one_drive(1)];
 /// Slow values of parameter 199. The time is derived (`D`).
@@ -91,7 +96,7 @@ const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterR
 }
 
 const fn register(number: u16, name: &'static str) -> ParameterRow {
-    read(number, name, U32, "").kept(Any, FactoryValue::Number(0))
+    read(number, name, U32, "").saved(Any, FactoryValue::Number(0))
 }
 
 const fn error(number: u16, name: &'static str) -> ParameterRow {
@@ -99,14 +104,14 @@ const fn error(number: u16, name: &'static str) -> ParameterRow {
 }
 
 const fn percent(number: u16, name: &'static str) -> ParameterRow {
-    read(number, name, U8, "%").written(Within(1, 100), FactoryValue::Number(100))
+    read(number, name, U8, "%").writable(Within(1, 100), FactoryValue::Number(100))
 }
 
 const fn scale(number: u16, name: &'static str, factory: i64) -> ParameterRow {
-    read(number, name, U16, "").kept(Within(1, 65535), FactoryValue::Number(factory))
+    read(number, name, U16, "").saved(Within(1, 65535), FactoryValue::Number(factory))
 }
 
-const fn within(range: RangeInclusive<u16>) -> Range {
+const fn whole_range(range: RangeInclusive<u16>) -> ParameterRange {
     Within(*range.start() as i64, *range.end() as i64)
 }
 
@@ -132,12 +137,12 @@ pub const PARAMETERS: &[ParameterRow] = &[
     register(40, "free register 9"),
     register(42, "free register 10"),
     read(47, "save and reset", I16, "")
-        .written(OneOf(&[-4, -3, -2, -1, 1]), FactoryValue::None)
+        .writable(OneOf(&[-4, -3, -2, -1, 1]), FactoryValue::None)
         .with_slow_values(SAVE_AND_RESET),
-    read(101, "control word", U16, "").written(Any, FactoryValue::Number(0)),
+    read(101, "control word", U16, "").writable(Any, FactoryValue::Number(0)),
     percent(102, "speed"),
     percent(103, "torque"),
-    read(104, "target position", I32, "steps").written(Any, FactoryValue::Number(0)),
+    read(104, "target position", I32, "steps").writable(Any, FactoryValue::Number(0)),
     read(105, "status word", U16, ""),
     read(106, "actual speed", I16, "0.1 rpm"),
     read(POSITION, "actual position", I32, "steps"),
@@ -163,37 +168,41 @@ pub const PARAMETERS: &[ParameterRow] = &[
     text(127, "nominal current", "A"),
     text(128, "nominal torque", "Nm"),
     text(129, "nominal speed", "rpm"),
-    read(REQUESTED, "requested", U8, "")
-        .kept(Within(0, 1), FactoryValue::Topology { adapter: 1, hub: 0 })
+    read(REQUESTED_BY_BUS, "requested", U8, "")
+        .saved(Within(0, 1), FactoryValue::Topology { adapter: 1, hub: 0 })
         .with_device_storage()
         .with_slow_values(REQUEST),
     scale(NUMERATOR, "position scale numerator", 256),
     scale(DENOMINATOR, "position scale denominator", 1),
-    read(LOWER, "lower limit", I32, "steps").kept(Any, FactoryValue::Turns(-1)).with_step_limit(StepLimit::Position),
-    read(UPPER, "upper limit", I32, "steps").kept(Any, FactoryValue::Turns(1)).with_step_limit(StepLimit::Position),
+    read(LOWER_LIMIT, "lower limit", I32, "steps")
+        .saved(Any, FactoryValue::Turns(-1))
+        .with_step_limit(StepLimit::Position),
+    read(UPPER_LIMIT, "upper limit", I32, "steps")
+        .saved(Any, FactoryValue::Turns(1))
+        .with_step_limit(StepLimit::Position),
     scale(SPEED_NUMERATOR, "speed scale numerator", 10),
     scale(SPEED_DENOMINATOR, "speed scale denominator", 1),
-    read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").kept(within(MAXIMUM_SPEEDS), FactoryValue::Number(350)),
-    read(170, "jog 1 step", I32, "steps").written(Any, FactoryValue::Number(4096)).with_step_limit(StepLimit::Step),
+    read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").saved(whole_range(MAXIMUM_SPEEDS), FactoryValue::Number(350)),
+    read(170, "jog 1 step", I32, "steps").writable(Any, FactoryValue::Number(4096)).with_step_limit(StepLimit::Step),
     percent(172, "jog 1 speed"),
     percent(174, "jog 1 torque"),
-    read(176, "jog 2 step", I32, "steps").written(Any, FactoryValue::Number(-4096)).with_step_limit(StepLimit::Step),
+    read(176, "jog 2 step", I32, "steps").writable(Any, FactoryValue::Number(-4096)).with_step_limit(StepLimit::Step),
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
-    read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").written(Within(100, 10000), FactoryValue::Number(1000)),
-    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, NO_TIMEOUT), FactoryValue::Number(20)),
-    read(RS485_ADDRESS, "RS-485 address", U8, "").kept(Within(0, 253), FactoryValue::Number(1)),
+    read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").writable(Within(100, 10000), FactoryValue::Number(1000)),
+    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").saved(WithinOr(1, 100, NO_TIMEOUT), FactoryValue::Number(20)),
+    read(RS485_ADDRESS, "RS-485 address", U8, "").saved(Within(0, 253), FactoryValue::Number(1)),
     read(RS485_BAUD, "RS-485 baud rate", U32, "baud")
-        .kept(OneOf(&[9600, 19200, 38400]), FactoryValue::Number(38400))
+        .saved(OneOf(&[9600, 19200, 38400]), FactoryValue::Number(38400))
         .with_device_storage(),
-    read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").kept(Any, FactoryValue::Automatic),
-    read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").written(Within(0, 0), FactoryValue::None),
+    read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").saved(Any, FactoryValue::Automatic),
+    read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").writable(Within(0, 0), FactoryValue::None),
     read(REFERENCE, "set actual position", I32, "steps")
-        .kept(Any, FactoryValue::Number(0))
+        .saved(Any, FactoryValue::Number(0))
         .with_step_limit(StepLimit::Position),
     ParameterRow {
-        access: Access::Write,
-        ..read(RESET, "reset drive", U8, "").written(Within(0, 1), FactoryValue::None)
+        access: ParameterAccess::Write,
+        ..read(RESET, "reset drive", U8, "").writable(Within(0, 1), FactoryValue::None)
     }
     .with_slow_values(RESET_DRIVE),
 ];

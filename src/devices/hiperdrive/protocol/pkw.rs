@@ -74,7 +74,7 @@ impl Task {
     ];
 
     /// Returns the task number.
-    pub const fn number(self) -> u8 {
+    pub const fn code(self) -> u8 {
         self as u8
     }
 
@@ -93,7 +93,7 @@ impl Task {
     }
 
     /// Returns whether an answer can belong to the task. The answer to a read may be a word or a double word.
-    const fn takes(self, answer: u8) -> bool {
+    const fn accepts_answer(self, answer: u8) -> bool {
         match self {
             Task::None => answer == 0,
             Task::Read => matches!(answer, 1 | 2 | 7),
@@ -110,7 +110,7 @@ impl Task {
 impl Pkw {
     /// Builds a request for a parameter from the low 11 bits of its number. A word uses the lower 16 bits of the value.
     pub const fn request(task: Task, number: u16, element: u16, value: u32) -> Self {
-        Pkw { pke: (task.number() as u16) << 12 | number & NUMBER, ind: element, pwe: value }
+        Pkw { pke: (task.code() as u16) << 12 | number & NUMBER, ind: element, pwe: value }
     }
 
     /// Parses parameter words from eight bytes.
@@ -134,7 +134,7 @@ impl Pkw {
 
     /// Returns the task of a request, or `None` if its number is undefined.
     pub fn task(self) -> Option<Task> {
-        Task::ALL.into_iter().find(|task| task.number() == self.code())
+        Task::ALL.into_iter().find(|task| task.code() == self.code())
     }
 
     /// Returns the answer of a reply.
@@ -154,7 +154,7 @@ impl Pkw {
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();
-        (same && task.takes(self.code())).then(|| self.answer())
+        (same && task.accepts_answer(self.code())).then(|| self.answer())
     }
 
     const fn code(self) -> u8 {

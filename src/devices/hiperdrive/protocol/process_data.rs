@@ -18,7 +18,7 @@ pub enum ByteOrder {
 
 impl ByteOrder {
     /// Spelling of the byte orders in link URLs.
-    pub const WORDS: Keywords<ByteOrder> = Keywords(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
+    pub const KEYWORDS: Keywords<ByteOrder> = Keywords(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
 /// Type of the device at an IP address, which determines the number of drive ports.
@@ -113,7 +113,7 @@ pub struct ProcessImageError {
 }
 
 /// Length in bytes of the data of one drive, which is also that of the parameter words.
-const PLACE: usize = 8;
+const BYTES_PER_DRIVE: usize = 8;
 
 impl ByteOrder {
     pub(super) const fn u16(self, bytes: [u8; 2]) -> u16 {
@@ -175,8 +175,8 @@ impl Topology {
 
 impl Layout {
     /// Returns the number of bytes in each direction: 8 per drive, and 8 for the parameter words if present.
-    pub const fn length(self) -> usize {
-        PLACE * (self.topology.drives() as usize + self.pkw as usize)
+    pub const fn byte_length(self) -> usize {
+        BYTES_PER_DRIVE * (self.topology.drives() as usize + self.pkw as usize)
     }
 
     /// Returns all layouts with the given length, most likely first.
@@ -184,14 +184,14 @@ impl Layout {
         let all = Topology::ALL
             .into_iter()
             .flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order: ByteOrder::default() }));
-        all.filter(move |layout| layout.length() == length)
+        all.filter(move |layout| layout.byte_length() == length)
     }
 
     /// Splits bytes into the data of the drives and the parameter words.
-    fn places(self, bytes: &[u8]) -> Result<(Vec<[u8; PLACE]>, Option<Pkw>), ProcessImageError> {
-        let (places, rest) = bytes.as_chunks::<PLACE>();
-        if !rest.is_empty() || bytes.len() != self.length() {
-            return Err(ProcessImageError { expected: self.length(), got: bytes.len() });
+    fn split_drives(self, bytes: &[u8]) -> Result<(Vec<[u8; BYTES_PER_DRIVE]>, Option<Pkw>), ProcessImageError> {
+        let (places, rest) = bytes.as_chunks::<BYTES_PER_DRIVE>();
+        if !rest.is_empty() || bytes.len() != self.byte_length() {
+            return Err(ProcessImageError { expected: self.byte_length(), got: bytes.len() });
         }
         match places.split_last() {
             Some((last, first)) if self.pkw => Ok((first.to_vec(), Some(Pkw::parse(*last, self.order)))),
@@ -200,10 +200,10 @@ impl Layout {
     }
 
     /// Builds an image from the data of the drives. Missing drives are zero; surplus drives are dropped.
-    fn image(self, places: impl Iterator<Item = [u8; PLACE]>, pkw: Option<Pkw>) -> Vec<u8> {
+    fn image(self, places: impl Iterator<Item = [u8; BYTES_PER_DRIVE]>, pkw: Option<Pkw>) -> Vec<u8> {
         let drives = usize::from(self.topology.drives());
         let words = self.pkw.then(|| pkw.unwrap_or_default().emit(self.order));
-        places.chain(std::iter::repeat([0; PLACE])).take(drives).chain(words).flatten().collect()
+        places.chain(std::iter::repeat([0; BYTES_PER_DRIVE])).take(drives).chain(words).flatten().collect()
     }
 }
 
@@ -227,7 +227,7 @@ impl Percent {
 impl Setpoint {
     /// Returns the setpoint that follows speed mode and starts every connection. Its control word is ready, with zero
     /// speed and torque. The target is the actual position, so no stale target remains.
-    pub const fn standing(actual: ActualValues) -> Self {
+    pub const fn holding(actual: ActualValues) -> Self {
         let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
     }
@@ -249,12 +249,12 @@ impl OutputData {
         ControlWord::parse(self.control)
     }
 
-    fn parse(bytes: [u8; PLACE], order: ByteOrder) -> Self {
+    fn parse(bytes: [u8; BYTES_PER_DRIVE], order: ByteOrder) -> Self {
         let [c0, c1, speed, torque, target @ ..] = bytes;
         OutputData { control: order.u16([c0, c1]), speed, torque, target: order.u32(target).cast_signed() }
     }
 
-    fn emit(&self, order: ByteOrder) -> [u8; PLACE] {
+    fn emit(&self, order: ByteOrder) -> [u8; BYTES_PER_DRIVE] {
         let [c0, c1] = order.encode_u16(self.control);
         let [a, b, c, d] = order.encode_u32(self.target.cast_unsigned());
         [c0, c1, self.speed, self.torque, a, b, c, d]
@@ -262,7 +262,7 @@ impl OutputData {
 }
 
 impl ActualValues {
-    fn parse(bytes: [u8; PLACE], order: ByteOrder) -> Self {
+    fn parse(bytes: [u8; BYTES_PER_DRIVE], order: ByteOrder) -> Self {
         let [z0, z1, s0, s1, position @ ..] = bytes;
         ActualValues {
             status: StatusWord::new(order.u16([z0, z1])),
@@ -271,7 +271,7 @@ impl ActualValues {
         }
     }
 
-    fn emit(&self, order: ByteOrder) -> [u8; PLACE] {
+    fn emit(&self, order: ByteOrder) -> [u8; BYTES_PER_DRIVE] {
         let [z0, z1] = order.encode_u16(self.status.to_u16());
         let [s0, s1] = order.encode_u16(self.speed.cast_unsigned());
         let [a, b, c, d] = order.encode_u32(self.position.cast_unsigned());
@@ -285,7 +285,7 @@ impl OutputImage {
     /// # Errors
     /// Returns [`ProcessImageError`] if the length does not match the layout.
     pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ProcessImageError> {
-        let (places, pkw) = layout.places(bytes)?;
+        let (places, pkw) = layout.split_drives(bytes)?;
         let drives = places.into_iter().map(|place| OutputData::parse(place, layout.order)).collect();
         Ok(OutputImage { drives, pkw })
     }
@@ -303,7 +303,7 @@ impl InputImage {
     /// # Errors
     /// Returns [`ProcessImageError`] if the length does not match the layout.
     pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ProcessImageError> {
-        let (places, pkw) = layout.places(bytes)?;
+        let (places, pkw) = layout.split_drives(bytes)?;
         let drives = places.into_iter().map(|place| ActualValues::parse(place, layout.order)).collect();
         Ok(InputImage { drives, pkw })
     }

@@ -12,22 +12,22 @@ pub struct Step {
     pub until: &'static [(StatusBit, bool)],
 }
 
-const fn step(word: ControlWord, until: &'static [(StatusBit, bool)]) -> Step {
+const fn recipe_step(word: ControlWord, until: &'static [(StatusBit, bool)]) -> Step {
     Step { word, until }
 }
 
-const READY: Step = step(ControlWord::READY, &[(StatusBit::Ready, true), (StatusBit::SwitchOnLock, false)]);
-const OPERATIONAL: Step = step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
-const ENABLED: Step = step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
+const READY: Step = recipe_step(ControlWord::READY, &[(StatusBit::Ready, true), (StatusBit::SwitchOnLock, false)]);
+const OPERATIONAL: Step = recipe_step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
+const ENABLED: Step = recipe_step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
 
 /// Steps from off to enabled, followed by [`ControlWord::without_job_start`].
-pub const ENABLE: [Step; 4] = [step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
+pub const ENABLE: [Step; 4] = [recipe_step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
 
 /// Steps from a fault to enabled, followed by [`ControlWord::without_job_start`]. Bit 0 stays set during the
 /// acknowledgement, so its falling edge remains available for the switch-on lock.
 pub const ACKNOWLEDGE: [Step; 5] = [
-    step(ControlWord::ACKNOWLEDGE, &[]),
-    step(ControlWord::OPERATIONAL, &[(StatusBit::Fault, false), (StatusBit::SwitchOnLock, true)]),
+    recipe_step(ControlWord::ACKNOWLEDGE, &[]),
+    recipe_step(ControlWord::OPERATIONAL, &[(StatusBit::Fault, false), (StatusBit::SwitchOnLock, true)]),
     READY,
     OPERATIONAL,
     ENABLED,
@@ -35,7 +35,7 @@ pub const ACKNOWLEDGE: [Step; 5] = [
 
 /// Steps out of the switch-on lock if bit 0 is already clear. Bit 0 is set first, since the lock needs its falling
 /// edge.
-pub const UNLOCK: [Step; 2] = [step(ControlWord::OPERATIONAL, &[]), READY];
+pub const UNLOCK: [Step; 2] = [recipe_step(ControlWord::OPERATIONAL, &[]), READY];
 
 impl Step {
     /// Returns whether the drive has reached the state of this step.

@@ -127,13 +127,13 @@ impl PositionScale {
     }
 
     /// Converts steps to turns.
-    pub fn turns(self, steps: i32) -> f64 {
+    pub fn to_turns(self, steps: i32) -> f64 {
         f64::from(steps) / self.steps_per_turn()
     }
 
     /// Converts steps to millimetres for a spindle of the given pitch.
-    pub fn millimetres(self, steps: i32, pitch: Length) -> f64 {
-        self.turns(steps) * pitch.nanometres as f64 / 1e6
+    pub fn to_millimetres(self, steps: i32, pitch: Length) -> f64 {
+        self.to_turns(steps) * pitch.nanometres as f64 / 1e6
     }
 }
 
@@ -186,16 +186,16 @@ impl Family {
 
 /// Splits a position with 65536 steps per turn into whole turns and steps within the turn. A position of −1 is in
 /// turn −1.
-pub const fn turns(position: i32) -> (i16, u16) {
+pub const fn split_turns(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
 /// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`). Returns `None`
 /// if the result exceeds 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
-    const GRAIN: i64 = 64;
+    const REFERENCE_GRID: i64 = 64;
     let position = i64::from(position);
-    let rounded = (position.abs() + GRAIN / 2) / GRAIN * GRAIN * position.signum();
+    let rounded = (position.abs() + REFERENCE_GRID / 2) / REFERENCE_GRID * REFERENCE_GRID * position.signum();
     i32::try_from(rounded).ok()
 }
 

@@ -27,7 +27,7 @@ impl Travel {
     pub const UNKNOWN: Travel = Travel { family: None, scale: None };
 
     /// Returns the maximum number of whole steps in either direction, or `None` if the turns or the scale are unknown.
-    pub fn steps(self, reach: StepLimit) -> Option<i64> {
+    pub fn max_steps(self, reach: StepLimit) -> Option<i64> {
         let turns = self.family?.max_turns();
         Some(self.scale?.integer_steps(match reach {
             StepLimit::Position => turns,

@@ -59,7 +59,7 @@ pub enum ValueError {
 
 impl Kind {
     /// Returns the length of a number in bytes, or `None` for strings.
-    pub const fn length(self) -> Option<usize> {
+    pub const fn byte_length(self) -> Option<usize> {
         match self {
             Kind::U8 | Kind::I8 => Some(1),
             Kind::U16 | Kind::I16 => Some(2),
@@ -106,7 +106,7 @@ impl Kind {
     /// # Errors
     /// Returns [`ValueError`] if the value is not of this type.
     pub fn emit(self, value: &Value) -> Result<Vec<u8>, ValueError> {
-        let (number, length, (low, high)) = match (value, self.length(), self.limits()) {
+        let (number, length, (low, high)) = match (value, self.byte_length(), self.limits()) {
             (Value::Number(number), Some(length), Some(limits)) => (*number, length, limits),
             (Value::Text(text), None, _) => {
                 return Ok(text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' }).collect());

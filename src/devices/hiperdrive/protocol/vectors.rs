@@ -13,13 +13,13 @@ mod numbers;
 mod table;
 
 const SINGLE: Layout = Layout { topology: Topology::Adapter, pkw: true, order: ByteOrder::Little };
-const BARE: Layout = Layout { pkw: false, ..SINGLE };
+const WITHOUT_PKW: Layout = Layout { pkw: false, ..SINGLE };
 
 fn bytes(text: &str) -> Vec<u8> {
     parse_hex(text).unwrap()
 }
 
-fn word(word: u16) -> ControlWord {
+fn control_word(word: u16) -> ControlWord {
     ControlWord::parse(word).unwrap()
 }
 
@@ -54,7 +54,8 @@ fn published_control_words_match() {
         assert_eq!(format!("{:04X}", control.to_u16()), format!("{expected:04X}"));
         assert_eq!(ControlWord::parse(expected), Ok(control));
     }
-    let names = |of: u16| word(of).set_bits().map(|(bit, name)| format!("{bit} {name}")).collect::<Vec<_>>().join(", ");
+    let names =
+        |of: u16| control_word(of).set_bits().map(|(bit, name)| format!("{bit} {name}")).collect::<Vec<_>>().join(", ");
     assert_eq!(names(0x0479), "0 on, 3 enable operation, 4 no stop, 5 no pause, 6 job toggle, 10 control by PLC");
     assert_eq!(names(0x1459), "0 on, 3 enable operation, 4 clockwise, 6 run, 10 control by PLC, 12 speed mode");
     assert_eq!(names(0x0509), "0 on, 3 enable operation, 8 jog 1, 10 control by PLC");
@@ -85,11 +86,14 @@ fn the_stop_word_depends_on_the_mode() {
         (0x0509, 0x0409),
         (0x0400, 0x0400),
     ] {
-        assert_eq!(word(before).with_stop().to_u16(), stopped, "{before:04X}");
+        assert_eq!(control_word(before).with_stop().to_u16(), stopped, "{before:04X}");
     }
-    assert_eq!(word(0x0479).with_pause().to_u16(), 0x0459);
-    assert_eq!(word(0x0459).without_pause().to_u16(), 0x0479);
-    assert_eq!((word(0x1459).with_pause().to_u16(), word(0x1419).without_pause().to_u16()), (0x1459, 0x1419));
+    assert_eq!(control_word(0x0479).with_pause().to_u16(), 0x0459);
+    assert_eq!(control_word(0x0459).without_pause().to_u16(), 0x0479);
+    assert_eq!(
+        (control_word(0x1459).with_pause().to_u16(), control_word(0x1419).without_pause().to_u16()),
+        (0x1459, 0x1419)
+    );
 }
 
 /// Reference 3 and 8.10: a job starts on a difference of levels, a run on an edge, and neither while a condition is
@@ -116,7 +120,7 @@ fn words_start_a_job_or_a_run() {
         ("jog 1 kept", 0x0509, 0x0509, 0x2A37, None),
     ];
     for (label, before, now, says, expected) in cases {
-        assert_eq!(word(now).motion_start(word(before), status(says)), expected, "{label}");
+        assert_eq!(control_word(now).motion_start(control_word(before), status(says)), expected, "{label}");
     }
 }
 
@@ -184,7 +188,11 @@ fn the_state_machine_matches_the_reference() {
         (Locked, 0x0400, 0x0400, Locked),
     ];
     for (from, before, now, to) in cases {
-        assert_eq!(from.after_control_word(word(before), word(now)), to, "{from}: {before:04X} {now:04X}");
+        assert_eq!(
+            from.after_control_word(control_word(before), control_word(now)),
+            to,
+            "{from}: {before:04X} {now:04X}"
+        );
     }
     for (from, trigger, to) in [
         (Enabled, Trigger::Starts, Moving),
@@ -205,7 +213,12 @@ fn the_state_machine_matches_the_reference() {
     {
         for row in state.transitions() {
             let Some(control) = row.word else { continue };
-            assert_eq!(state.after_control_word(word(kept), control), row.to, "{state} by {:04X}", control.to_u16());
+            assert_eq!(
+                state.after_control_word(control_word(kept), control),
+                row.to,
+                "{state} by {:04X}",
+                control.to_u16()
+            );
         }
     }
 }
@@ -254,7 +267,7 @@ fn recipes_reach_their_target_state() {
 #[test]
 fn published_process_data_to_a_drive_match() {
     let setpoint = |control: u16, speed, torque, target| Setpoint {
-        control: word(control),
+        control: control_word(control),
         speed: Percent::new(speed).unwrap(),
         torque: Percent::new(torque).unwrap(),
         target,
@@ -274,7 +287,7 @@ fn published_process_data_to_a_drive_match() {
     for (text, setpoint) in cases {
         let bare = OutputImage { drives: vec![setpoint.into()], pkw: None };
         assert_eq!(
-            (hex(&bare.emit(BARE)), OutputImage::parse(&bytes(text), BARE)),
+            (hex(&bare.emit(WITHOUT_PKW)), OutputImage::parse(&bytes(text), WITHOUT_PKW)),
             (text.to_owned(), Ok(bare.clone()))
         );
         let with = OutputImage { pkw: Some(Pkw::default()), ..bare };
@@ -283,13 +296,13 @@ fn published_process_data_to_a_drive_match() {
     }
     // 0400, 0 %, 100000 = 186A0h.
     let actual = ActualValues { status: status(0x3E37), speed: 0, position: 100_000 };
-    let image = OutputImage { drives: vec![Setpoint::standing(actual).into()], pkw: None };
-    assert_eq!(hex(&image.emit(BARE)), "00 04 00 00 A0 86 01 00");
-    let big = Layout { order: ByteOrder::Big, ..BARE };
+    let image = OutputImage { drives: vec![Setpoint::holding(actual).into()], pkw: None };
+    assert_eq!(hex(&image.emit(WITHOUT_PKW)), "00 04 00 00 A0 86 01 00");
+    let big = Layout { order: ByteOrder::Big, ..WITHOUT_PKW };
     let image = OutputImage { drives: vec![setpoint(0x0479, 100, 100, 163_840).into()], pkw: None };
     assert_eq!(hex(&image.emit(big)), "04 79 64 64 00 02 80 00");
     assert_eq!(OutputImage::parse(&bytes("04 79 64 64 00 02 80 00"), big), Ok(image));
-    let odd = OutputImage::parse(&bytes("7F 04 64 FF 00 00 00 00"), BARE).unwrap().drives[0];
+    let odd = OutputImage::parse(&bytes("7F 04 64 FF 00 00 00 00"), WITHOUT_PKW).unwrap().drives[0];
     assert_eq!((odd.control_word(), odd.torque), (Err(ReservedBitsError { word: 0x047F }), 255));
     assert_eq!((Percent::new(101), Percent::new(100)), (None, Some(Percent::FULL)));
 }
@@ -305,11 +318,14 @@ fn published_process_data_from_a_drive_match() {
     ];
     for (text, word, speed, position) in cases {
         let image = InputImage { drives: vec![ActualValues { status: status(word), speed, position }], pkw: None };
-        assert_eq!((hex(&image.emit(BARE)), InputImage::parse(&bytes(text), BARE)), (text.to_owned(), Ok(image)));
+        assert_eq!(
+            (hex(&image.emit(WITHOUT_PKW)), InputImage::parse(&bytes(text), WITHOUT_PKW)),
+            (text.to_owned(), Ok(image))
+        );
     }
-    let actual = InputImage::parse(&bytes(cases[0].0), BARE).unwrap().drives[0];
+    let actual = InputImage::parse(&bytes(cases[0].0), WITHOUT_PKW).unwrap().drives[0];
     assert_eq!((actual.status.state(), SpeedScale::FACTORY.rpm(actual.speed)), (State::Moving, 80.0));
-    assert_eq!(turns(actual.position), (1, 34_464));
+    assert_eq!(split_turns(actual.position), (1, 34_464));
 }
 
 /// Reference 2: 16 and 8 bytes for an adapter, 40 and 72 for the hubs, 8 less without parameter words, which are at 32
@@ -319,10 +335,10 @@ fn published_lengths_match() {
     let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };
     let [single, four, eight] = Topology::ALL;
     for (topology, with) in [(single, 16), (four, 40), (eight, 72)] {
-        assert_eq!((layout(topology, true).length(), layout(topology, false).length()), (with, with - 8));
+        assert_eq!((layout(topology, true).byte_length(), layout(topology, false).byte_length()), (with, with - 8));
         for pkw in [true, false] {
             let layout = layout(topology, pkw);
-            assert_eq!(Layout::all_with_length(layout.length()).collect::<Vec<_>>(), [layout]);
+            assert_eq!(Layout::all_with_length(layout.byte_length()).collect::<Vec<_>>(), [layout]);
         }
         assert_eq!(Topology::from_category(topology.category()), Some(topology));
     }
@@ -350,7 +366,7 @@ proptest! {
         let says = status(says);
         let direction = if clockwise { Direction::Clockwise } else { Direction::Counterclockwise };
         let end = if endless { RunEnd::Endless } else { RunEnd::RangeEnd };
-        let before = word(from & !0xE806);
+        let before = control_word(from & !0xE806);
         for control in [
             ControlWord::without_job_start(says),
             ControlWord::with_job_start(says),
@@ -370,7 +386,7 @@ proptest! {
     fn every_image_round_trips(data: Vec<u8>, big: bool) {
         let order = if big { ByteOrder::Big } else { ByteOrder::Little };
         for layout in Topology::ALL.into_iter().flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order })) {
-            let data: Vec<u8> = data.iter().copied().chain(std::iter::repeat(0xA5)).take(layout.length()).collect();
+            let data: Vec<u8> = data.iter().copied().chain(std::iter::repeat(0xA5)).take(layout.byte_length()).collect();
             prop_assert_eq!(OutputImage::parse(&data, layout).unwrap().emit(layout), data.clone());
             prop_assert_eq!(InputImage::parse(&data, layout).unwrap().emit(layout), data);
         }
@@ -378,7 +394,7 @@ proptest! {
 
     #[test]
     fn arbitrary_bytes_never_panic(data: Vec<u8>) {
-        for layout in Layout::all_with_length(data.len()).chain([SINGLE, BARE]) {
+        for layout in Layout::all_with_length(data.len()).chain([SINGLE, WITHOUT_PKW]) {
             let _ = (OutputImage::parse(&data, layout), InputImage::parse(&data, layout));
         }
         for row in PARAMETERS {

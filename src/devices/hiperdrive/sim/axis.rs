@@ -52,7 +52,7 @@ pub(super) enum AxisSetpoint {
 
 impl AxisSetpoint {
     /// Returns the effective demand on a drive at the given position after applying a defect.
-    pub(super) fn with(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
+    pub(super) fn with_defect(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
         let turned = |speed: f64| if defect == Some(DriveDefect::Reversed) { -speed } else { speed };
         match (self, defect) {
             (wanted, None | Some(DriveDefect::SaysOutside)) | (wanted @ AxisSetpoint::Rest, _) => wanted,
@@ -80,7 +80,7 @@ const TICK_S: f64 = 1e-3;
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
-    pub(super) const fn at(place: f64) -> Self {
+    pub(super) const fn at_position(place: f64) -> Self {
         Axis { place, speed: 0.0 }
     }
 

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::axis::{DriveDefect, SpindleLoad};
-use super::station::RESETS;
+use super::station::RESET_TIME;
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEEDS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
 use crate::expected::{AllowedValues, Quantity};
@@ -26,7 +26,7 @@ parameters! {
         /// Whether each port has a drive; `None` means a drive in every port.
         plugged: Option<Vec<bool>> = None;
         /// Variant of the drives, given as the value of parameter 120 or by name.
-        pub(super) variant: Variant = Variant::new(7), "variant" => CustomNotation(AllowedValues::Variant, variant);
+        pub(super) variant: Variant = Variant::new(7), "variant" => CustomNotation(AllowedValues::Variant, parse_variant);
         /// Value of parameter 152, by default the factory setting.
         pub(super) requested: Option<bool> = None, "requested" => OptionalValue(Keywords(&[("0", false), ("1", true)]));
         /// Position of the drives, in steps of 65536 per turn.
@@ -45,16 +45,16 @@ parameters! {
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => DecimalNumbers(Quantity::Celsius, -40.0..=120.0);
         /// Position of switch S3. Nothing can be moved over the bus unless it is 0.
         pub(super) s3: u8 = 0, "s3" => WholeNumbers(Quantity::SwitchPosition, 0..=9);
-        pub(super) switch: u8 = 0, "switch" => CustomNotation(AllowedValues::SwitchDigits, switch);
+        pub(super) switch: u8 = 0, "switch" => CustomNotation(AllowedValues::SwitchDigits, parse_switches);
         pub(super) volts: f64 = 24.0, "supply" => DecimalNumbers(Quantity::Volts, 0.0..=100.0);
         /// Duration of a reset of all drives (47 = −4). The reply is sent afterwards.
-        pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
+        pub(super) resets: Duration = RESET_TIME, "reset" => Milliseconds(0..=8000);
         /// Serial number, parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => WholeNumbers(Quantity::Number, 0..=u16::MAX);
         /// Product name, parameter 15.
         pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => CustomNotation(AllowedValues::Ascii { most: 32 }, name);
         /// Byte order of numbers in process data (`U`).
-        pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
+        pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::KEYWORDS;
         /// Whether parameter strings are preceded by their length (`U`).
         pub(super) counted_texts: bool = false, "text" => Keywords(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
@@ -73,7 +73,7 @@ impl Config {
     /// Returns an error that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::Device("HIPERDRIVE"), pairs)?;
-        config.plugged = config.drives.take().map(|drives| places(&drives, config.topology)).transpose()?;
+        config.plugged = config.drives.take().map(|drives| parse_ports(&drives, config.topology)).transpose()?;
         Ok(config)
     }
 
@@ -90,7 +90,7 @@ impl Config {
     }
 
     fn load(&self) -> SpindleLoad {
-        let wall = self.blocked.then(|| self.place());
+        let wall = self.blocked.then(|| self.start_position());
         SpindleLoad {
             percent: self.load,
             wall_below: wall,
@@ -101,7 +101,7 @@ impl Config {
     }
 
     /// Returns the position of the drives, in steps of 65536 per turn.
-    fn place(&self) -> f64 {
+    fn start_position(&self) -> f64 {
         f64::from(self.position)
     }
 }
@@ -109,12 +109,12 @@ impl Config {
 /// Allowed words for the topology of a hub.
 const HUBS: Keywords<Topology> = Keywords(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
 
-fn variant(text: &str) -> Option<Variant> {
+fn parse_variant(text: &str) -> Option<Variant> {
     let row = VARIANTS.iter().find(|row| row.name == text || row.variant.number().to_string() == text);
     row.map(|row| row.variant)
 }
 
-fn switch(text: &str) -> Option<u8> {
+fn parse_switches(text: &str) -> Option<u8> {
     parse_whole(text).and_then(AddressSwitch::parse).map(AddressSwitch::number)
 }
 
@@ -123,7 +123,7 @@ fn name(text: &str) -> Option<String> {
     fits.then(|| text.to_owned())
 }
 
-fn places(text: &str, topology: Topology) -> Result<Vec<bool>, RejectedParameter> {
+fn parse_ports(text: &str, topology: Topology) -> Result<Vec<bool>, RejectedParameter> {
     let count = topology.drives();
     let place = |own: &str| match own.trim() {
         "1" => Some(true),
@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn a_station_has_its_configured_settings() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
-        let mut station = Station::of(&read(query).unwrap());
+        let mut station = Station::from_config(&read(query).unwrap());
         let mut value = |number| station.read(Moment::START, ParameterNumber::new(number).unwrap()).ok();
         for (number, expected) in [(9, 235), (12, 17), (17, 16), (120, 0), (220, 13), (252, 1), (207, -100), (266, 200)]
         {
@@ -227,16 +227,16 @@ mod tests {
 
     /// Moves the first drive as far as possible towards a target. Returns its last status and newest error.
     fn move_to_target(query: &str) -> (u16, Option<ErrorCode>) {
-        let mut station = Station::of(&read(query).unwrap());
+        let mut station = Station::from_config(&read(query).unwrap());
         let mut now = Moment::START;
         station.open(now, Duration::from_secs(60));
         for control in [0x0400, 0x0401, 0x0409, 0x0439, 0x0479] {
             let out = OutputData { control, speed: 100, torque: 100, target: 65536 };
-            station.cyclic(now, &OutputImage { drives: vec![out], pkw: None }, true);
+            station.handle_process_data(now, &OutputImage { drives: vec![out], pkw: None }, true);
             now = now + Duration::from_secs(4);
         }
         let drive = station.drive(DriveNumber::FIRST).unwrap();
-        let status = drive.actual(now).status;
+        let status = drive.actual_values(now).status;
         let error = match drive.read(now, 108) {
             Some(Value::Number(0)) | None => None,
             Some(Value::Number(code)) => Some(ErrorCode::new(u16::try_from(code).unwrap())),
@@ -251,7 +251,7 @@ mod tests {
         for (query, status, error) in [
             ("", 0x2E37, None),
             ("load=90", 0x2E37, None),
-            ("load=101", 0x2AB8, Some(ErrorCode::FOLLOWING)),
+            ("load=101", 0x2AB8, Some(ErrorCode::FOLLOWING_ERROR)),
             ("blocked=on", 0x2AB8, Some(ErrorCode::BLOCK_FORWARD)),
             ("blocked=on&position=70000", 0x2AB8, Some(ErrorCode::BLOCK_REVERSE)),
             ("temperature=85", 0x2AB8, Some(ErrorCode::OVER_TEMPERATURE)),

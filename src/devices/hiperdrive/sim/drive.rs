@@ -15,7 +15,8 @@ use std::collections::VecDeque;
 use super::axis::{Axis, AxisSetpoint, DriveDefect, SpindleLoad, TICK, TURN, TickOutcome};
 use super::memory::Memory;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REQUESTED, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
+    DENOMINATOR, LOWER_LIMIT, MAXIMUM_SPEED, NUMERATOR, REQUESTED_BY_BUS, SPEED_DENOMINATOR, SPEED_NUMERATOR,
+    UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{
     ActualValues, ControlBit, ControlWord, ErrorCode, Family, MotionStart, OutputData, PositionScale, SpeedScale,
@@ -81,8 +82,8 @@ const HELD_MS: u32 = 200;
 const WEAK_MS: u32 = 500;
 const HOT: f64 = 80.0;
 /// Temperature rise above ambient at full torque, in kelvin.
-const WARMING: f64 = 40.0;
-const WARMING_S: f64 = 60.0;
+const HEATING_K: f64 = 40.0;
+const WARM_UP_S: f64 = 60.0;
 
 impl Drive {
     /// Creates a drive in its factory state, switched on at the start of the clock.
@@ -90,7 +91,7 @@ impl Drive {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
             variant,
-            memory: Memory::new(topology, family, |row| row.number >= REQUESTED),
+            memory: Memory::new(topology, family, |row| row.number >= REQUESTED_BY_BUS),
             axis: Axis::default(),
             offset: 0.0,
             out: OutputData { speed: 100, torque: 100, ..OutputData::default() },
@@ -110,8 +111,8 @@ impl Drive {
         }
     }
 
-    pub fn actual(&mut self, now: Moment) -> ActualValues {
-        self.advance(now);
+    pub fn actual_values(&mut self, now: Moment) -> ActualValues {
+        self.advance_to(now);
         ActualValues {
             status: self.status(),
             speed: self.speed_scale().speed(self.axis.rpm()),
@@ -120,24 +121,24 @@ impl Drive {
     }
 
     pub fn set_load(&mut self, now: Moment, load: SpindleLoad) {
-        self.advance(now);
+        self.advance_to(now);
         self.load = load;
     }
 
     /// Turns the spindle by hand, by the given number of steps of 65536 per turn.
     pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
-        self.advance(now);
-        self.axis = Axis::at(self.axis.place() + steps);
+        self.advance_to(now);
+        self.axis = Axis::at_position(self.axis.place() + steps);
     }
 
     /// Injects an error, which is stored. If the drive is operational, the error ends the motion as a fault.
-    pub fn fail(&mut self, now: Moment, code: ErrorCode) {
-        self.advance(now);
+    pub fn inject_error(&mut self, now: Moment, code: ErrorCode) {
+        self.advance_to(now);
         self.enter_fault(code);
     }
 
     pub fn command(&mut self, now: Moment, out: OutputData) {
-        self.advance(now);
+        self.advance_to(now);
         let Ok(control) = out.control_word() else { return };
         self.out = out;
         let before = std::mem::replace(&mut self.control, control);
@@ -146,7 +147,7 @@ impl Drive {
         self.enter(self.next(before));
         self.apply_command();
         if let Some(begins) = begins {
-            self.begin(begins);
+            self.start_motion(begins);
         }
     }
 
@@ -156,7 +157,7 @@ impl Drive {
     }
 
     pub(super) fn reset(&mut self, now: Moment) {
-        self.advance(now);
+        self.advance_to(now);
         self.axis.halt();
         self.clear_faults();
         self.out = OutputData { speed: 100, torque: 100, ..OutputData::default() };
@@ -207,21 +208,23 @@ impl Drive {
     }
 
     pub(super) fn scale(&self) -> PositionScale {
-        PositionScale::new(self.word(NUMERATOR), self.word(DENOMINATOR)).unwrap_or(PositionScale::FACTORY)
+        PositionScale::new(self.parameter_word(NUMERATOR), self.parameter_word(DENOMINATOR))
+            .unwrap_or(PositionScale::FACTORY)
     }
 
     fn speed_scale(&self) -> SpeedScale {
-        SpeedScale::new(self.word(SPEED_NUMERATOR), self.word(SPEED_DENOMINATOR)).unwrap_or(SpeedScale::FACTORY)
+        SpeedScale::new(self.parameter_word(SPEED_NUMERATOR), self.parameter_word(SPEED_DENOMINATOR))
+            .unwrap_or(SpeedScale::FACTORY)
     }
 
     pub(super) fn limits(&self) -> (i32, i32) {
         let limit = |number| self.memory.get(number).and_then(|value| i32::try_from(value).ok()).unwrap_or_default();
-        (limit(LOWER), limit(UPPER))
+        (limit(LOWER_LIMIT), limit(UPPER_LIMIT))
     }
 
     /// Handles the loss of the master, which is a fault for an operational drive.
-    pub(super) fn abandon(&mut self, now: Moment) {
-        self.advance(now);
+    pub(super) fn handle_master_loss(&mut self, now: Moment) {
+        self.advance_to(now);
         if self.state.after_event(Trigger::Fails) == State::Fault && self.state != State::Fault {
             self.enter_fault(ErrorCode::CONNECTION_TIMEOUT);
         }
@@ -240,16 +243,16 @@ impl Drive {
         self.enter(self.state.after_event(Trigger::Fails));
     }
 
-    fn word(&self, number: u16) -> u16 {
+    fn parameter_word(&self, number: u16) -> u16 {
         self.memory.get(number).and_then(|value| u16::try_from(value).ok()).unwrap_or_default()
     }
 
-    fn location_of(&self, position: i32) -> f64 {
+    fn mechanical_position(&self, position: i32) -> f64 {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
 
     /// Advances the simulation to a moment in steps of one millisecond. An earlier moment has no effect.
-    pub(super) fn advance(&mut self, now: Moment) {
+    pub(super) fn advance_to(&mut self, now: Moment) {
         while self.at + TICK <= now {
             let ticks = if self.is_settled() { now.duration_since(self.at).as_millis().max(1) } else { 1 };
             let ticks = u32::try_from(ticks).unwrap_or(u32::MAX);
@@ -274,18 +277,18 @@ impl Drive {
 
     /// Returns whether the drive is requested and S3 does not select a drive.
     fn may_move(&self) -> bool {
-        self.allowed && self.memory.get(REQUESTED) == Some(1)
+        self.allowed && self.memory.get(REQUESTED_BY_BUS) == Some(1)
     }
 
     fn tick(&mut self, ticks: u32) {
         self.enter(self.next(self.control));
         if let Some(MotionStart::Job) = self.control.motion_start(self.control, self.status()) {
-            self.begin(MotionStart::Job);
+            self.start_motion(MotionStart::Job);
         }
         let torque = effective_torque(self.speed_and_torque().1);
         let wants = !matches!(self.motion, Motion::Rest | Motion::Paused { .. });
         let weak = wants && torque < self.load.percent;
-        let wanted = if weak { AxisSetpoint::Rest } else { self.wanted() };
+        let wanted = if weak { AxisSetpoint::Rest } else { self.demanded_setpoint() };
         let came = self.axis.tick(wanted, &self.load);
         self.heat_up(if self.is_at_rest() { 0 } else { torque }, ticks);
         let stuck = weak || matches!(came, TickOutcome::Held { .. });
@@ -294,7 +297,7 @@ impl Drive {
             TickOutcome::Held { above } if self.stuck_ms >= HELD_MS => {
                 self.enter_fault(if above { ErrorCode::BLOCK_FORWARD } else { ErrorCode::BLOCK_REVERSE });
             }
-            _ if weak && self.stuck_ms >= WEAK_MS => self.enter_fault(ErrorCode::FOLLOWING),
+            _ if weak && self.stuck_ms >= WEAK_MS => self.enter_fault(ErrorCode::FOLLOWING_ERROR),
             TickOutcome::There if wants && !weak => {
                 self.target_reached |= matches!(self.motion, Motion::Job { .. });
                 self.motion = Motion::Rest;
@@ -303,15 +306,16 @@ impl Drive {
         }
     }
 
-    fn wanted(&self) -> AxisSetpoint {
-        let rpm = f64::from(self.word(MAXIMUM_SPEED)) / 10.0 * f64::from(self.speed_and_torque().0.min(100)) / 100.0;
+    fn demanded_setpoint(&self) -> AxisSetpoint {
+        let rpm = f64::from(self.parameter_word(MAXIMUM_SPEED)) / 10.0 * f64::from(self.speed_and_torque().0.min(100))
+            / 100.0;
         let speed = rpm / 60.0 * TURN;
         let wanted = match self.motion {
             Motion::Rest | Motion::Paused { .. } => AxisSetpoint::Rest,
             Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => AxisSetpoint::Place { at, speed },
             Motion::Run { to: None, clockwise } => AxisSetpoint::Speed(if clockwise { speed } else { -speed }),
         };
-        wanted.with(self.load.defect, self.axis.place())
+        wanted.with_defect(self.load.defect, self.axis.place())
     }
 
     const fn speed_and_torque(&self) -> (u8, u8) {
@@ -322,8 +326,8 @@ impl Drive {
     }
 
     fn heat_up(&mut self, torque: u8, ticks: u32) {
-        let ends = self.load.ambient + WARMING * f64::from(torque) / 100.0;
-        let left = (-f64::from(ticks) * TICK.as_secs_f64() / WARMING_S).exp();
+        let ends = self.load.ambient + HEATING_K * f64::from(torque) / 100.0;
+        let left = (-f64::from(ticks) * TICK.as_secs_f64() / WARM_UP_S).exp();
         let before = self.celsius;
         self.celsius = ends + (before - ends) * left;
         if self.celsius >= HOT && (before < HOT || torque > 0) && self.state != State::Fault {
@@ -359,10 +363,10 @@ impl Drive {
         };
     }
 
-    fn begin(&mut self, begins: MotionStart) {
+    fn start_motion(&mut self, begins: MotionStart) {
         let (low, high) = self.limits();
         let jog = |step: u16, speed: u16, torque: u16| {
-            let percent = |number| u8::try_from(self.word(number)).unwrap_or_default();
+            let percent = |number| u8::try_from(self.parameter_word(number)).unwrap_or_default();
             let step = self.memory.get(step).and_then(|step| i32::try_from(step).ok()).unwrap_or_default();
             (self.position().saturating_add(step), Some(Jog { speed: percent(speed), torque: percent(torque) }))
         };
@@ -371,21 +375,21 @@ impl Drive {
                 let clockwise = self.control.is_set(ControlBit::NoStop);
                 // A drive beyond the end of its range runs neither further nor back.
                 let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
-                let to = (!self.control.is_set(ControlBit::NoPause)).then(|| self.location_of(end));
-                return self.moves(Motion::Run { to, clockwise });
+                let to = (!self.control.is_set(ControlBit::NoPause)).then(|| self.mechanical_position(end));
+                return self.set_motion(Motion::Run { to, clockwise });
             }
             MotionStart::Job => (self.out.target, None),
             MotionStart::JogOne => jog(170, 172, 174),
             MotionStart::JogTwo => jog(176, 178, 180),
         };
         if (low..=high).contains(&target) {
-            self.moves(Motion::Job { at: self.location_of(target), jog });
+            self.set_motion(Motion::Job { at: self.mechanical_position(target), jog });
         } else if jog.is_some() || (self.out.speed > 0 && self.out.torque > 0) {
             self.enter_fault(ErrorCode::INVALID_TARGET);
         }
     }
 
-    fn moves(&mut self, motion: Motion) {
+    fn set_motion(&mut self, motion: Motion) {
         let before = std::mem::replace(&mut self.motion, motion);
         let (speed, torque) = self.speed_and_torque();
         if speed == 0 || torque == 0 || !self.may_move() {

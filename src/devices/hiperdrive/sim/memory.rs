@@ -31,14 +31,14 @@ impl Memory {
         self.now.get(&number).copied()
     }
 
-    pub(super) fn set(&mut self, number: u16, value: i64) {
+    pub(super) fn set_value(&mut self, number: u16, value: i64) {
         if let Some(held) = self.now.get_mut(&number) {
             *held = value;
         }
     }
 
     pub(super) fn preset(&mut self, number: u16, value: i64) {
-        self.set(number, value);
+        self.set_value(number, value);
         self.save();
     }
 
@@ -55,10 +55,10 @@ impl Memory {
 
     /// Restores the saved values after a power failure or a reset. Values that are never saved get their factory
     /// settings. A position that was set is kept, since a reset has no effect on it (manual, 198).
-    pub(super) fn restart(&mut self) {
+    pub(super) fn handle_restart(&mut self) {
         let reference = self.get(REFERENCE);
         self.now = self.kept.clone();
-        reference.into_iter().for_each(|position| self.set(REFERENCE, position));
+        reference.into_iter().for_each(|position| self.set_value(REFERENCE, position));
     }
 
     /// Handles 47 = −2, which restores the last saved values that the adapter or hub itself stores.
@@ -73,7 +73,7 @@ impl Memory {
     }
 
     /// Restores all factory settings without saving them.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn restore_factory(&mut self) {
         self.now = self.factory.clone();
     }
 }

@@ -29,7 +29,7 @@ mod write_fault;
 pub use axis::{DriveDefect, SpindleLoad};
 pub use config::Config;
 pub use drive::Drive;
-pub use parameters::Refused;
+pub use parameters::ParameterError;
 pub use station::{Station, StationConfig};
 pub use target::{Target, TrafficCounters};
 pub use write_fault::WriteFault;

@@ -7,36 +7,36 @@ use super::axis::TURN;
 use super::drive::Drive;
 use crate::buses::ethernet_ip::protocol::GeneralStatus;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    ACKNOWLEDGE, CONTROL, LOWER, NEWEST_ERROR, OLDEST_ERROR, POSITION, REFERENCE, REQUESTED, RESET, SPEED, SPEED_SHARE,
-    STATUS, TARGET, TORQUE_SHARE, UPPER, VARIANT,
+    ACKNOWLEDGE, CONTROL, LOWER_LIMIT, NEWEST_ERROR, OLDEST_ERROR, POSITION, REFERENCE, REQUESTED_BY_BUS, RESET, SPEED,
+    SPEED_SHARE, STATUS, TARGET, TORQUE_SHARE, UPPER_LIMIT, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{ErrorCode, PkwError, Value, nearest_reference};
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refused {
+pub enum ParameterError {
     Unknown,
     ReadOnly,
     Value,
     State,
 }
 
-impl Refused {
+impl ParameterError {
     pub const fn status(self) -> GeneralStatus {
         match self {
-            Refused::Unknown => GeneralStatus::NO_ATTRIBUTE,
-            Refused::ReadOnly => GeneralStatus::NOT_SETTABLE,
-            Refused::Value => GeneralStatus::INVALID_VALUE,
-            Refused::State => GeneralStatus::STATE,
+            ParameterError::Unknown => GeneralStatus::NO_ATTRIBUTE,
+            ParameterError::ReadOnly => GeneralStatus::NOT_SETTABLE,
+            ParameterError::Value => GeneralStatus::INVALID_VALUE,
+            ParameterError::State => GeneralStatus::STATE,
         }
     }
 
     pub const fn error(self) -> PkwError {
         match self {
-            Refused::Unknown => PkwError::NO_PARAMETER,
-            Refused::ReadOnly => PkwError::READ_ONLY,
-            Refused::Value => PkwError::RANGE,
-            Refused::State => PkwError::STATE,
+            ParameterError::Unknown => PkwError::NO_PARAMETER,
+            ParameterError::ReadOnly => PkwError::READ_ONLY,
+            ParameterError::Value => PkwError::RANGE,
+            ParameterError::State => PkwError::STATE,
         }
     }
 }
@@ -44,7 +44,7 @@ impl Refused {
 impl Drive {
     /// Returns a parameter, given its number for drive 1.
     pub(super) fn read(&mut self, now: Moment, number: u16) -> Option<Value> {
-        let actual = self.actual(now);
+        let actual = self.actual_values(now);
         let text = |text: &str| Some(Value::Text(text.to_owned()));
         let value = match number {
             CONTROL => self.out.control.into(),
@@ -80,19 +80,19 @@ impl Drive {
     /// Returns whether writing this value restarts the drive. A change of 152 from 0 to 1 does, and so does any write
     /// to 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
-        number == RESET || (number, value) == (REQUESTED, 1) && self.memory.get(REQUESTED) == Some(0)
+        number == RESET || (number, value) == (REQUESTED_BY_BUS, 1) && self.memory.get(REQUESTED_BY_BUS) == Some(0)
     }
 
     /// Writes a parameter, given its number for drive 1, after its range has been checked.
-    pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), Refused> {
-        self.advance(now);
+    pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), ParameterError> {
+        self.advance_to(now);
         let mut out = self.out;
         match number {
-            CONTROL => out.control = u16::try_from(value).map_err(|_| Refused::Value)?,
-            SPEED_SHARE => out.speed = u8::try_from(value).map_err(|_| Refused::Value)?,
-            TORQUE_SHARE => out.torque = u8::try_from(value).map_err(|_| Refused::Value)?,
-            TARGET => out.target = i32::try_from(value).map_err(|_| Refused::Value)?,
-            LOWER | UPPER => return self.write_limit(number, value),
+            CONTROL => out.control = u16::try_from(value).map_err(|_| ParameterError::Value)?,
+            SPEED_SHARE => out.speed = u8::try_from(value).map_err(|_| ParameterError::Value)?,
+            TORQUE_SHARE => out.torque = u8::try_from(value).map_err(|_| ParameterError::Value)?,
+            TARGET => out.target = i32::try_from(value).map_err(|_| ParameterError::Value)?,
+            LOWER_LIMIT | UPPER_LIMIT => return self.write_limit(number, value),
             ACKNOWLEDGE => {
                 self.clear_faults();
                 return Ok(());
@@ -100,17 +100,17 @@ impl Drive {
             REFERENCE => return self.write_position(value),
             RESET => {
                 if value == 1 {
-                    self.memory.forget();
+                    self.memory.restore_factory();
                     self.invalidate_position();
                 } else {
-                    self.memory.restart();
+                    self.memory.handle_restart();
                 }
                 self.reset(now);
                 return Ok(());
             }
             _ => {
                 let resets = self.is_reset_by(number, value);
-                self.memory.set(number, value);
+                self.memory.set_value(number, value);
                 if resets {
                     self.reset(now);
                 }
@@ -122,27 +122,27 @@ impl Drive {
     }
 
     /// Writes a limit. Limit 160 must be above limit 158, with the position between them.
-    fn write_limit(&mut self, number: u16, value: i64) -> Result<(), Refused> {
+    fn write_limit(&mut self, number: u16, value: i64) -> Result<(), ParameterError> {
         let (low, high) = self.limits();
-        let (low, high) = if number == LOWER { (value, high.into()) } else { (low.into(), value) };
+        let (low, high) = if number == LOWER_LIMIT { (value, high.into()) } else { (low.into(), value) };
         if low >= high || !(low..=high).contains(&self.position().into()) {
-            return Err(self.refuses());
+            return Err(self.state_refusal());
         }
-        self.memory.set(number, value);
+        self.memory.set_value(number, value);
         Ok(())
     }
 
     /// Sets the position to the nearest multiple of 64.
-    fn write_position(&mut self, value: i64) -> Result<(), Refused> {
+    fn write_position(&mut self, value: i64) -> Result<(), ParameterError> {
         let (low, high) = self.limits();
         let inside = |position: &i32| (low..=high).contains(position);
         let position = i32::try_from(value).ok().and_then(nearest_reference).filter(inside);
-        let Some(position) = position else { return Err(self.refuses()) };
+        let Some(position) = position else { return Err(self.state_refusal()) };
         if !self.is_at_rest() {
-            return Err(Refused::State);
+            return Err(ParameterError::State);
         }
         self.offset = f64::from(position) / self.scale().steps_per_turn() * TURN - self.axis.place();
-        self.memory.set(REFERENCE, position.into());
+        self.memory.set_value(REFERENCE, position.into());
         Ok(())
     }
 
@@ -151,9 +151,9 @@ impl Drive {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
 
-    pub(super) fn refuses(&mut self) -> Refused {
+    pub(super) fn state_refusal(&mut self) -> ParameterError {
         self.enter_fault(ErrorCode::INVALID_VALUE);
-        Refused::Value
+        ParameterError::Value
     }
 }
 

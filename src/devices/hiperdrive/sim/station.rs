@@ -14,12 +14,12 @@ use super::axis::{Axis, SpindleLoad};
 use super::config::Config;
 use super::drive::Drive;
 use super::memory::Memory;
-use super::parameters::Refused;
+use super::parameters::ParameterError;
 use super::write_fault::{ActiveWriteFault, WriteFault};
-use crate::devices::hiperdrive::protocol::drive_parameter::{MAXIMUM_SPEED, REQUESTED, SERVICE, VARIANT};
+use crate::devices::hiperdrive::protocol::drive_parameter::{MAXIMUM_SPEED, REQUESTED_BY_BUS, SERVICE, VARIANT};
 use crate::devices::hiperdrive::protocol::{
-    Access, ActualValues, DriveNumber, Family, InputImage, OutputData, OutputImage, ParameterNumber, ParameterRow, Pkw,
-    Topology, Travel, Value, Variant,
+    ActualValues, DriveNumber, Family, InputImage, OutputData, OutputImage, ParameterAccess, ParameterNumber,
+    ParameterRow, Pkw, Topology, Travel, Value, Variant,
 };
 use crate::units::Moment;
 
@@ -77,9 +77,9 @@ struct Master {
 }
 
 /// Duration of a save, chosen within the time given by the manual.
-const SAVES: Duration = Duration::from_millis(150);
+const SAVE_TIME: Duration = Duration::from_millis(150);
 /// Duration of a reset of all drives, unless the settings specify another.
-pub(super) const RESETS: Duration = Duration::from_secs(1);
+pub(super) const RESET_TIME: Duration = Duration::from_secs(1);
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for StationConfig {
@@ -109,15 +109,15 @@ impl Station {
             answers_at: None,
             words: Default::default(),
             answers: None,
-            resets: RESETS,
+            resets: RESET_TIME,
             plate,
             store: Store::default(),
             hindered: ActiveWriteFault::default(),
         }
     }
 
-    pub fn of(config: &Config) -> Self {
-        let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
+    pub fn from_config(config: &Config) -> Self {
+        let drives = DriveNumber::all_for(config.topology).map(|number| config.drive(number)).collect();
         let setup = StationConfig { topology: config.topology, drives, serial_number: config.serial_number };
         let mut station = Station::new(setup);
         station.plate = StationIdentity {
@@ -127,9 +127,9 @@ impl Station {
         };
         station.store.dies_in = config.faults.failing_store();
         station.resets = config.resets;
-        for drive in station.present() {
-            drive.axis = Axis::at(config.position.into());
-            config.requested.iter().for_each(|requested| drive.memory.preset(REQUESTED, i64::from(*requested)));
+        for drive in station.present_drives() {
+            drive.axis = Axis::at_position(config.position.into());
+            config.requested.iter().for_each(|requested| drive.memory.preset(REQUESTED_BY_BUS, i64::from(*requested)));
             config.speed.iter().for_each(|speed| drive.memory.preset(MAXIMUM_SPEED, i64::from(*speed)));
         }
         station.set_s3(Moment::START, config.s3);
@@ -141,24 +141,24 @@ impl Station {
     }
 
     /// Returns the number of saves so far, including interrupted ones.
-    pub const fn stores(&self) -> u32 {
+    pub const fn save_count(&self) -> u32 {
         self.store.count
     }
 
     /// Returns whether the station has lost its supply and does not reply until [`power_cycle`](Self::power_cycle).
     pub fn is_dead(&mut self, now: Moment) -> bool {
-        self.advance(now);
+        self.advance_to(now);
         self.store.dead
     }
 
     /// Sets the number of the save, counted from 1, during which the supply is lost; `None` disables the loss.
-    pub const fn die_in_store(&mut self, number: Option<u32>) {
+    pub const fn fail_in_store(&mut self, number: Option<u32>) {
         self.store.dies_in = number;
     }
 
     /// Injects a failure of writes. `None` removes the failure and repairs a lost line.
     pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
-        self.hindered = ActiveWriteFault::by(what);
+        self.hindered = ActiveWriteFault::new(what);
     }
 
     pub(super) const fn is_cut_off(&self) -> bool {
@@ -172,25 +172,25 @@ impl Station {
     /// Records that a master has opened the cyclic connection. The connection is lost if no packet arrives for the
     /// given time.
     pub fn open(&mut self, now: Moment, timeout: Duration) {
-        self.advance(now);
+        self.advance_to(now);
         self.master = Some(Master { timeout, heard: now });
     }
 
     pub fn close(&mut self, now: Moment) {
-        self.advance(now);
+        self.advance_to(now);
         if self.master.take().is_some() {
-            self.present().for_each(|drive| drive.abandon(now));
+            self.present_drives().for_each(|drive| drive.handle_master_loss(now));
         }
     }
 
     pub fn is_open(&mut self, now: Moment) -> bool {
-        self.advance(now);
+        self.advance_to(now);
         self.master.is_some()
     }
 
     /// Handles process data, which are dropped without a connection and during a reset of drives.
-    pub fn cyclic(&mut self, now: Moment, image: &OutputImage, runs: bool) {
-        self.advance(now);
+    pub fn handle_process_data(&mut self, now: Moment, image: &OutputImage, runs: bool) {
+        self.advance_to(now);
         let Some(master) = &mut self.master else { return };
         master.heard = now;
         if now < self.busy_until {
@@ -204,30 +204,31 @@ impl Station {
         }
         if let Some(request) = image.pkw.filter(|request| *request != self.words.0) {
             self.words.0 = request;
-            let answer = self.answer(now, request);
+            let answer = self.reply_to(now, request);
             self.answers = Some((self.delayed_reply_time().unwrap_or(now), answer));
         }
     }
 
     pub fn image(&mut self, now: Moment) -> InputImage {
-        self.advance(now);
+        self.advance_to(now);
         if let Some((_, answer)) = self.answers.take_if(|(at, _)| *at <= now) {
             self.words.1 = answer;
         }
-        let actual =
-            |drive: &mut Option<Drive>| drive.as_mut().map_or(ActualValues::default(), |drive| drive.actual(now));
+        let actual = |drive: &mut Option<Drive>| {
+            drive.as_mut().map_or(ActualValues::default(), |drive| drive.actual_values(now))
+        };
         InputImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
 
     /// Sets switch S3. Nothing can be moved over the bus unless it is at 0.
     pub fn set_s3(&mut self, now: Moment, position: u8) {
-        self.advance(now);
-        self.present().for_each(|drive| drive.set_motion_allowed(position == 0));
+        self.advance_to(now);
+        self.present_drives().for_each(|drive| drive.set_motion_allowed(position == 0));
     }
 
     pub fn power_cycle(&mut self, now: Moment) {
-        self.advance(now);
-        self.memory.restart();
+        self.advance_to(now);
+        self.memory.handle_restart();
         (self.master, self.busy_until, self.words) = (None, now, Default::default());
         (self.answers_at, self.answers) = (None, None);
         (self.store.dies_at, self.store.dead) = (None, false);
@@ -238,18 +239,20 @@ impl Station {
     ///
     /// # Errors
     /// Returns [`Refused`] for an unknown parameter or a parameter of a missing drive.
-    pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
-        self.advance(now);
+    pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, ParameterError> {
+        self.advance_to(now);
         self.answers_at = None;
-        let row = number.row().ok_or(Refused::Unknown)?;
-        let Some(drive) = number.drive() else { return self.read_device_value(now, row).ok_or(Refused::Unknown) };
+        let row = number.row().ok_or(ParameterError::Unknown)?;
+        let Some(drive) = number.drive() else {
+            return self.read_device_value(now, row).ok_or(ParameterError::Unknown);
+        };
         if drive.get() > self.setup.topology.drives() {
-            return Err(Refused::Unknown);
+            return Err(ParameterError::Unknown);
         }
         match (self.drive(drive), row.number) {
-            (Some(drive), own) => drive.read(now, own).ok_or(Refused::Unknown),
-            (None, VARIANT | REQUESTED) => Ok(Value::Number(0)),
-            (None, _) => Err(Refused::State),
+            (Some(drive), own) => drive.read(now, own).ok_or(ParameterError::Unknown),
+            (None, VARIANT | REQUESTED_BY_BUS) => Ok(Value::Number(0)),
+            (None, _) => Err(ParameterError::State),
         }
     }
 
@@ -262,17 +265,17 @@ impl Station {
     ///
     /// # Errors
     /// Returns [`Refused`] if the write is refused. Nothing was written then.
-    pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
-        self.advance(now);
+    pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), ParameterError> {
+        self.advance_to(now);
         self.answers_at = None;
         self.hindered.write(number)?;
-        let row = number.row().ok_or(Refused::Unknown)?;
+        let row = number.row().ok_or(ParameterError::Unknown)?;
         let place = number.drive().filter(|drive| drive.get() > self.setup.topology.drives());
         match (row.access, place, value) {
-            (_, Some(_), _) => Err(Refused::Unknown),
-            (Access::Read, ..) => Err(Refused::ReadOnly),
-            _ if now < self.busy_until => Err(Refused::State),
-            (_, _, Value::Text(_)) => Err(Refused::Value),
+            (_, Some(_), _) => Err(ParameterError::Unknown),
+            (ParameterAccess::Read, ..) => Err(ParameterError::ReadOnly),
+            _ if now < self.busy_until => Err(ParameterError::State),
+            (_, _, Value::Text(_)) => Err(ParameterError::Value),
             (_, _, Value::Number(value)) => self.write_number(now, number, row, *value),
         }
     }
@@ -283,25 +286,25 @@ impl Station {
         own: ParameterNumber,
         row: &ParameterRow,
         value: i64,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ParameterError> {
         match own.drive() {
             Some(number) => {
-                let drive = self.drive(number).ok_or(Refused::State)?;
-                if row.check(own, value, drive.travel()).is_err() {
-                    return Err(drive.refuses());
+                let drive = self.drive(number).ok_or(ParameterError::State)?;
+                if row.check_value(own, value, drive.travel()).is_err() {
+                    return Err(drive.state_refusal());
                 }
                 let resets = drive.is_reset_by(row.number, value);
                 drive.write(now, row.number, value)?;
                 self.answers_at = resets.then(|| now + DRIVE_RESETS);
                 Ok(())
             }
-            None if row.check(own, value, Travel::UNKNOWN).is_err() => Err(Refused::Value),
+            None if row.check_value(own, value, Travel::UNKNOWN).is_err() => Err(ParameterError::Value),
             None if own == ParameterNumber::SAVE => {
                 self.save_or_reset(now, value);
                 Ok(())
             }
             None => {
-                self.memory.set(row.number, value);
+                self.memory.set_value(row.number, value);
                 Ok(())
             }
         }
@@ -319,7 +322,7 @@ impl Station {
         if matches!(value, 1 | -3) {
             self.store.count = self.store.count.saturating_add(1);
             if self.store.dies_in == Some(self.store.count) {
-                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::save_partially);
+                (self.store.dies_at, save) = (Some(now + SAVE_TIME / 2), Memory::save_partially);
             }
         }
         let each = |memory: &mut Memory| match value {
@@ -327,24 +330,24 @@ impl Station {
             -1 => memory.reset_device_values(),
             -2 => memory.restore_saved(),
             -3 => {
-                memory.forget();
+                memory.restore_factory();
                 save(memory);
             }
             _ => {}
         };
-        self.present().for_each(|drive| {
+        self.present_drives().for_each(|drive| {
             each(&mut drive.memory);
             if value == -3 {
                 drive.invalidate_position();
             }
         });
         each(&mut self.memory);
-        self.busy_until = now + SAVES;
+        self.busy_until = now + SAVE_TIME;
     }
 
     fn reset(&mut self, now: Moment) {
-        self.present().for_each(|drive| {
-            drive.memory.restart();
+        self.present_drives().for_each(|drive| {
+            drive.memory.handle_restart();
             drive.reset(now);
         });
     }
@@ -367,22 +370,22 @@ impl Station {
         Some(Value::Number(number))
     }
 
-    fn present(&mut self) -> impl Iterator<Item = &mut Drive> {
+    fn present_drives(&mut self) -> impl Iterator<Item = &mut Drive> {
         self.drives.iter_mut().flatten()
     }
 
     /// Executes timed events at the time they are due rather than at the next access. Examples are a loss of supply
     /// during a save and a time-out of the master.
-    fn advance(&mut self, now: Moment) {
+    fn advance_to(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;
             self.master = None;
-            self.present().for_each(|drive| drive.reset(at));
+            self.present_drives().for_each(|drive| drive.reset(at));
         }
         let Some(Master { timeout, heard }) = self.master else { return };
         if now.duration_since(heard) >= timeout {
             self.master = None;
-            self.present().for_each(|drive| drive.abandon(heard + timeout));
+            self.present_drives().for_each(|drive| drive.handle_master_loss(heard + timeout));
         }
     }
 }

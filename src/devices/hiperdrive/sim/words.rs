@@ -6,14 +6,14 @@ use crate::devices::hiperdrive::protocol::{Kind, ParameterNumber, Pkw, PkwError,
 use crate::units::Moment;
 
 impl Station {
-    pub(super) fn answer(&mut self, now: Moment, request: Pkw) -> Pkw {
+    pub(super) fn reply_to(&mut self, now: Moment, request: Pkw) -> Pkw {
         let reply = |code: u16, value: u32| Pkw { pke: code << 12 | request.number(), ind: request.ind, pwe: value };
         let refused = |error: PkwError| reply(7, error.code());
         let number = ParameterNumber::new(request.number());
         let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
             return if request.task() == Some(Task::None) { Pkw::default() } else { refused(PkwError::NO_PARAMETER) };
         };
-        let wide = row.kind.length() == Some(4);
+        let wide = row.kind.byte_length() == Some(4);
         match (request.task(), row.kind) {
             (Some(Task::None), _) => Pkw::default(),
             (Some(Task::Read), Kind::Text) => refused(PkwError::TYPE),

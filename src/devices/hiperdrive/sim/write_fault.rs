@@ -1,6 +1,6 @@
 //! Injected faults of writing a parameter.
 
-use super::parameters::Refused;
+use super::parameters::ParameterError;
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub(super) struct ActiveWriteFault {
 }
 
 impl ActiveWriteFault {
-    pub(super) const fn by(what: Option<(ParameterNumber, WriteFault)>) -> Self {
+    pub(super) const fn new(what: Option<(ParameterNumber, WriteFault)>) -> Self {
         ActiveWriteFault { fault: what, is_cut_off: false }
     }
 
@@ -26,9 +26,9 @@ impl ActiveWriteFault {
         self.is_cut_off
     }
 
-    pub(super) fn write(&mut self, number: ParameterNumber) -> Result<(), Refused> {
+    pub(super) fn write(&mut self, number: ParameterNumber) -> Result<(), ParameterError> {
         match self.fault.filter(|(own, _)| *own == number) {
-            Some((_, WriteFault::Refused)) => return Err(Refused::State),
+            Some((_, WriteFault::Refused)) => return Err(ParameterError::State),
             Some((_, WriteFault::CutOff)) => self.is_cut_off = true,
             None => {}
         }

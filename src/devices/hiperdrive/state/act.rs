@@ -3,9 +3,9 @@
 
 use std::time::Duration;
 
-use super::action::{HiperdriveAction, Motor};
+use super::action::{HiperdriveAction, MotorCommand};
 use super::staged::Edit;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use super::{explain, words};
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, HasProfile};
@@ -17,10 +17,10 @@ use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
 
 /// Interval for reading a watched temperature, which changes slowly.
-const WATCHED_EVERY: Duration = Duration::from_secs(2);
+const WATCH_INTERVAL: Duration = Duration::from_secs(2);
 
-impl Unit {
-    pub(crate) fn act(&mut self, action: HiperdriveAction, services: &mut Services) {
+impl HiperdriveDevice {
+    pub(crate) fn handle_action(&mut self, action: HiperdriveAction, services: &mut Services) {
         match action {
             HiperdriveAction::ReadStatus => {
                 self.submit(HiperdriveJob::Status, services);
@@ -31,7 +31,7 @@ impl Unit {
             HiperdriveAction::SelectDrive(drive) => {
                 if self.drives().contains(&drive) {
                     self.show_drive(drive);
-                    self.watch(services);
+                    self.update_watched(services);
                 }
             }
             HiperdriveAction::Watch(what, on) => self.watch_temperature(what, on),
@@ -42,11 +42,11 @@ impl Unit {
                     None => self.pitches.remove(&drive),
                 };
                 let ruler = self.ruler(drive);
-                if ruler.of(0, self.measure).is_none() {
+                if ruler.from_steps(0, self.measure).is_none() {
                     self.measure = super::PositionUnit::default();
                 }
             }
-            HiperdriveAction::Edit(edit) => self.edit(&edit),
+            HiperdriveAction::Edit(edit) => self.apply_edit(&edit),
             HiperdriveAction::Plan(change) => self.plan(*change, services),
             HiperdriveAction::Take => self.take_control(services),
             HiperdriveAction::Give => {
@@ -77,43 +77,45 @@ impl Unit {
         let wished = self.watched_temperatures();
         self.record.watch_temperatures(&wished);
         if let Some(line) = &self.session.line {
-            line.watch_values(wished.into_iter().map(|what| (what, WATCHED_EVERY)).collect());
+            line.watch_values(wished.into_iter().map(|what| (what, WATCH_INTERVAL)).collect());
         }
     }
 
     /// Moves a drive, or refuses with a reason if the drive may not move.
-    fn apply_motor_action(&mut self, motor: Motor, services: &mut Services) {
+    fn apply_motor_action(&mut self, motor: MotorCommand, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {
-            Motor::JogHold => return self.moves.refresh_held(),
-            Motor::JogRelease => return self.moves.release(),
-            Motor::Stop => return self.moves.stop(),
-            Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
-            Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
-            Motor::Expert(expert) => return self.moves.set_endless_allowed(drive, expert),
-            Motor::FreeOutward(direction) => return self.enable_outward_jog(drive, direction, services),
-            Motor::ConfirmLimits(drive) => {
+            MotorCommand::JogHold => return self.moves.refresh_held(),
+            MotorCommand::JogRelease => return self.moves.release(),
+            MotorCommand::Stop => return self.moves.stop(),
+            MotorCommand::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
+            MotorCommand::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
+            MotorCommand::Expert(expert) => return self.moves.set_endless_allowed(drive, expert),
+            MotorCommand::FreeOutward(direction) => return self.enable_outward_jog(drive, direction, services),
+            MotorCommand::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;
             }
-            Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
-            Motor::JogPress { direction, .. } => {
+            MotorCommand::JogPress { repeated: true, .. } | MotorCommand::SlowJogPress { repeated: true, .. } => return,
+            MotorCommand::JogPress { direction, .. } => {
                 let outward = self.moves.is_outward_jog_enabled(drive, direction);
                 MotionRequest::Jog { direction, effort: self.moves.jog_speed_torque(drive), outward }
             }
-            Motor::SlowJogPress { direction, .. } => {
+            MotorCommand::SlowJogPress { direction, .. } => {
                 let outward = self.moves.is_outward_jog_enabled(drive, direction);
                 MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward }
             }
-            Motor::Lead(goal) => MotionRequest::Lead(goal),
-            Motor::Acknowledge => MotionRequest::Acknowledge,
-            Motor::Step { by } => MotionRequest::Step { by, effort: self.moves.move_speed_torque(drive) },
-            Motor::Move { target } => MotionRequest::Move { target, effort: self.moves.move_speed_torque(drive) },
-            Motor::Run { direction, end } => {
+            MotorCommand::Lead(goal) => MotionRequest::Lead(goal),
+            MotorCommand::Acknowledge => MotionRequest::Acknowledge,
+            MotorCommand::Step { by } => MotionRequest::Step { by, effort: self.moves.move_speed_torque(drive) },
+            MotorCommand::Move { target } => {
+                MotionRequest::Move { target, effort: self.moves.move_speed_torque(drive) }
+            }
+            MotorCommand::Run { direction, end } => {
                 MotionRequest::Run { direction, end, effort: self.moves.move_speed_torque(drive) }
             }
-            Motor::Pause => MotionRequest::Pause,
-            Motor::Resume => MotionRequest::Resume,
+            MotorCommand::Pause => MotionRequest::Pause,
+            MotorCommand::Resume => MotionRequest::Resume,
         };
         if let Err(why) = self.check_motion_allowed(drive, request) {
             // The present motion continues, because nothing else has started.
@@ -139,10 +141,10 @@ impl Unit {
         self.submit(HiperdriveJob::Take, services);
     }
 
-    pub(super) fn edit(&mut self, edit: &Edit) {
+    pub(super) fn apply_edit(&mut self, edit: &Edit) {
         self.refusal = match self.session.is_writing() {
             true => Some(Text::new("session.busy")),
-            false => self.staged.edit(edit).err().map(|error| words::refused(&error)),
+            false => self.staged.apply_edit(edit).err().map(|error| words::edit_error_text(&error)),
         };
     }
 
@@ -152,7 +154,7 @@ impl Unit {
     }
 
     /// Handles a profile that was read in order to be saved to a file.
-    pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
+    pub(super) fn save_profile(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.handle_scale_change(&profile.image);
         self.staged.refresh_partially(&profile.image);
         let edits = self.is_dirty().then(|| self.staged.count());

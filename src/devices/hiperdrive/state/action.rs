@@ -25,7 +25,7 @@ pub enum HiperdriveAction {
     Take,
     Give,
     /// Moves the selected drive, or changes its state.
-    Drive(Motor),
+    Drive(MotorCommand),
     /// Sets up the axis of the selected drive.
     Axis(axis::AxisAction),
     Save(PathBuf),
@@ -33,7 +33,7 @@ pub enum HiperdriveAction {
 
 /// A motion request of the user for the selected drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motor {
+pub enum MotorCommand {
     Lead(TargetState),
     Acknowledge,
     JogPress {

@@ -27,13 +27,13 @@ mod tests;
 
 pub use act::{AxisAction, AxisButton, DriveRequest};
 pub use drive_facts::DriveFacts;
-pub use entries::{Entries, Preview, ReferencePosition};
-pub use report::{Device, report, write_outcome_lines};
+pub use entries::{LengthEntries, LimitsPreview, ReferencePosition};
+pub use report::{Device, write_outcome_lines, write_report};
 pub use supply::{Power, RestartEvidence};
-pub use test_targets::{Outcome, TestTarget, Travel};
+pub use test_targets::{JogTravel, Outcome, TestTarget};
 
 use standstill::StandstillMonitor;
-use step_outcomes::{Origin, Preconditions, StepOutcomes};
+use step_outcomes::{PositionOrigin, Preconditions, StepOutcomes};
 
 use super::ruler::Ruler;
 use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
@@ -71,7 +71,7 @@ pub enum StepStatus {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum SetupEnd {
     Done,
     Cancelled,
 }
@@ -86,14 +86,14 @@ pub enum AxisChange {
 
 #[derive(Clone, Debug)]
 pub struct RunSummary {
-    pub end: End,
+    pub end: SetupEnd,
     /// Date and time as written in the report.
     pub when: String,
     seen: Box<DriveFacts>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Confirmed {
+struct ConfirmedLimits {
     scale: Option<PositionScale>,
     seen: (i32, i32),
     /// Limits seen by the user, or the taught limits that a reviewed plan has written since.
@@ -106,12 +106,12 @@ struct Confirmed {
 pub struct Axis {
     drive: DriveNumber,
     step: AxisStep,
-    entries: Entries,
+    entries: LengthEntries,
     chain: StepOutcomes,
-    confirmed: Option<Confirmed>,
-    travel: Travel,
+    confirmed: Option<ConfirmedLimits>,
+    travel: JogTravel,
     /// Position that was set, and the origin of positions since then.
-    reference: Option<(i32, Origin)>,
+    reference: Option<(i32, PositionOrigin)>,
     sets: Option<i32>,
     standstill: StandstillMonitor,
     /// Number of times the position jumped at standstill.
@@ -146,12 +146,12 @@ impl AxisStep {
     ];
 
     /// Returns whether the step needs the cyclic connection.
-    pub const fn moves(self) -> bool {
+    pub const fn needs_cyclic(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
     /// Returns whether the drive is moved by hand in this step.
-    pub const fn jogs(self) -> bool {
+    pub const fn is_jogging(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
 
@@ -164,7 +164,7 @@ impl AxisStep {
         self as usize
     }
 
-    fn neighbour(self, by: isize) -> Option<AxisStep> {
+    fn step_by(self, by: isize) -> Option<AxisStep> {
         AxisStep::ALL.get(self.index().checked_add_signed(by)?).copied()
     }
 }
@@ -175,10 +175,10 @@ impl Axis {
         Axis {
             drive,
             step: AxisStep::Request,
-            entries: Entries::new(ruler),
+            entries: LengthEntries::new(ruler),
             chain: StepOutcomes::default(),
             confirmed: None,
-            travel: Travel::default(),
+            travel: JogTravel::default(),
             reference: None,
             sets: None,
             standstill: StandstillMonitor::default(),
@@ -204,16 +204,16 @@ impl Axis {
         self.step
     }
 
-    pub const fn entries(&self) -> &Entries {
+    pub const fn entries(&self) -> &LengthEntries {
         &self.entries
     }
 
     /// Returns how the set-up ended, or `None` while it is running.
-    pub fn end(&self) -> Option<End> {
+    pub fn setup_end(&self) -> Option<SetupEnd> {
         self.over.as_ref().map(|over| over.end)
     }
 
-    pub const fn over(&self) -> Option<&RunSummary> {
+    pub const fn run_summary(&self) -> Option<&RunSummary> {
         self.over.as_ref()
     }
 
@@ -240,15 +240,15 @@ impl Axis {
     }
 
     /// Returns how far the axis was moved by hand.
-    pub const fn travel(&self) -> Travel {
+    pub const fn travel(&self) -> JogTravel {
         self.travel
     }
 
-    pub fn reference(&self) -> Option<i32> {
+    pub fn reference_position(&self) -> Option<i32> {
         self.reference.map(|(position, _)| position)
     }
 
-    pub fn outcome(&self, place: TestTarget) -> Option<Outcome> {
+    pub fn outcome_of(&self, place: TestTarget) -> Option<Outcome> {
         self.outcomes.get(place as usize).copied().flatten()
     }
 
@@ -263,7 +263,7 @@ impl Axis {
     /// Returns the earliest step whose result the drive no longer has, if it is before the current step. That step and
     /// all later steps must be repeated.
     pub fn invalidated_step(&self) -> Option<AxisStep> {
-        self.chain.end().filter(|step| *step < self.step)
+        self.chain.first_open_step().filter(|step| *step < self.step)
     }
 
     pub fn step_status(&self, step: AxisStep) -> StepStatus {
@@ -275,7 +275,7 @@ impl Axis {
             _ if self.invalidated_step() == Some(step) => StepStatus::Failed,
             _ if is_shown => StepStatus::Now,
             _ if self.chain.is_skipped(step) => StepStatus::Skipped,
-            _ if self.chain.holds(step) => StepStatus::Done,
+            _ if self.chain.is_complete(step) => StepStatus::Done,
             _ => StepStatus::Ahead,
         }
     }
@@ -285,18 +285,18 @@ impl Axis {
         self.power.is_some_and(Power::has_survived_power_cycle)
     }
 
-    fn origin(&self, seen: &DriveFacts) -> Origin {
-        Origin::of(seen, self.jumps)
+    fn position_origin(&self, seen: &DriveFacts) -> PositionOrigin {
+        PositionOrigin::from_facts(seen, self.jumps)
     }
 
     /// Returns the present facts on which results depend.
-    fn basis(&self, seen: &DriveFacts) -> Preconditions {
+    fn preconditions(&self, seen: &DriveFacts) -> Preconditions {
         Preconditions {
             requested: seen.requested,
             scale: seen.scale,
             pitch: seen.pitch,
             confirmed: self.is_confirmed(seen),
-            origin: self.origin(seen),
+            origin: self.position_origin(seen),
             limits: seen.limits,
             lower: self.entries.lower_limit(seen.ruler()).ok(),
         }

@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
 use crate::app::connect::target::{host_and_default_port, required_entry, split_host_default_port, validated_link};
-use crate::devices::hiperdrive::jobs::check;
+use crate::devices::hiperdrive::jobs::check_link;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkScheme, LinkUrl};
@@ -49,7 +49,7 @@ const BIG_ENDIAN: (&str, &str) = ("order", "big");
 const PORT: &str = "44818";
 
 impl VirtualHub {
-    const fn word(self) -> Option<&'static str> {
+    const fn keyword(self) -> Option<&'static str> {
         match self {
             VirtualHub::Adapter => None,
             VirtualHub::Four => Some("4"),
@@ -58,7 +58,7 @@ impl VirtualHub {
     }
 
     fn from_word(word: &str) -> Option<Self> {
-        [VirtualHub::Four, VirtualHub::Eight].into_iter().find(|hub| hub.word() == Some(word))
+        [VirtualHub::Four, VirtualHub::Eight].into_iter().find(|hub| hub.keyword() == Some(word))
     }
 }
 
@@ -84,12 +84,12 @@ impl FormModel for HiperdriveForm {
             HiperdriveLinkKind::Network => (form.host, form.tcp_port) = split_host_default_port(&url.target, PORT),
             HiperdriveLinkKind::Virtual => {}
         }
-        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.fill_entry(name, value));
         form
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        validated_link(self.parameters().build_link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check_link)
     }
 
     fn set_file(&mut self, file: String) {
@@ -121,7 +121,7 @@ impl HiperdriveForm {
     }
 
     /// Fills in the entry for a parameter. Returns `false` if no entry can show the value.
-    fn take(&mut self, name: &str, value: &str) -> bool {
+    fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::from_word(value);
             self.hub = hub.unwrap_or(self.hub);
@@ -146,7 +146,7 @@ impl HiperdriveForm {
         let is_virtual = self.kind == HiperdriveLinkKind::Virtual;
         let mut parameters = Parameters::default();
         if is_virtual {
-            parameters.entry("hub", self.hub.word().unwrap_or_default());
+            parameters.entry("hub", self.hub.keyword().unwrap_or_default());
         }
         parameters.add_entered(&self.entries(), &self.typed);
         if self.big_endian {

@@ -5,7 +5,7 @@ use std::net::Ipv4Addr;
 use std::sync::Arc;
 
 use super::connect_form::{HiperdriveForm, HiperdriveLinkKind};
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::action::{Action, TaskResult};
 use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
@@ -34,7 +34,7 @@ pub struct FoundDevice {
 }
 
 impl FoundDevice {
-    fn of(found: &DiscoveredDevice) -> Self {
+    fn from_reply(found: &DiscoveredDevice) -> Self {
         let identity = &found.identity.identity;
         FoundDevice {
             address: found.address,
@@ -116,10 +116,10 @@ impl Finder for DiscoveryFinder {
                 let given = services.world.given.get::<DiscoveryStub>().cloned();
                 services.tasks.run("discover", move || {
                     let found = given.map_or_else(broadcast_discovery, |discover| (discover.0)());
-                    let found = found.map(|found| found.iter().map(FoundDevice::of).collect());
+                    let found = found.map(|found| found.iter().map(FoundDevice::from_reply).collect());
                     let found = found.map_err(|error| words::device(&error));
                     Action::Done(TaskResult::from_finder::<DiscoveryFinder>(
-                        Unit::TAB,
+                        HiperdriveDevice::TAB,
                         DiscoveryReplies { number, found },
                     ))
                 });

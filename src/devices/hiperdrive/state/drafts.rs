@@ -1,7 +1,7 @@
 //! Parameter edits that survive a crash.
 
 use super::staged::SavedEdit;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::PendingEdits;
 use crate::app::session::{HasDraft, HasSession, ProfileFile, Session};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
@@ -12,7 +12,7 @@ use crate::store::DeviceKey;
 
 pub(crate) type Edits = Vec<SavedEdit>;
 
-impl HasSession for Unit {
+impl HasSession for HiperdriveDevice {
     type Device = Hiperdrive;
 
     fn session(&self) -> &Session<Hiperdrive> {
@@ -24,7 +24,7 @@ impl HasSession for Unit {
     }
 }
 
-impl HasDraft for Unit {
+impl HasDraft for HiperdriveDevice {
     fn device_key(&self) -> Option<DeviceKey> {
         self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
@@ -47,7 +47,7 @@ impl HasDraft for Unit {
 
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<HiperdriveProfile>() else { return };
-        self.staged.saved(profile.image.clone());
+        self.staged.adopt_saved(profile.image.clone());
         self.session.apply_document(file, document);
     }
 }

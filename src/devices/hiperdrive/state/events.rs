@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::drafts::Edits;
 use super::job;
 use super::review::ReviewState;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::Services;
@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::jobs::{
     DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
 };
 use crate::devices::hiperdrive::procedures::dead_man::ActionEnd;
-use crate::devices::hiperdrive::procedures::{DriveReading, Sample};
+use crate::devices::hiperdrive::procedures::{DriveReading, PolledSample};
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
 use crate::devices::hiperdrive::sim::Target;
 use crate::devices::hiperdrive::state::TEXTS;
@@ -25,10 +25,10 @@ use crate::store::Store;
 use crate::worker::{OpenError, Session};
 
 /// Default interval for reading the position of a drive.
-const PACE: Duration = Duration::from_millis(200);
+const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
 /// Text ID of the notice that the limits of a drive under control cannot be read. The notice ends once they are read or
 /// no longer required.
-const RULES: &str = "hd_end.rules";
+const LIMITS_UNREADABLE_ID: &str = "hd_end.rules";
 
 /// Returns whether a drive in this state requires an acknowledgement before it moves.
 const fn has_failed(state: State) -> bool {
@@ -55,7 +55,7 @@ impl Kind for Hiperdrive {
     }
 
     fn job_text(job: &HiperdriveJob) -> Text {
-        job::words(job)
+        job::job_name(job)
     }
 
     fn writes_memory(job: &HiperdriveJob) -> bool {
@@ -76,7 +76,7 @@ impl Kind for Hiperdrive {
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {
-        words::job(error)
+        words::job_error_texts(error)
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
@@ -84,7 +84,7 @@ impl Kind for Hiperdrive {
     }
 }
 
-impl Unit {
+impl HiperdriveDevice {
     /// Requests missing data as soon as the line is free: the cause of a fault and the position of the selected drive.
     fn request_missing_data(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
@@ -95,11 +95,11 @@ impl Unit {
         } else if std::mem::take(&mut self.looks_at_errors) {
             self.submit(HiperdriveJob::Status, services);
         } else {
-            self.watch(services);
+            self.update_watched(services);
         }
     }
 
-    pub(super) fn watch(&mut self, services: &mut Services) {
+    pub(super) fn update_watched(&mut self, services: &mut Services) {
         if self.watched != self.drive()
             && self.session.is_ready()
             && self.submit(HiperdriveJob::Watch(self.drive()), services)
@@ -115,8 +115,8 @@ impl Unit {
         self.fetch_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
-        services.log.remove_from_window(RULES, Some(&self.session.name()));
-        let text = words::lost(self.moves.snapshot().lost.as_ref());
+        services.log.remove_from_window(LIMITS_UNREADABLE_ID, Some(&self.session.name()));
+        let text = words::cyclic_loss_text(self.moves.snapshot().lost.as_ref());
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
@@ -130,41 +130,41 @@ impl Unit {
     }
 
     fn report_motion_end(&self, drive: DriveNumber, ended: ActionEnd, services: &mut Services) {
-        let weight = words::weight(ended);
+        let weight = words::end_severity(ended);
         if weight == Severity::Note {
             return;
         }
-        let words = words::ended(ended, |steps| self.place(drive, steps));
+        let words = words::end_text(ended, |steps| self.position_text(drive, steps));
         self.report_drive_message(drive, weight, vec![words], services);
     }
 
     /// Processes the position of a drive and, if the drive is selected, records it.
-    fn observe(&mut self, reading: DriveReading) {
+    fn handle_reading(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
         if drive == self.drive() {
             let target = self.moves.last_setpoint(drive).map(|sent| sent.target);
-            self.record.add(reading, self.ruler(drive), self.speed_scale(drive), target);
+            self.record.add_reading(reading, self.ruler(drive), self.speed_scale(drive), target);
         }
     }
 
     /// Polls the position of the selected drive, unless the user has chosen another interval.
     fn poll(&mut self) {
         let Some(line) = self.session.line.as_mut().filter(|line| line.polling_interval().is_none()) else { return };
-        line.poll(Some(PACE));
-        self.record.track.poll(Some(PACE), true);
+        line.poll(Some(DEFAULT_INTERVAL));
+        self.record.track.poll(Some(DEFAULT_INTERVAL), true);
     }
 }
 
-impl SessionEvents for Unit {
-    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
+impl SessionEvents for HiperdriveDevice {
+    fn handle_samples(&mut self, samples: Vec<PolledSample>, dropped: u64) {
         if dropped > 0 {
-            self.record.lose(dropped);
+            self.record.add_dropped(dropped);
         }
         for sample in samples {
             match sample {
-                Sample::Position(reading) => self.observe(reading),
-                Sample::Temperature(reading) => self.record.add_temperature(reading),
+                PolledSample::Position(reading) => self.handle_reading(reading),
+                PolledSample::Temperature(reading) => self.record.add_temperature(reading),
             }
         }
     }
@@ -199,10 +199,12 @@ impl SessionEvents for Unit {
             DeviceMessage::ControlLost => self.handle_control_loss(services),
             DeviceMessage::RulesUnread(why) => {
                 self.moves.stop();
-                let texts = vec![TEXTS.text(RULES), words::device(&why)];
+                let texts = vec![TEXTS.text(LIMITS_UNREADABLE_ID), words::device(&why)];
                 services.notify(Severity::Error, texts, Some(&self.session.name()));
             }
-            DeviceMessage::RulesRead => services.log.remove_from_window(RULES, Some(&self.session.name())),
+            DeviceMessage::RulesRead => {
+                services.log.remove_from_window(LIMITS_UNREADABLE_ID, Some(&self.session.name()))
+            }
         }
     }
 
@@ -227,8 +229,8 @@ impl SessionEvents for Unit {
                     self.poll();
                 }
             }
-            HiperdriveOutput::Check(lines) => self.check = Some(words::check(&lines)),
-            HiperdriveOutput::Position(reading) => self.observe(reading),
+            HiperdriveOutput::Check(lines) => self.check = Some(words::check_lines(&lines)),
+            HiperdriveOutput::Position(reading) => self.handle_reading(reading),
             HiperdriveOutput::Value(number, value) => {
                 if let Some(survey) = &mut self.survey {
                     survey.values.insert(number, value);
@@ -239,13 +241,13 @@ impl SessionEvents for Unit {
                     survey.network = *network;
                 }
             }
-            HiperdriveOutput::Saved(profile) => self.saved(*profile, services),
+            HiperdriveOutput::Saved(profile) => self.save_profile(*profile, services),
             HiperdriveOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             HiperdriveOutput::Committed(committed) => self.handle_commit_end(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.send_heartbeat();
                 self.handle_limit_change();
-                for lost in words::LOST.into_iter().chain([RULES]) {
+                for lost in words::CONNECTION_LOSS_IDS.into_iter().chain([LIMITS_UNREADABLE_ID]) {
                     services.log.remove_from_window(lost, Some(&self.session.name()));
                 }
                 self.poll();
@@ -256,7 +258,7 @@ impl SessionEvents for Unit {
             HiperdriveOutput::Given => {
                 self.moves.send_heartbeat();
                 // The limits are no longer read.
-                services.log.remove_from_window(RULES, Some(&self.session.name()));
+                services.log.remove_from_window(LIMITS_UNREADABLE_ID, Some(&self.session.name()));
                 // Values that were not read while another master was in control are read now.
                 self.looks_at_all |= self.is_stale;
             }
@@ -286,7 +288,7 @@ impl SessionEvents for Unit {
         let is_told = self.handle_interrupted_write(how, texts);
         let begun =
             matches!(self.open_review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
-        self.unsaved.ended(begun);
+        self.unsaved.interrupt_plan(begun);
         is_told
     }
 

@@ -12,12 +12,15 @@ mod status;
 mod tests;
 mod write;
 
-pub use check::{check, source, switch};
+pub use check::{check_lines, source, switch_text};
 pub use entry::entry;
-pub use error::{damage_text, device, out_of_range, range, wrong_length};
-pub use motion::{LOST, MOTION_ENDS, ended, goal, lock, lost, parameter_words, phase, refusal, weight};
-pub use names::{ErrorExplanation, control_bit, error, parameter, state, status_bit, variant};
-pub use write::{change, item, op, other_type, plan, service, warning, written};
+pub use error::{damage_text, device, out_of_range, range_text, wrong_length};
+pub use motion::{
+    CONNECTION_LOSS_IDS, MOTION_ENDS, cyclic_loss_text, end_severity, end_text, lock, parameter_words, phase,
+    refusal_text, target_state_text,
+};
+pub use names::{ErrorExplanation, control_bit, error, parameter, state, status_bit, variant_text};
+pub use write::{change_text, item_text, operation_texts, other_type, plan, service_text, warning, written_text};
 
 use crate::app::Text;
 use crate::app::explain::{link_error_text, literal_text};
@@ -26,7 +29,7 @@ use crate::devices::hiperdrive::procedures::Error;
 
 /// Returns the messages for a job that ended early. Each consists of at least one sentence and may be placed on its own
 /// line.
-pub fn job(error: &JobError) -> Vec<Text> {
+pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device(error)],
         JobError::Plan(error) => vec![plan(error)],
@@ -53,7 +56,7 @@ pub fn is_no_response(error: &JobError) -> bool {
 pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
         JobStep::Parameter(number) => parameter(*number),
-        JobStep::Step(own) => check::step(*own),
+        JobStep::Step(own) => check::check_step_text(*own),
         JobStep::Operation(item) => literal_text(item),
     }
 }

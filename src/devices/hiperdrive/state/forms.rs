@@ -3,7 +3,7 @@
 use super::rows::Row;
 use super::ruler::{PositionRangeError, PositionUnit};
 use super::staged::Edit;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::{Text, parse_decimal};
 use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -13,8 +13,8 @@ use crate::devices::hiperdrive::state::explain as words;
 ///
 /// # Errors
 /// Returns the reason if the entry is invalid.
-pub fn step(unit: &Unit, text: &str, measure: PositionUnit, sign: i32) -> Result<i32, Text> {
-    let steps = steps(unit, text, measure)?;
+pub fn parse_distance(unit: &HiperdriveDevice, text: &str, measure: PositionUnit, sign: i32) -> Result<i32, Text> {
+    let steps = parse_position(unit, text, measure)?;
     if steps == 0 {
         return Err(TEXTS.text("hd_entry.no_step"));
     }
@@ -25,9 +25,9 @@ pub fn step(unit: &Unit, text: &str, measure: PositionUnit, sign: i32) -> Result
 ///
 /// # Errors
 /// Returns the reason if the entry is invalid.
-pub fn target(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
-    let steps = steps(unit, text, measure)?;
-    let place = |steps| unit.place(unit.drive(), steps);
+pub fn target(unit: &HiperdriveDevice, text: &str, measure: PositionUnit) -> Result<i32, Text> {
+    let steps = parse_position(unit, text, measure)?;
+    let place = |steps| unit.position_text(unit.drive(), steps);
     match unit.limits(unit.drive()) {
         Some((low, high)) if !(low..=high).contains(&steps) => Err(TEXTS
             .text("hd_refused.outside")
@@ -42,7 +42,7 @@ pub fn target(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Tex
 ///
 /// # Errors
 /// Returns the reason if the entry is invalid.
-pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
+pub fn parse_position(unit: &HiperdriveDevice, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     if text.trim().is_empty() {
         return Err(TEXTS.text("hd_entry.empty"));
     }
@@ -50,7 +50,7 @@ pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text
     if measure == PositionUnit::Steps && value.fract() != 0.0 {
         return Err(TEXTS.text("hd_entry.whole_steps").with("entry", text.trim()));
     }
-    unit.ruler(unit.drive()).steps(value, measure).map_err(|beyond| match beyond {
+    unit.ruler(unit.drive()).to_steps(value, measure).map_err(|beyond| match beyond {
         PositionRangeError::NoPitch => TEXTS.text("hd_entry.no_pitch"),
         PositionRangeError::Bits { least, most } => TEXTS
             .text("hd_entry.beyond")
@@ -85,7 +85,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
         None => digits.parse().ok(),
     };
     let value = value.ok_or_else(|| TEXTS.text("hd_entry.whole").with("entry", text.trim()))?;
-    let checked = row.kind.check(row.number, value, row.travel);
+    let checked = row.kind.check_value(row.number, value, row.travel);
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
 }
 
@@ -93,7 +93,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
 ///
 /// # Errors
 /// Returns the reason if the entry is invalid.
-pub fn length(text: &str) -> Result<Length, Text> {
+pub fn parse_length(text: &str) -> Result<Length, Text> {
     let millimetres = parse_decimal(text).filter(|own| *own > 0.0 && *own <= 1e6);
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
     nanometres

@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::jobs::HiperdriveJob;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-pub(super) fn words(job: &HiperdriveJob) -> Text {
+pub(super) fn job_name(job: &HiperdriveJob) -> Text {
     match job {
         HiperdriveJob::Hello | HiperdriveJob::Identify => TEXTS.text("hd_job.identify"),
         HiperdriveJob::Survey => TEXTS.text("hd_job.survey"),
@@ -15,7 +15,7 @@ pub(super) fn words(job: &HiperdriveJob) -> Text {
         HiperdriveJob::Read(number) => Text::new("job.read").with_text("item", words::parameter(*number)),
         HiperdriveJob::Network => TEXTS.text("hd_job.network"),
         HiperdriveJob::Save => Text::new("job.save"),
-        HiperdriveJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
+        HiperdriveJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
         HiperdriveJob::Commit(_) => Text::new("job.write"),
         HiperdriveJob::Take => TEXTS.text("hd_job.take"),
         HiperdriveJob::Give => TEXTS.text("hd_job.give"),

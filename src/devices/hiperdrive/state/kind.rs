@@ -1,11 +1,11 @@
 //! HIPERDRIVE as a kind of device for the studio, before a device is open.
 
 use super::staged::StagedEdits;
-use super::{HiperdriveForm, Unit};
+use super::{HiperdriveDevice, HiperdriveForm};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::hiperdrive::jobs::{Hiperdrive, check};
+use crate::devices::hiperdrive::jobs::{Hiperdrive, check_link};
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::devices::hiperdrive::protocol::DriveNumber;
@@ -17,14 +17,14 @@ use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
 
-impl DeviceType for Unit {
+impl DeviceType for HiperdriveDevice {
     const BUS: &'static str = "HIPERDRIVE";
     type Profile = HiperdriveProfile;
     type Form = HiperdriveForm;
     type Tables = ();
 
     fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
-        check(url)
+        check_link(url)
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
@@ -34,7 +34,7 @@ impl DeviceType for Unit {
     fn load_tables(_store: &Store) -> Self::Tables {}
 
     fn create(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
-        let mut unit = Unit::with(session);
+        let mut unit = HiperdriveDevice::from_session(session);
         if let Some((profile, ())) = profile {
             unit.staged = StagedEdits::for_profile(profile.image.clone());
             let drives = profile.identity.drives.iter();

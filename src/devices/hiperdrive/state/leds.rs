@@ -65,7 +65,7 @@ impl Led {
 }
 
 impl Leds {
-    pub fn of(topology: Topology) -> Self {
+    pub fn for_topology(topology: Topology) -> Self {
         Leds { hub: topology != Topology::Adapter, ..Leds::default() }
     }
 
@@ -78,14 +78,14 @@ impl Leds {
     }
 
     /// Sets the device and the position of S3. An LED whose state becomes impossible is switched off.
-    pub fn look_at(&mut self, hub: bool, s3: u8) {
+    pub fn set_device(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
         if self.led_subject().row(self.drives).is_none() {
             self.drives = DriveLedState::Off;
         }
     }
 
-    pub fn click(&mut self, lamp: Led) {
+    pub fn toggle(&mut self, lamp: Led) {
         match lamp {
             Led::Drives => {
                 let lights: Vec<DriveLedState> = self.led_subject().rows().iter().map(|row| row.light).collect();
@@ -97,10 +97,12 @@ impl Leds {
         }
     }
 
-    pub fn meaning_of(&self, lamp: Led) -> LedMeaning {
+    pub fn led_meaning(&self, lamp: Led) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
             Led::Drives => drives(self.led_subject(), self.drives),
-            Led::Bus(lamp) => bus(lamp, if lamp == NetworkLed::Module { self.module } else { self.network }),
+            Led::Bus(lamp) => {
+                network_led_row(lamp, if lamp == NetworkLed::Module { self.module } else { self.network })
+            }
             Led::Port => port(self.port),
         };
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
@@ -175,7 +177,7 @@ fn drives(subject: LedSubject, light: DriveLedState) -> Row {
     }
 }
 
-fn bus(lamp: NetworkLed, light: NetworkLedState) -> Row {
+fn network_led_row(lamp: NetworkLed, light: NetworkLedState) -> Row {
     use NetworkLed::{Module, Network};
     use Severity::{Error, Good, Note, Warning};
     match (lamp, light) {
@@ -222,19 +224,19 @@ mod tests {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             for row in leds.led_subject().rows() {
                 leds.drives = row.light;
-                let said = leds.meaning_of(Led::Drives);
+                let said = leds.led_meaning(Led::Drives);
                 same(&said.meaning, row.meaning);
                 same(&said.remedy, row.remedy);
             }
         }
         for row in BUS_LEDS {
             let leds = Leds { module: row.light, network: row.light, ..Leds::default() };
-            let said = leds.meaning_of(Led::Bus(row.lamp));
+            let said = leds.led_meaning(Led::Bus(row.lamp));
             same(&said.meaning, row.meaning);
             same(&said.remedy, row.remedy);
         }
         for row in PORT_LEDS {
-            let said = Leds { port: row.light, ..Leds::default() }.meaning_of(Led::Port);
+            let said = Leds { port: row.light, ..Leds::default() }.led_meaning(Led::Port);
             same(&said.meaning, row.meaning);
             same(&said.remedy, row.remedy);
         }
@@ -246,19 +248,19 @@ mod tests {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             let mut seen = Vec::new();
             for _ in 0..lights {
-                leds.click(Led::Drives);
+                leds.toggle(Led::Drives);
                 assert!(leds.led_subject().row(leds.drives).is_some() && !seen.contains(&leds.drives));
                 seen.push(leds.drives);
             }
-            leds.click(Led::Drives);
+            leds.toggle(Led::Drives);
             assert_eq!(seen.first(), Some(&leds.drives));
         }
         for (lamp, lights) in [(Led::Bus(NetworkLed::Module), 6), (Led::Bus(NetworkLed::Network), 6), (Led::Port, 3)] {
             let mut leds = Leds::default();
             let mut said = Vec::new();
             (0..lights).for_each(|_| {
-                leds.click(lamp);
-                said.push(leds.meaning_of(lamp).meaning);
+                leds.toggle(lamp);
+                said.push(leds.led_meaning(lamp).meaning);
             });
             said.dedup();
             assert!(said.len() == lights && leds == Leds::default(), "{lamp:?}");
@@ -267,12 +269,12 @@ mod tests {
 
     #[test]
     fn a_state_missing_on_another_led_becomes_off() {
-        let mut leds = Leds { drives: DriveLedState::Alternating, ..Leds::of(Topology::Hub8) };
-        leds.look_at(true, 9);
+        let mut leds = Leds { drives: DriveLedState::Alternating, ..Leds::for_topology(Topology::Hub8) };
+        leds.set_device(true, 9);
         assert_eq!((leds.s3, leds.led_subject(), leds.drives), (8, LedSubject::Drive, DriveLedState::Off));
         leds.drives = DriveLedState::Red;
-        leds.look_at(false, 8);
+        leds.set_device(false, 8);
         assert_eq!((leds.led_subject(), leds.drives), (LedSubject::Adapter, DriveLedState::Red));
-        assert!(!Leds::of(Topology::Adapter).hub);
+        assert!(!Leds::for_topology(Topology::Adapter).hub);
     }
 }

@@ -38,7 +38,7 @@ mod write;
 
 pub use texts::TEXTS;
 
-pub use action::{HiperdriveAction, Motor};
+pub use action::{HiperdriveAction, MotorCommand};
 pub use connect_form::{HiperdriveForm, HiperdriveLinkKind, VirtualHub};
 pub use discovery::{Discovery, DiscoveryAction, DiscoveryFinder, DiscoveryStub, FoundDevice};
 pub use moves::DriveMotion;
@@ -47,5 +47,5 @@ pub use request_state::RequestState;
 pub use review::{Review, ReviewState};
 pub use rows::Row;
 pub use ruler::{PositionRangeError, PositionUnit, Ruler};
-pub use staged::{Edit, EditError, LimitsPolicy, Mark, SavedEdit, StagedEdits, ValueDifference, is_editable};
-pub use unit::Unit;
+pub use staged::{Edit, EditError, EditFinding, LimitsPolicy, SavedEdit, StagedEdits, ValueDifference, is_editable};
+pub use unit::HiperdriveDevice;

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{HiperdriveAction, Unit};
+use super::{HiperdriveAction, HiperdriveDevice};
 use crate::app::action::OpenedConnection;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
@@ -14,15 +14,15 @@ use crate::app::{
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 
-impl DeviceModel for Unit {
+impl DeviceModel for HiperdriveDevice {
     const TAB: Tab = Tab::named("Hiperdrive");
     type Action = HiperdriveAction;
     type TaskResult = Infallible;
 
     fn connect(&mut self, opened: OpenedConnection<Hiperdrive>, services: &mut Services) {
         SessionEvents::release_thread(self, JobState::Cancelled, services);
-        self.record.begin(&opened.began);
-        self.records.values_mut().for_each(|record| record.begin(&opened.began));
+        self.record.begin_session(&opened.began);
+        self.records.values_mut().for_each(|record| record.begin_session(&opened.began));
         self.began = Some(opened.began.clone());
         self.moves.begin_session(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
@@ -39,7 +39,7 @@ impl DeviceModel for Unit {
     }
 
     fn handle_action(&mut self, action: HiperdriveAction, context: &mut ActionContext<'_>) {
-        Unit::act(self, action, context.services);
+        HiperdriveDevice::handle_action(self, action, context.services);
     }
 
     fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
@@ -106,7 +106,7 @@ impl DeviceModel for Unit {
     }
 }
 
-impl MotionControl for Unit {
+impl MotionControl for HiperdriveDevice {
     fn stop(&mut self) {
         self.moves.stop();
     }
@@ -116,7 +116,7 @@ impl MotionControl for Unit {
     }
 
     fn is_moving(&self) -> bool {
-        Unit::is_moving(self)
+        HiperdriveDevice::is_moving(self)
     }
 
     fn is_turned_by_hand(&self) -> bool {

@@ -43,7 +43,7 @@ pub struct Position {
 }
 
 impl Form {
-    pub fn of(settings: &NetworkSettings) -> Self {
+    pub fn from_settings(settings: &NetworkSettings) -> Self {
         let own = &settings.interface;
         let text = |address: Ipv4Addr| if address.is_unspecified() { String::new() } else { address.to_string() };
         Form {
@@ -78,7 +78,7 @@ impl Form {
             name_servers: [address("hd_net.name_server", first)?, address("hd_net.name_server", second)?],
             domain: self.domain.trim().to_owned(),
         };
-        interface.check_reachable().map_err(|why| refused(&why))?;
+        interface.check_reachable().map_err(|why| address_error_text(&why))?;
         Ok(NetworkSettings { source: self.source, interface })
     }
 }
@@ -101,7 +101,7 @@ fn required_address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
 }
 
 /// Explains why a device would be unreachable with these settings.
-pub fn refused(error: &AddressError) -> Text {
+pub fn address_error_text(error: &AddressError) -> Text {
     match error {
         AddressError::None => TEXTS.text("hd_net.none"),
         AddressError::Reserved(address) => TEXTS.text("hd_net.reserved").with("address", address),
@@ -119,7 +119,7 @@ pub fn refused(error: &AddressError) -> Text {
 impl PowerUpAddress {
     /// Returns the address source for the given switches and settings. Unreadable switches count as 0, because some
     /// devices have no switches.
-    pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
+    pub fn from_settings(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
             address if address.is_unspecified() => PowerUpAddress::NothingStored,
             address => PowerUpAddress::Stored(address),
@@ -149,7 +149,7 @@ impl PowerUpAddress {
         }
     }
 
-    pub fn words(self) -> Text {
+    pub fn to_text(self) -> Text {
         match self {
             PowerUpAddress::Fixed(address) => TEXTS.text("hd_net.up_fixed").with("address", address),
             PowerUpAddress::Stored(address) => TEXTS.text("hd_net.up_stored").with("address", address),
@@ -169,7 +169,7 @@ pub fn consequence_texts(
     wanted: &NetworkSettings,
     host: Option<Ipv4Addr>,
 ) -> Vec<(Severity, Text)> {
-    let after = PowerUpAddress::of(switch, wanted);
+    let after = PowerUpAddress::from_settings(switch, wanted);
     let mut texts = Vec::new();
     let decides = switch.filter(|own| *own != AddressSwitch::Object);
     // At 97 the stored addresses apply, whatever their source is.
@@ -181,7 +181,7 @@ pub fn consequence_texts(
         PowerUpAddress::NothingStored | PowerUpAddress::Unknown(_) => Severity::Warning,
         _ => Severity::Note,
     };
-    texts.push((severity, after.words()));
+    texts.push((severity, after.to_text()));
     match (host, after.address()) {
         (Some(host), Some(address)) if host != address => {
             texts.push((Severity::Note, TEXTS.text("hd_net.then_at").with("address", address)));
@@ -195,7 +195,7 @@ pub fn consequence_texts(
     texts
 }
 
-pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
+pub fn switch_positions(switch: Option<AddressSwitch>) -> [Position; 5] {
     let row = |digits, meaning, is_now| Position { digits, meaning: TEXTS.text(meaning), is_now };
     let at = |own: AddressSwitch| switch == Some(own);
     [
@@ -239,7 +239,7 @@ mod tests {
         let stored = Ipv4Addr::new(10, 0, 0, 7);
         let sources = [AddressSource::Stored, AddressSource::Bootp, AddressSource::Dhcp, AddressSource::Unknown(7)];
         let with = |digits: u8| {
-            sources.map(|own| PowerUpAddress::of(AddressSwitch::parse(digits), &settings(own, "10.0.0.7")))
+            sources.map(|own| PowerUpAddress::from_settings(AddressSwitch::parse(digits), &settings(own, "10.0.0.7")))
         };
         let object =
             [PowerUpAddress::Stored(stored), PowerUpAddress::Bootp, PowerUpAddress::Dhcp, PowerUpAddress::Unknown(7)];
@@ -249,16 +249,16 @@ mod tests {
         assert_eq!(with(98), [PowerUpAddress::Bootp; 4]);
         assert_eq!(with(99), [PowerUpAddress::Dhcp; 4]);
         // A device without switches.
-        assert_eq!(sources.map(|own| PowerUpAddress::of(None, &settings(own, "10.0.0.7"))), object);
+        assert_eq!(sources.map(|own| PowerUpAddress::from_settings(None, &settings(own, "10.0.0.7"))), object);
         let empty = settings(AddressSource::Stored, "0.0.0.0");
-        assert_eq!(PowerUpAddress::of(AddressSwitch::parse(0), &empty), PowerUpAddress::NothingStored);
+        assert_eq!(PowerUpAddress::from_settings(AddressSwitch::parse(0), &empty), PowerUpAddress::NothingStored);
     }
 
     #[test]
     fn typed_settings_are_checked_before_planning() {
         let now = settings(AddressSource::Dhcp, "10.0.0.7");
         let form = |address: &str, mask: &str, gateway: &str| {
-            let form = Form { source: AddressSource::Stored, ..Form::of(&now) };
+            let form = Form { source: AddressSource::Stored, ..Form::from_settings(&now) };
             let [address, mask, gateway] = [address, mask, gateway].map(ToOwned::to_owned);
             Form { address, mask, gateway, ..form }.settings(&now).map_err(|text| text.id())
         };
@@ -282,9 +282,9 @@ mod tests {
             assert_eq!(form(address, mask, gateway), Err(id), "{address} {mask} {gateway}");
         }
         // A server assigns the address: an invalid entry does not matter.
-        let dhcp = Form { address: "nonsense".to_owned(), ..Form::of(&now) };
+        let dhcp = Form { address: "nonsense".to_owned(), ..Form::from_settings(&now) };
         assert_eq!(dhcp.settings(&now), Ok(now.clone()));
-        let named = Form { source: AddressSource::Stored, domain: "two words".to_owned(), ..Form::of(&now) };
+        let named = Form { source: AddressSource::Stored, domain: "two words".to_owned(), ..Form::from_settings(&now) };
         assert_eq!(named.settings(&now).unwrap_err().id(), "hd_net.bad_domain");
     }
 
@@ -319,10 +319,10 @@ mod tests {
     #[test]
     fn the_switch_table_marks_the_current_position() {
         let now = |digits: u8| {
-            let rows = positions(AddressSwitch::parse(digits));
+            let rows = switch_positions(AddressSwitch::parse(digits));
             rows.into_iter().filter(|row| row.is_now).map(|row| row.digits).collect::<Vec<_>>()
         };
         assert_eq!([0, 1, 96, 97, 98, 99].map(now), [["0"], ["1…96"], ["1…96"], ["97"], ["98"], ["99"]].map(Vec::from));
-        assert!(positions(None).iter().all(|row| !row.is_now));
+        assert!(switch_positions(None).iter().all(|row| !row.is_now));
     }
 }

@@ -1,7 +1,7 @@
 //! A drive outside its limits: how far outside it is, the direction back in, and the direction further out. The user
 //! can enable the outward direction for one press, because a wrong reference may leave no other way.
 
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::Change;
@@ -21,11 +21,11 @@ pub struct OutOfRangePosition {
     pub is_far: bool,
 }
 
-impl Unit {
+impl HiperdriveDevice {
     /// Returns how a drive is outside its limits according to its position or status bit 15. Returns `None` if the
     /// drive is inside, or if position or limits are unknown.
     pub fn out_of_range_position(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
-        let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
+        let (actual, limits) = (self.actual_values(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.steps_per_degree());
         let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
         let outside = permit.outside_limits(actual)?;
@@ -40,8 +40,8 @@ impl Unit {
     pub fn outside_limits_text(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.out_of_range_position(drive).filter(|own| own.is_far)?;
         let id = if own.outside == OutsideLimits::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
-        let text = TEXTS.text(id).with_text("position", self.place(drive, own.position));
-        Some(text.with_text("range", self.places(drive, own.limits)))
+        let text = TEXTS.text(id).with_text("position", self.position_text(drive, own.position));
+        Some(text.with_text("range", self.range_text(drive, own.limits)))
     }
 
     /// Checks whether a drive may be jogged in this direction now.
@@ -82,9 +82,9 @@ impl Unit {
         let position = becomes.ok_or_else(|| {
             TEXTS
                 .text("hd_refused.outside")
-                .with_text("target", self.place(drive, position))
-                .with_text("low", self.place(drive, low))
-                .with_text("high", self.place(drive, high))
+                .with_text("target", self.position_text(drive, position))
+                .with_text("low", self.position_text(drive, low))
+                .with_text("high", self.position_text(drive, high))
         })?;
         Ok(Change::SetPosition { drive, position, save: true })
     }

@@ -28,17 +28,17 @@ pub struct Record {
 }
 
 impl Record {
-    pub(super) fn begin(&mut self, began: &Zoned) {
+    pub(super) fn begin_session(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin_session(began);
     }
 
-    pub(super) fn lose(&mut self, dropped: u64) {
+    pub(super) fn add_dropped(&mut self, dropped: u64) {
         self.track.record_dropped(dropped);
     }
 
     /// Records a reading together with the target of the drive at that time.
-    pub(super) fn add(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
+    pub(super) fn add_reading(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
         let sighting = PositionSample {
@@ -47,7 +47,7 @@ impl Record {
             is_bad: !status.is_present(),
             is_warned: status.is_set(crate::devices::hiperdrive::protocol::StatusBit::Warning),
         };
-        self.track.add_positions(&[sighting], &meaning(ruler));
+        self.track.add_positions(&[sighting], &position_scales(ruler));
         // Without control, a target recorded earlier stays among the watched values.
         let has_target =
             target.is_some() || self.track.watched_values().iter().any(|own| matches!(own, RecordedValue::Target(_)));
@@ -85,21 +85,21 @@ impl Record {
     }
 
     /// Marks a gap before the next samples because another drive was selected.
-    pub(super) fn gap(&mut self) {
+    pub(super) fn mark_gap(&mut self) {
         self.last = None;
         self.track.mark_gap();
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.track.clear_unless_long();
         self.last = None;
     }
 }
 
 /// Returns the meaning of recorded positions, with millimetres first if the drive turns a spindle.
-fn meaning(ruler: Ruler) -> PositionScales {
+fn position_scales(ruler: Ruler) -> PositionScales {
     let mut meaning = PositionScales::for_steps_per_turn(None, ruler.scale.steps_per_turn());
-    if let Some(millimetres) = ruler.of(1, PositionUnit::Millimetres) {
+    if let Some(millimetres) = ruler.from_steps(1, PositionUnit::Millimetres) {
         let linear = PositionScales::for_millimetres(millimetres).scales;
         for (own, linear) in meaning.scales.iter_mut().zip(linear) {
             let in_millimetres = linear.into_iter().filter(|scale| !scale.unit.id().starts_with("unit.steps"));
@@ -130,7 +130,7 @@ impl Watchable for RecordedValue {
                 Series::new(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
             }
             RecordedValue::Target(ruler) => {
-                let [scales, ..] = meaning(*ruler).scales;
+                let [scales, ..] = position_scales(*ruler).scales;
                 Series::new(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
             }
             RecordedValue::Temperature(what) => {

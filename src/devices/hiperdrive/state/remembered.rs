@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::ruler::PositionUnit;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::{RememberedDrives, SettingsReadState, StoredDriveData};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
@@ -19,7 +19,7 @@ pub(super) struct ExchangedValues {
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 
-impl StoredDriveData for Unit {
+impl StoredDriveData for HiperdriveDevice {
     fn storage_name(&self) -> Option<String> {
         let own = self.identity()?;
         let kind = if self.session.is_virtual() { "virtual " } else { "" };
@@ -73,7 +73,7 @@ impl StoredDriveData for Unit {
     }
 }
 
-impl Unit {
+impl HiperdriveDevice {
     fn apply_remembered(&mut self, kept: &RememberedDrives) -> ExchangedValues {
         for (drive, nanometres) in &kept.pitches {
             if let Some(drive) = DriveNumber::new(*drive) {
@@ -81,7 +81,7 @@ impl Unit {
             }
         }
         self.measure = kept.measure;
-        self.unsaved.extend(&kept.unsaved);
+        self.unsaved.add_earlier(&kept.unsaved);
         ExchangedValues {
             pitches: kept.pitches.clone(),
             measure: kept.measure,
@@ -97,7 +97,7 @@ impl Unit {
             kept: RememberedDrives::default(),
             pitches: self.pitches.iter().map(|(drive, pitch)| (drive.get(), pitch.nanometres)).collect(),
             measure: self.measure,
-            unsaved: self.unsaved.saved().clone(),
+            unsaved: self.unsaved.saved_values().clone(),
             scales: unconfirmed.iter().filter_map(scale).collect(),
             unconfirmed,
         }

@@ -1,8 +1,8 @@
 //! Requests that a drive accepts at present, the reasons against others, and the state of the last request.
 
-use super::action::Motor;
+use super::action::MotorCommand;
 use super::ruler::PositionUnit;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::number::decimals_of;
 use crate::app::services::Services;
 use crate::app::session::Phase;
@@ -21,7 +21,7 @@ pub struct RequestState {
     pub is_well: bool,
 }
 
-impl Unit {
+impl HiperdriveDevice {
     /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
@@ -131,10 +131,10 @@ impl Unit {
             _ => self.check_controllable()?,
         }
         let Some(permit) = self.moves.motion_permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
-        let place = |steps| self.place(drive, steps);
+        let place = |steps| self.position_text(drive, steps);
         let here =
             self.moves.actual_values(drive).map_or(Ok(()), |actual| permit.check_position_limits(request, actual));
-        permit.check_request(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
+        permit.check_request(request, asks_target).and(here).map_err(|refusal| words::refusal_text(refusal, place))
     }
 
     /// Checks that a request may end the present motion. A stop and a jog of the same drive may. Other requests must
@@ -164,11 +164,11 @@ impl Unit {
         texts: Vec<Text>,
         services: &mut Services,
     ) {
-        services.notify_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
+        services.notify_part(severity, texts, (Some(&self.session.name()), self.drive_name(drive)));
     }
 
     /// Returns the name of a drive, or `None` if there is only one.
-    pub fn name_of(&self, drive: DriveNumber) -> Option<Text> {
+    pub fn drive_name(&self, drive: DriveNumber) -> Option<Text> {
         (self.drives().len() > 1).then(|| TEXTS.text("hd_bar.named").with("drive", drive.get()))
     }
 
@@ -179,8 +179,8 @@ impl Unit {
         self.drives().into_iter().filter(moves).collect()
     }
 
-    pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
-        let (value, decimals, unit) = self.measured(drive, steps);
+    pub fn position_text(&self, drive: DriveNumber, steps: i32) -> Text {
+        let (value, decimals, unit) = self.in_user_unit(drive, steps);
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
@@ -190,8 +190,8 @@ impl Unit {
         let ruler = self.ruler(drive);
         let wanted = |own: &PositionUnit| *own != PositionUnit::Degrees || *own == self.measure;
         let place = |own: PositionUnit| {
-            let value = ruler.of(i64::from(steps), own)?;
-            let decimals = decimals_of(value, ruler.decimals(own).min(4));
+            let value = ruler.from_steps(i64::from(steps), own)?;
+            let decimals = decimals_of(value, ruler.decimal_places(own).min(4));
             let text = TEXTS.text("hd_entry.place").with_number("value", value, decimals);
             Some(text.with_text("unit", TEXTS.text(own.unit())))
         };
@@ -199,18 +199,18 @@ impl Unit {
     }
 
     /// Formats a range between two positions with the unit.
-    pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
-        let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
+    pub fn range_text(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
+        let ((low, ..), (high, decimals, unit)) = (self.in_user_unit(drive, low), self.in_user_unit(drive, high));
         let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);
         text.with_number("high", high, decimals).with_text("unit", unit)
     }
 
     /// Returns a position as value, number of decimals and unit, in the user's unit.
-    fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
+    fn in_user_unit(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
-        let value = ruler.of(i64::from(steps), self.measure);
+        let value = ruler.from_steps(i64::from(steps), self.measure);
         let (value, measure) = value.map_or((f64::from(steps), PositionUnit::Steps), |value| (value, self.measure));
-        (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
+        (value, ruler.decimal_places(measure), TEXTS.text(measure.unit()))
     }
 
     /// Returns the states that a single control word can reach from the present state. There are none without control.
@@ -226,7 +226,7 @@ impl Unit {
     }
 
     /// Describes the control word that leads a drive to a state, and whether the manual documents it.
-    pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
+    pub fn transition_hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.to_u16())))
@@ -234,13 +234,13 @@ impl Unit {
 
     /// Returns the request that leads a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
     /// no request does. A fault is left by acknowledging it, which leads to the lock.
-    pub const fn leads_to(to: State) -> Option<Motor> {
+    pub const fn leads_to(to: State) -> Option<MotorCommand> {
         match to {
-            State::NotReady => Some(Motor::Lead(TargetState::Off)),
-            State::Ready => Some(Motor::Lead(TargetState::Ready)),
-            State::Operational => Some(Motor::Lead(TargetState::Operational)),
-            State::Enabled => Some(Motor::Lead(TargetState::Enabled)),
-            State::Locked => Some(Motor::Acknowledge),
+            State::NotReady => Some(MotorCommand::Lead(TargetState::Off)),
+            State::Ready => Some(MotorCommand::Lead(TargetState::Ready)),
+            State::Operational => Some(MotorCommand::Lead(TargetState::Operational)),
+            State::Enabled => Some(MotorCommand::Lead(TargetState::Enabled)),
+            State::Locked => Some(MotorCommand::Acknowledge),
             State::Moving | State::Fault => None,
         }
     }
@@ -253,15 +253,15 @@ impl Unit {
             return Some(RequestState { words: words::phase(view.phase), is_well: true });
         }
         let (_, ended) = view.ended?;
-        let words = words::ended(ended, |steps| self.place(drive, steps));
-        Some(RequestState { words, is_well: words::weight(ended) == Severity::Note })
+        let words = words::end_text(ended, |steps| self.position_text(drive, steps));
+        Some(RequestState { words, is_well: words::end_severity(ended) == Severity::Note })
     }
 
     /// Explains why control was lost, until control is taken again. Returns `None` if control was never taken or was
     /// released.
     pub fn loss_reason(&self) -> Option<Text> {
         let view = self.moves.snapshot();
-        view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
+        view.lost.as_ref().filter(|_| !view.open).map(|lost| words::cyclic_loss_text(Some(lost)))
     }
 
     /// Returns the speed for a percentage, based on parameter 166.
@@ -271,7 +271,7 @@ impl Unit {
 
     /// Returns the speed for a percentage in rpm, based on parameter 166.
     fn speed_rpm(&self, percent: Percent) -> Option<f64> {
-        let most = self.number(self.drive(), MAXIMUM_SPEED)?;
+        let most = self.parameter_value(self.drive(), MAXIMUM_SPEED)?;
         // Tenths of rpm, and percent.
         Some(most as f64 * f64::from(percent.get()) / 1000.0)
     }
@@ -280,13 +280,13 @@ impl Unit {
     /// does not include acceleration. Returns `None` while the position or the speed is unknown, and during a motion.
     pub fn move_estimate(&self, target: i32) -> Option<Text> {
         let drive = self.drive();
-        let distance = target.saturating_sub(self.actual(drive)?.position);
+        let distance = target.saturating_sub(self.actual_values(drive)?.position);
         let rpm = self.speed_rpm(self.moves.move_speed_torque(drive).speed).filter(|rpm| *rpm > 0.0)?;
-        let turns = self.ruler(drive).of(i64::from(distance).abs(), PositionUnit::Turns)?;
+        let turns = self.ruler(drive).from_steps(i64::from(distance).abs(), PositionUnit::Turns)?;
         if self.moves.phase(drive).is_some_and(|phase| phase != Doing::Idle) {
             return None;
         }
-        let (seconds, distance) = (turns / rpm * 60.0, self.place(drive, distance));
+        let (seconds, distance) = (turns / rpm * 60.0, self.position_text(drive, distance));
         let text = |id| TEXTS.text(id).with_text("distance", distance);
         Some(match seconds.round() {
             whole @ 60.0.. => {

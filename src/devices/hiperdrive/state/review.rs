@@ -1,6 +1,6 @@
 //! Review of a write to a HIPERDRIVE: permits, warnings and cost of its plan.
 
-use super::axis::words::millimetres;
+use super::axis::words::millimetres_text;
 use super::network::PowerUpAddress;
 use super::ruler::{PositionUnit, Ruler};
 use super::words;
@@ -10,8 +10,8 @@ use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
 use crate::devices::hiperdrive::procedures::write::WrittenChanges;
-use crate::devices::hiperdrive::profile::{self, Base, Image, Op, Service, warnings};
-use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, REFERENCE, UPPER};
+use crate::devices::hiperdrive::profile::{self, Base, Image, Op, Service, plan_warnings};
+use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER_LIMIT, REFERENCE, UPPER_LIMIT};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Length, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
@@ -26,7 +26,7 @@ impl Reviewable for Hiperdrive {
     type Written = WrittenChanges;
 
     fn change_title(change: &Change) -> Text {
-        explained::change(change)
+        explained::change_text(change)
     }
 
     fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
@@ -48,8 +48,8 @@ impl Reviewable for Hiperdrive {
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut texts: Vec<Text> = prepared.other_types.iter().map(explained::other_type).collect();
-        texts.extend(warnings(&prepared.plan).iter().map(explained::warning));
-        texts.extend(prepared.wear().map(|after| TEXTS.text("hd_review.wear").with("after", after)));
+        texts.extend(plan_warnings(&prepared.plan).iter().map(explained::warning));
+        texts.extend(prepared.wear_to_report().map(|after| TEXTS.text("hd_review.wear").with("after", after)));
         if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
             texts.push(TEXTS.text("hd_review.factory_all"));
         }
@@ -80,7 +80,7 @@ impl Reviewable for Hiperdrive {
     fn cost_text(prepared: &Prepared) -> Text {
         let saves = prepared.plan.write_cycles();
         if saves == 0 {
-            let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == REFERENCE);
+            let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.drive1_number() == REFERENCE);
             let position = prepared.plan.ops.iter().any(sets);
             return TEXTS.text(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
         }
@@ -91,7 +91,7 @@ impl Reviewable for Hiperdrive {
     }
 
     fn written_text(written: &WrittenChanges) -> Text {
-        explained::written(written)
+        explained::written_text(written)
     }
 }
 
@@ -101,13 +101,13 @@ pub(super) fn operation_texts(
     op: &Op,
     pitch: impl Fn(DriveNumber) -> Option<Length>,
 ) -> OperationTexts {
-    let mut words = explained::op(op);
+    let mut words = explained::operation_texts(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
         let now = prepared.plan.base.image();
-        let then = now.with(&profile::written(&prepared.plan));
+        let then = now.overlaid_with(&profile::written_values(&prepared.plan));
         let pitch = number.drive().and_then(pitch);
         let meant = |text: &mut Text, value, image| {
-            if let Some(meaning) = meaning(*number, value, image, pitch) {
+            if let Some(meaning) = value_meaning(*number, value, image, pitch) {
                 let value = text.clone();
                 *text = TEXTS.text("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
             }
@@ -119,18 +119,18 @@ pub(super) fn operation_texts(
 }
 
 /// Describes a value. Positions are given in millimetres, or else in turns, under the scale in effect at that time.
-fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
-    match (number.base(), number.drive()) {
-        (LOWER | UPPER | 170 | 176 | REFERENCE, Some(drive)) => {
+fn value_meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
+    match (number.drive1_number(), number.drive()) {
+        (LOWER_LIMIT | UPPER_LIMIT | 170 | 176 | REFERENCE, Some(drive)) => {
             let scale = image.scale(drive)?;
             if pitch.is_some() {
-                return Some(millimetres(Some(Ruler { scale, pitch }), value));
+                return Some(millimetres_text(Some(Ruler { scale, pitch }), value));
             }
             let turns = value as f64 / scale.steps_per_turn();
             let text = TEXTS.text("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
             Some(text.with_text("unit", TEXTS.text(PositionUnit::Turns.unit())))
         }
-        _ => words::meaning(number, value),
+        _ => words::value_meaning(number, value),
     }
 }
 
@@ -141,5 +141,5 @@ fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
     })?;
     let digits = ParameterNumber::new(12).and_then(|number| plan.base.values.get(&number));
     let switch = digits.and_then(|digits| AddressSwitch::parse(u8::try_from(*digits).ok()?));
-    Some(TEXTS.text("hd_review.power_up").with_text("what", PowerUpAddress::of(switch, to).words()))
+    Some(TEXTS.text("hd_review.power_up").with_text("what", PowerUpAddress::from_settings(switch, to).to_text()))
 }

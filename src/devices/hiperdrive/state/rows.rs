@@ -2,17 +2,17 @@
 
 use super::ruler::PositionUnit;
 use super::staged::is_editable;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use super::words;
 use crate::app::Text;
 use crate::app::number::decimals_of;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    CONTROL, DENOMINATOR, LOWER, NEWEST_ERROR, NUMERATOR, OLDEST_ERROR, POSITION, REFERENCE, SPEED, SPEED_SHARE,
-    STATUS, TARGET, TORQUE_SHARE, UPPER,
+    CONTROL, DENOMINATOR, LOWER_LIMIT, NEWEST_ERROR, NUMERATOR, OLDEST_ERROR, POSITION, REFERENCE, SPEED, SPEED_SHARE,
+    STATUS, TARGET, TORQUE_SHARE, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{
-    Access, DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Topology, Travel, Value,
+    DriveNumber, Family, PARAMETERS, ParameterAccess, ParameterNumber, ParameterRow, Topology, Travel, Value,
 };
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
@@ -51,14 +51,14 @@ impl Row {
     pub fn not_editable_reason(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,
-            Access::Read => "hd_entry.only_read",
-            Access::ReadWrite | Access::Write => "hd_entry.not_a_value",
+            ParameterAccess::Read => "hd_entry.only_read",
+            ParameterAccess::ReadWrite | ParameterAccess::Write => "hd_entry.not_a_value",
         };
         Some(TEXTS.text(id).with("number", self.number).with_text("name", self.name.clone()))
     }
 }
 
-impl Unit {
+impl HiperdriveDevice {
     /// Returns the parameters of a drive or of the device, either those that were read or those that a profile can
     /// contain.
     pub fn rows(&self, of: Option<DriveNumber>) -> Vec<Row> {
@@ -67,12 +67,14 @@ impl Unit {
             None => ParameterNumber::new(row.number).filter(|number| number.drive().is_none()),
         };
         let rows = PARAMETERS.iter().filter_map(|row| Some((number(row)?, row)));
-        rows.filter(|(number, kind)| self.has(*number, kind)).map(|(number, kind)| self.row(number, kind)).collect()
+        rows.filter(|(number, kind)| self.has_parameter(*number, kind))
+            .map(|(number, kind)| self.row(number, kind))
+            .collect()
     }
 
-    fn has(&self, number: ParameterNumber, kind: &ParameterRow) -> bool {
+    fn has_parameter(&self, number: ParameterNumber, kind: &ParameterRow) -> bool {
         match self.profile() {
-            Some(_) => Image::holds(kind),
+            Some(_) => Image::contains_row(kind),
             None => self.value(number).is_some(),
         }
     }
@@ -81,7 +83,7 @@ impl Unit {
         let own = || self.staged.base().and_then(|image| image.get(number)).map(Value::Number);
         let value = self.cyclic_value(number).or_else(|| self.value(number).cloned()).or_else(own);
         let travel = self.travel(number);
-        let is_editable = is_editable(kind) && (self.profile().is_none() || Image::holds(kind));
+        let is_editable = is_editable(kind) && (self.profile().is_none() || Image::contains_row(kind));
         let staged = self.staged.value(number).filter(|_| is_editable);
         let meant = match (&value, staged) {
             (_, Some(staged)) => Some(Value::Number(staged)),
@@ -92,13 +94,13 @@ impl Unit {
             name: explained::parameter(number),
             kind,
             shown: value.as_ref().map(|value| words::value_text(number, value)).unwrap_or_default(),
-            meaning: meant.and_then(|value| self.meaning(number, &value)),
+            meaning: meant.and_then(|value| self.value_meaning(number, &value)),
             unit: words::unit(kind),
-            range: kind.allowed(travel).filter(|_| is_editable).map(explained::range),
+            range: kind.allowed_values(travel).filter(|_| is_editable).map(explained::range_text),
             travel,
             factory: self.factory_value(number, kind).map(|own| own.to_string()).unwrap_or_default(),
             staged,
-            is_edited: self.staged.differs(number).is_some(),
+            is_edited: self.staged.difference_of(number).is_some(),
             changed_from: self.staged.changed_from(number),
             is_editable,
             value,
@@ -108,14 +110,14 @@ impl Unit {
     /// Returns a value from the cyclic data of a drive if it is newer than the reading: words, measurements and errors.
     fn cyclic_value(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
-        let value = match number.base() {
+        let value = match number.drive1_number() {
             CONTROL => self.moves.last_setpoint(drive)?.control.to_u16().into(),
             SPEED_SHARE => self.moves.last_setpoint(drive)?.speed.get().into(),
             TORQUE_SHARE => self.moves.last_setpoint(drive)?.torque.get().into(),
             TARGET => self.moves.last_setpoint(drive)?.target.into(),
-            STATUS => self.actual(drive)?.status.to_u16().into(),
-            SPEED => self.actual(drive)?.speed.into(),
-            POSITION => self.actual(drive)?.position.into(),
+            STATUS => self.actual_values(drive)?.status.to_u16().into(),
+            SPEED => self.actual_values(drive)?.speed.into(),
+            POSITION => self.actual_values(drive)?.position.into(),
             base @ NEWEST_ERROR..=OLDEST_ERROR => {
                 self.drive_status(drive)?.buffer.get(usize::from(base - NEWEST_ERROR))?.code().into()
             }
@@ -146,22 +148,22 @@ impl Unit {
     }
 
     /// Describes a value if the number is not self-explanatory.
-    fn meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
+    fn value_meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,
             Value::Text(text) => return words::nominal_value(number, text),
         };
         let drive = number.drive();
-        match (number.base(), drive) {
+        match (number.drive1_number(), drive) {
             // Positions are shown in the edited scale.
-            (LOWER | UPPER | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
+            (LOWER_LIMIT | UPPER_LIMIT | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
                 let ruler = self.edited_ruler(drive);
                 let measure = if ruler.pitch.is_some() { PositionUnit::Millimetres } else { PositionUnit::Turns };
-                let place = ruler.of(*value, measure)?;
+                let place = ruler.from_steps(*value, measure)?;
                 let text = TEXTS.text("hd_entry.place").with_number(
                     "value",
                     place,
-                    decimals_of(place, ruler.decimals(measure).min(4)),
+                    decimals_of(place, ruler.decimal_places(measure).min(4)),
                 );
                 Some(text.with_text("unit", TEXTS.text(measure.unit())))
             }
@@ -173,7 +175,7 @@ impl Unit {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);
                 Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
             }
-            _ => words::meaning(number, *value),
+            _ => words::value_meaning(number, *value),
         }
     }
 }

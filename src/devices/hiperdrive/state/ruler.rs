@@ -44,7 +44,7 @@ impl Ruler {
     }
 
     /// Converts steps to a unit. Returns `None` for millimetres without a pitch.
-    pub fn of(self, steps: i64, measure: PositionUnit) -> Option<f64> {
+    pub fn from_steps(self, steps: i64, measure: PositionUnit) -> Option<f64> {
         Some(steps as f64 / self.steps_per_unit(measure)?)
     }
 
@@ -52,7 +52,7 @@ impl Ruler {
     ///
     /// # Errors
     /// Returns [`PositionRangeError`] if there is none.
-    pub fn steps(self, value: f64, measure: PositionUnit) -> Result<i32, PositionRangeError> {
+    pub fn to_steps(self, value: f64, measure: PositionUnit) -> Result<i32, PositionRangeError> {
         let unit = self.steps_per_unit(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
@@ -65,7 +65,7 @@ impl Ruler {
     }
 
     /// Returns the number of decimals that distinguishes all steps.
-    pub fn decimals(self, measure: PositionUnit) -> usize {
+    pub fn decimal_places(self, measure: PositionUnit) -> usize {
         let unit = self.steps_per_unit(measure).unwrap_or(1.0);
         // At most 9: steps per turn have five digits in addition to those of 256.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
@@ -94,24 +94,24 @@ mod tests {
 
     #[test]
     fn steps_convert_to_every_unit() {
-        let of = |ruler: Ruler, steps, measure| ruler.of(steps, measure).unwrap();
+        let of = |ruler: Ruler, steps, measure| ruler.from_steps(steps, measure).unwrap();
         assert_eq!(of(SPINDLE, 163_840, PositionUnit::Turns), 2.5);
         assert_eq!(of(SPINDLE, -16_384, PositionUnit::Degrees), -90.0);
         assert_eq!(of(SPINDLE, 163_840, PositionUnit::Millimetres), 10.0);
         assert_eq!(of(hundredths(), 1234, PositionUnit::Millimetres), 12.34);
-        assert_eq!(Ruler::FACTORY.of(1, PositionUnit::Millimetres), None);
+        assert_eq!(Ruler::FACTORY.from_steps(1, PositionUnit::Millimetres), None);
         assert_eq!(Ruler::FACTORY.available_units().count(), 3);
         assert_eq!(SPINDLE.available_units().count(), 4);
     }
 
     #[test]
     fn typed_values_become_the_nearest_step() {
-        assert_eq!(hundredths().steps(12.344, PositionUnit::Millimetres), Ok(1234));
-        assert_eq!(hundredths().steps(-0.005, PositionUnit::Millimetres), Ok(-1));
-        assert_eq!(SPINDLE.steps(90.0, PositionUnit::Degrees), Ok(16_384));
-        assert_eq!(Ruler::FACTORY.steps(1.0, PositionUnit::Millimetres), Err(PositionRangeError::NoPitch));
+        assert_eq!(hundredths().to_steps(12.344, PositionUnit::Millimetres), Ok(1234));
+        assert_eq!(hundredths().to_steps(-0.005, PositionUnit::Millimetres), Ok(-1));
+        assert_eq!(SPINDLE.to_steps(90.0, PositionUnit::Degrees), Ok(16_384));
+        assert_eq!(Ruler::FACTORY.to_steps(1.0, PositionUnit::Millimetres), Err(PositionRangeError::NoPitch));
         // 32768 turns do not fit: 2³¹ / 65536.
-        let beyond = SPINDLE.steps(32_768.0, PositionUnit::Turns).unwrap_err();
+        let beyond = SPINDLE.to_steps(32_768.0, PositionUnit::Turns).unwrap_err();
         assert!(
             matches!(beyond, PositionRangeError::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
         );
@@ -119,12 +119,12 @@ mod tests {
 
     #[test]
     fn decimals_distinguish_adjacent_steps() {
-        assert_eq!(hundredths().decimals(PositionUnit::Millimetres), 2);
-        assert_eq!(SPINDLE.decimals(PositionUnit::Steps), 0);
+        assert_eq!(hundredths().decimal_places(PositionUnit::Millimetres), 2);
+        assert_eq!(SPINDLE.decimal_places(PositionUnit::Steps), 0);
         // 65536 steps per turn, 182.04 per degree, 16384 per millimetre.
-        assert_eq!(SPINDLE.decimals(PositionUnit::Turns), 5);
-        assert_eq!(SPINDLE.decimals(PositionUnit::Degrees), 3);
-        assert_eq!(SPINDLE.decimals(PositionUnit::Millimetres), 5);
+        assert_eq!(SPINDLE.decimal_places(PositionUnit::Turns), 5);
+        assert_eq!(SPINDLE.decimal_places(PositionUnit::Degrees), 3);
+        assert_eq!(SPINDLE.decimal_places(PositionUnit::Millimetres), 5);
     }
 
     #[test]

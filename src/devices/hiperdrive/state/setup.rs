@@ -3,9 +3,9 @@
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
 
-use super::axis::{Axis, AxisAction, AxisButton, AxisStep, Device, DriveFacts, DriveRequest, report};
+use super::axis::{Axis, AxisAction, AxisButton, AxisStep, Device, DriveFacts, DriveRequest, write_report};
 use super::review::ReviewState;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::action::{Action as StudioAction, TaskResult};
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, Phase, Source};
@@ -13,7 +13,7 @@ use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
 use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, SpeedTorque};
 use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
-use crate::devices::hiperdrive::protocol::drive_parameter::{NUMERATOR, REFERENCE, REQUESTED};
+use crate::devices::hiperdrive::protocol::drive_parameter::{NUMERATOR, REFERENCE, REQUESTED_BY_BUS};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -22,7 +22,7 @@ use crate::store::write_atomically;
 /// Parameters of a drive that the set-up uses, by their numbers for drive 1.
 const AXIS: std::ops::RangeInclusive<u16> = 152..=REFERENCE;
 
-impl Unit {
+impl HiperdriveDevice {
     pub fn axis(&self) -> Option<&Axis> {
         self.axes.get(&self.drive())
     }
@@ -35,7 +35,7 @@ impl Unit {
         match self.session.plan_obstacle() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
-            None if self.survey.is_none() || self.number(self.drive(), NUMERATOR).is_none() => {
+            None if self.survey.is_none() || self.parameter_value(self.drive(), NUMERATOR).is_none() => {
                 Err(TEXTS.text("hd_axis.unread"))
             }
             None if self.is_moving() => Err(TEXTS.text("hd_axis.moving")),
@@ -51,9 +51,9 @@ impl Unit {
         self.session.plan_obstacle().map_or(Ok(()), Err)
     }
 
-    pub fn seen(&self, drive: DriveNumber) -> DriveFacts {
+    pub fn drive_facts(&self, drive: DriveNumber) -> DriveFacts {
         let view = self.moves.drive(drive);
-        let actual = self.actual(drive);
+        let actual = self.actual_values(drive);
         let is_heard = !self.moves.is_open() || self.moves.is_data_valid();
         let position = actual.filter(|own| own.status.is_present() && is_heard).map(|own| own.position);
         let errors = self.drive_status(drive).filter(|own| own.faults > 0);
@@ -69,12 +69,12 @@ impl Unit {
             actual,
             actual_at: self.last_report_time(drive),
             position,
-            values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
+            values: AXIS.filter_map(|number| Some((number, self.parameter_value(drive, number)?))).collect(),
             unsaved: self.unsaved_values(drive),
             times_set: self.position_set_count(drive),
-            requested: self.number(drive, REQUESTED).map(|value| value == 1),
+            requested: self.parameter_value(drive, REQUESTED_BY_BUS).map(|value| value == 1),
             scale: self.scale(drive),
-            pitch: self.pitch(drive),
+            pitch: self.spindle_pitch(drive),
             limits: self.limits(drive),
             family,
             locks: self.moves.motion_locks(drive),
@@ -103,33 +103,34 @@ impl Unit {
 
     pub(super) fn apply_axis_action(&mut self, action: AxisAction, services: &mut Services) {
         let drive = self.drive();
-        let seen = self.seen(drive);
+        let seen = self.drive_facts(drive);
         if action == AxisAction::Begin {
-            return self.begin_axis(drive, services);
+            return self.begin_axis_setup(drive, services);
         }
         let when = services.current_time().strftime("%Y-%m-%d %H:%M").to_string();
         let Some(axis) = self.axes.get_mut(&drive) else { return };
         match action {
             AxisAction::Begin => {}
-            AxisAction::Edit(entries) => axis.edit(*entries),
-            AxisAction::Press(button) => match axis.ask(button, &seen) {
-                Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
+            AxisAction::Edit(entries) => axis.set_entries(*entries),
+            AxisAction::Press(button) => match axis.request(button, &seen) {
+                Ok(ask) => self.execute_request(drive, button, ask, &seen, services),
                 Err(why) => self.report_drive_message(drive, Severity::Warning, vec![why], services),
             },
             AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
                 // Until this step, the entries serve only for a preview. Afterwards, positions are measured on this
                 // spindle everywhere.
-                let confirms =
-                    axis.step() == AxisStep::Scale && axis.end().is_none() && axis.check_can_continue(&seen).is_ok();
-                let pitch = axis.entries().pitch().ok().filter(|_| confirms);
-                axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen }, &when);
+                let confirms = axis.step() == AxisStep::Scale
+                    && axis.setup_end().is_none()
+                    && axis.check_can_continue(&seen).is_ok();
+                let pitch = axis.entries().parse_pitch().ok().filter(|_| confirms);
+                axis.next_step(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen }, &when);
                 if let Some(pitch) = pitch {
                     self.pitches.insert(drive, pitch);
                 }
             }
-            AxisAction::Skip => axis.skip(&seen, &when),
-            AxisAction::Back => axis.back(&seen),
+            AxisAction::Skip => axis.skip_step(&seen, &when),
+            AxisAction::Back => axis.go_back(&seen),
             AxisAction::Cancel => {
                 axis.cancel(&seen, &when);
                 self.moves.stop();
@@ -153,7 +154,7 @@ impl Unit {
         }
     }
 
-    fn begin_axis(&mut self, drive: DriveNumber, services: &mut Services) {
+    fn begin_axis_setup(&mut self, drive: DriveNumber, services: &mut Services) {
         if let Err(why) = self.check_can_set_up() {
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
@@ -165,14 +166,14 @@ impl Unit {
         let own = self.drive_identity(axis.drive());
         let device = Device {
             name: self.session.name(),
-            variant: own.map(|own| words::variant(own.variant)),
+            variant: own.map(|own| words::variant_text(own.variant)),
             serial_number: own.map_or_else(String::new, |own| own.serial_number.clone()),
         };
-        report(axis, &self.seen(axis.drive()), &device, language)
+        write_report(axis, &self.drive_facts(axis.drive()), &device, language)
     }
 
     /// Executes the request of a button. Every persistent change is planned and then reviewed by the user.
-    fn carry_out(
+    fn execute_request(
         &mut self,
         drive: DriveNumber,
         button: AxisButton,
@@ -203,8 +204,8 @@ impl Unit {
                     return;
                 }
             }
-            DriveRequest::Take => self.act(super::HiperdriveAction::Take, services),
-            DriveRequest::Give => self.act(super::HiperdriveAction::Give, services),
+            DriveRequest::Take => self.handle_action(super::HiperdriveAction::Take, services),
+            DriveRequest::Give => self.handle_action(super::HiperdriveAction::Give, services),
             DriveRequest::Move(target) => {
                 let request = MotionRequest::Move { target: *target, effort: SpeedTorque::DEFAULT_JOG };
                 if let Err(why) = self.check_motion_allowed(drive, request) {
@@ -221,7 +222,7 @@ impl Unit {
                     target.power_cycle();
                     self.switched = true;
                 }
-                self.axes.values_mut().for_each(Axis::lose);
+                self.axes.values_mut().for_each(Axis::handle_connection_loss);
                 self.submit(HiperdriveJob::Survey, services);
                 return;
             }
@@ -233,7 +234,7 @@ impl Unit {
             _ => true,
         };
         if let Some(axis) = self.axes.get_mut(&drive).filter(|_| begins) {
-            axis.begin(ask, seen);
+            axis.begin_request(ask, seen);
         }
     }
 
@@ -249,31 +250,33 @@ impl Unit {
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),
             _ => None,
         });
-        let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        let seen: Vec<(DriveNumber, DriveFacts)> =
+            self.axes.keys().map(|drive| (*drive, self.drive_facts(*drive))).collect();
         for (drive, seen) in seen {
             let Some(axis) = self.axes.get_mut(&drive) else { continue };
             if !seen.connected {
-                axis.lose();
+                axis.handle_connection_loss();
             }
             if axis.is_writing() {
                 match write {
-                    Some(Some(Ok(()))) => axis.written(),
+                    Some(Some(Ok(()))) => axis.mark_written(),
                     Some(Some(Err(begun))) => axis.handle_write_failure(begun),
                     Some(None) => {}
                     None => axis.handle_write_failure(false),
                 }
             }
-            axis.look(&seen);
+            axis.update(&seen);
         }
     }
 
     /// Records that all parameters were read, which shows whether the saved values have survived.
     pub(super) fn handle_axes_survey(&mut self) {
         let switched = std::mem::take(&mut self.switched);
-        let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        let seen: Vec<(DriveNumber, DriveFacts)> =
+            self.axes.keys().map(|drive| (*drive, self.drive_facts(*drive))).collect();
         for (drive, seen) in seen {
             if let Some(axis) = self.axes.get_mut(&drive) {
-                axis.surveyed(&seen, switched);
+                axis.on_survey(&seen, switched);
             }
         }
     }

@@ -15,12 +15,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use edit::{Edit, EditError, LimitsPolicy};
-pub use mark::Mark;
+pub use mark::EditFinding;
 
 use crate::app::history::History;
 use crate::app::{EditHistoryParts, SnapshotEdits};
 use crate::devices::hiperdrive::profile::Image;
-use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
+use crate::devices::hiperdrive::protocol::{
+    DriveNumber, Family, ParameterAccess, ParameterNumber, ParameterRow, Travel,
+};
 
 /// Source of the values with which edits are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,7 +68,7 @@ pub struct ValueDifference {
 /// the drive, which are not stored. Setting the position (198) is a separate change.
 pub fn is_editable(row: &ParameterRow) -> bool {
     let is_of_keys = matches!(row.number, 170..=182);
-    row.access == Access::ReadWrite && row.number != 198 && (Image::holds(row) || is_of_keys)
+    row.access == ParameterAccess::ReadWrite && row.number != 198 && (Image::contains_row(row) || is_of_keys)
 }
 
 impl StagedEdits {
@@ -87,7 +89,7 @@ impl StagedEdits {
 
     /// Adopts the new content of the profile. If it equals the edited values, the profile was saved, and the undo
     /// history is kept. Otherwise another program wrote it, and only the values edited here keep their edits.
-    pub fn saved(&mut self, image: Image) {
+    pub fn adopt_saved(&mut self, image: Image) {
         if self.wanted.as_ref() == Some(&image) {
             self.base = Some(image);
             return;
@@ -102,7 +104,9 @@ impl StagedEdits {
     /// Adopts a full reading of the device. Edits and their undo history are kept.
     pub fn refresh(&mut self, now: Image) {
         match (&self.base, &mut self.wanted) {
-            (Some(before), Some(wanted)) => self.history.update_all_states(wanted, |own| rebase(own, before, &now)),
+            (Some(before), Some(wanted)) => {
+                self.history.update_all_states(wanted, |own| rebase_edits(own, before, &now))
+            }
             _ => self.wanted = Some(now.clone()),
         }
         self.earlier = self.base.replace(now);
@@ -113,7 +117,7 @@ impl StagedEdits {
     /// Adopts a reading of some parameters and keeps the others. Has no effect before a full reading.
     pub fn refresh_partially(&mut self, read: &Image) {
         if let Some(base) = &self.base {
-            self.refresh(base.with(read));
+            self.refresh(base.overlaid_with(read));
         }
     }
 
@@ -132,7 +136,7 @@ impl StagedEdits {
     }
 
     /// Returns the edited values, or `None` if nothing was read.
-    pub fn wanted(&self) -> Option<&Image> {
+    pub fn edited_values(&self) -> Option<&Image> {
         self.wanted.as_ref()
     }
 
@@ -148,7 +152,7 @@ impl StagedEdits {
     }
 
     /// Returns how the edited value of a parameter differs, or `None` if it does not.
-    pub fn differs(&self, number: ParameterNumber) -> Option<ValueDifference> {
+    pub fn difference_of(&self, number: ParameterNumber) -> Option<ValueDifference> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.get(number), wanted.get(number));
         (from != to).then_some(ValueDifference { number, from, to })
@@ -157,11 +161,11 @@ impl StagedEdits {
     pub fn differences(&self) -> Vec<ValueDifference> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let numbers: std::collections::BTreeSet<_> = base.values.keys().chain(wanted.values.keys()).copied().collect();
-        numbers.into_iter().filter_map(|number| self.differs(number)).collect()
+        numbers.into_iter().filter_map(|number| self.difference_of(number)).collect()
     }
 
     /// Returns the edited values that differ from the device, as the basis of a plan.
-    pub fn edited(&self) -> Image {
+    pub fn changed_values(&self) -> Image {
         let wanted = |differs: ValueDifference| Some((differs.number, differs.to?));
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
     }
@@ -170,21 +174,21 @@ impl StagedEdits {
     ///
     /// # Errors
     /// Returns the reason if the edit is not possible. Nothing is changed in that case.
-    pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
-        let after = self.tried(edit)?;
-        Ok(self.step(after))
+    pub fn apply_edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
+        let after = self.preview_edit(edit)?;
+        Ok(self.apply_step(after))
     }
 
     /// Returns the values that an edit would produce, for a preview. The edit is not made.
     ///
     /// # Errors
     /// Returns the reason if the edit is not possible.
-    pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
+    pub fn preview_edit(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
-        edit::edited((base, wanted), edit, self.base_source, &self.families)
+        edit::apply_edit((base, wanted), edit, self.base_source, &self.families)
     }
 
-    fn step(&mut self, after: Image) -> bool {
+    fn apply_step(&mut self, after: Image) -> bool {
         self.wanted.as_mut().is_some_and(|wanted| self.history.apply_step(wanted, after))
     }
 
@@ -219,7 +223,7 @@ impl StagedEdits {
                 None => {}
             }
         }
-        self.step(wanted);
+        self.apply_step(wanted);
     }
 }
 
@@ -249,7 +253,7 @@ fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel
 }
 
 /// Moves the edits made relative to `before` to the values of `now`.
-fn rebase(own: &mut Image, before: &Image, now: &Image) {
+fn rebase_edits(own: &mut Image, before: &Image, now: &Image) {
     let mut rebased = now.clone();
     for (number, value) in &own.values {
         // An edit of a parameter that no longer exists is dropped.

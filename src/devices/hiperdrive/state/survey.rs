@@ -2,7 +2,7 @@
 //! masters.
 
 use super::staged::is_editable;
-use super::unit::Unit;
+use super::unit::HiperdriveDevice;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile};
 use crate::app::{SettingsReadState, Severity, Text};
@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-impl Unit {
+impl HiperdriveDevice {
     /// Adopts a reading of the device. Edits are kept unless they belong to another device.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_different_device(&survey.identity) {
@@ -86,7 +86,7 @@ impl Unit {
             Some(own.limits) != shown.and_then(|image| image.limits(drive)) || Some(own.scale) != scale
         }) || held
             .and_then(|own| own.rules().reference)
-            .zip(self.number(drive, REFERENCE))
+            .zip(self.parameter_value(drive, REFERENCE))
             .is_some_and(|(own, shown)| own != shown)
     }
 
@@ -136,7 +136,7 @@ impl Unit {
     }
 
     pub(super) fn take_reading(&mut self, reading: DriveReading) {
-        let before = self.actual(reading.drive).map(|own| own.status.state());
+        let before = self.actual_values(reading.drive).map(|own| own.status.state());
         self.readings.insert(reading.drive, reading);
         self.request_fault_cause(reading.drive, before);
     }

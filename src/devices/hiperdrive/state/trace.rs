@@ -7,7 +7,7 @@ use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::buses::ethernet_ip::protocol::{
     Command, EncapsulationStatus, Frame, GeneralStatus, LogicalKind, Reply, Request, Service,
 };
-use crate::devices::hiperdrive::procedures::Damage;
+use crate::devices::hiperdrive::procedures::ReplyDamage;
 use crate::devices::hiperdrive::protocol::{ParameterNumber, Value, ValueError};
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::devices::hiperdrive::state::{TEXTS, words};
@@ -22,13 +22,13 @@ pub(super) struct FrameDecoder {
 
 impl FrameDecoder {
     /// Maximum number of remembered requests. The host sends the next request after the reply or its time-out.
-    const REMEMBERED: usize = 8;
+    const MAX_REQUESTS: usize = 8;
 
     pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
         let Some(bytes) = entry.bytes.to_bytes() else {
             return FrameExplanation::from_error(Text::new("trace.hidden"));
         };
-        let broken = |error| FrameExplanation::from_error(explained::damage_text(&Damage::Packet(error)));
+        let broken = |error| FrameExplanation::from_error(explained::damage_text(&ReplyDamage::Packet(error)));
         let frame = match Frame::parse(&bytes) {
             Ok(frame) => frame,
             Err(error) => return broken(error),
@@ -48,7 +48,7 @@ impl FrameDecoder {
         };
         let Some(message) = body.message() else {
             return if is_reply {
-                FrameExplanation::from_error(explained::damage_text(&Damage::Empty))
+                FrameExplanation::from_error(explained::damage_text(&ReplyDamage::Empty))
             } else {
                 name.into()
             };
@@ -69,7 +69,7 @@ impl FrameDecoder {
     }
 
     fn remember_request(&mut self, frame: Frame, request: Request) {
-        self.requests.truncate(Self::REMEMBERED - 1);
+        self.requests.truncate(Self::MAX_REQUESTS - 1);
         self.requests.push_front((frame, request));
     }
 
@@ -87,7 +87,7 @@ fn reply_meaning(reply: &Reply, request: Option<&Request>) -> FrameExplanation {
     let read = request.filter(|request| request.service == Service::GET && reply.service == Service::GET);
     match read.and_then(parameter_of).and_then(|number| value_texts(number, &reply.data)) {
         Some(Ok(texts)) => texts.into(),
-        Some(Err(error)) => FrameExplanation::from_error(explained::damage_text(&Damage::Value(error))),
+        Some(Err(error)) => FrameExplanation::from_error(explained::damage_text(&ReplyDamage::Value(error))),
         None => vec![TEXTS.text("hd_trace.done")].into(),
     }
 }
@@ -122,7 +122,7 @@ fn value_texts(number: ParameterNumber, data: &[u8]) -> Option<Result<Vec<Text>,
         Value::Number(tenths) if row.unit == "0.1 rpm" => {
             Some(TEXTS.text("hd_entry.rpm").with_number("rpm", tenths as f64 / 10.0, 1))
         }
-        Value::Number(value) => words::meaning(number, value),
+        Value::Number(value) => words::value_meaning(number, value),
         Value::Text(_) => None,
     };
     // A meaning in whole units replaces a number of tenths.

@@ -10,9 +10,9 @@ use super::moves::DriveMotion;
 use super::record::Record;
 use super::remembered::ExchangedValues;
 use super::ruler::{PositionUnit, Ruler};
-use super::staged::{Mark, StagedEdits};
+use super::staged::{EditFinding, StagedEdits};
 use super::trace::FrameDecoder;
-use super::unsaved::Unsaved;
+use super::unsaved::UnsavedChanges;
 use crate::app::check::CheckLine;
 use crate::app::live_session::LiveSession;
 use crate::app::session::{Phase, Session, Source};
@@ -31,7 +31,7 @@ use crate::devices::hiperdrive::protocol::{
 use crate::devices::hiperdrive::sim::Target;
 use crate::units::Moment;
 
-pub struct Unit {
+pub struct HiperdriveDevice {
     pub session: Session<Hiperdrive>,
     pub survey: Option<Survey>,
     pub status: Option<Status>,
@@ -53,7 +53,7 @@ pub struct Unit {
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
     /// Whether the supply of the virtual device has been switched since the device was read.
     pub(super) switched: bool,
-    pub(super) unsaved: Unsaved,
+    pub(super) unsaved: UnsavedChanges,
     /// Values exchanged with the settings, or `None` before the first exchange.
     pub(super) exchanged: Option<ExchangedValues>,
     /// Limit marks set by another window since control was taken.
@@ -74,9 +74,9 @@ pub struct Unit {
     pub(super) is_remote: bool,
 }
 
-impl Unit {
-    pub(super) fn with(session: Session<Hiperdrive>) -> Self {
-        Unit {
+impl HiperdriveDevice {
+    pub(super) fn from_session(session: Session<Hiperdrive>) -> Self {
+        HiperdriveDevice {
             session,
             survey: None,
             status: None,
@@ -95,7 +95,7 @@ impl Unit {
             pitches: BTreeMap::new(),
             axes: BTreeMap::new(),
             switched: false,
-            unsaved: Unsaved::default(),
+            unsaved: UnsavedChanges::default(),
             exchanged: None,
             marks: SettingsReadState::Unread,
             readings: BTreeMap::new(),
@@ -116,7 +116,7 @@ impl Unit {
 
     /// Returns the edited profile if the session is that of a profile.
     pub(crate) fn edited_profile(&self) -> Option<HiperdriveProfile> {
-        let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
+        let (profile, wanted) = (self.profile()?, self.staged.edited_values()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
     }
 
@@ -140,7 +140,7 @@ impl Unit {
     pub fn drives(&self) -> Vec<DriveNumber> {
         match self.identity() {
             Some(own) => own.drives.iter().map(|drive| drive.number).collect(),
-            None => self.staged.wanted().map(Image::drives).unwrap_or_default(),
+            None => self.staged.edited_values().map(Image::drives).unwrap_or_default(),
         }
     }
 
@@ -156,7 +156,7 @@ impl Unit {
             let before = std::mem::replace(&mut self.drive, drive);
             let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
             self.records.insert(before, std::mem::replace(&mut self.record, next));
-            self.record.gap();
+            self.record.mark_gap();
             self.record.track.poll(self.session.line.as_ref().and_then(LiveSession::polling_interval), false);
             self.request_temperatures();
         }
@@ -164,7 +164,7 @@ impl Unit {
 
     fn new_record(&self) -> Record {
         let mut record = Record::default();
-        self.began.iter().for_each(|began| record.begin(began));
+        self.began.iter().for_each(|began| record.begin_session(began));
         record
     }
 
@@ -178,7 +178,7 @@ impl Unit {
     }
 
     /// Returns the value of a numeric parameter of a drive as last read, given the parameter number for drive 1.
-    pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
+    pub fn parameter_value(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         match self.value(ParameterNumber::for_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
             Value::Text(_) => None,
@@ -190,10 +190,11 @@ impl Unit {
     }
 
     /// Returns the last data received from a drive over the cyclic connection or by polling.
-    pub fn actual(&self, drive: DriveNumber) -> Option<ActualValues> {
+    pub fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // Values read at the start are void once the connection is lost.
-        let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
+        let surveyed =
+            || self.surveyed_values(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
         self.moves.actual_values(drive).or_else(read).or_else(surveyed)
     }
 
@@ -206,16 +207,16 @@ impl Unit {
         }
     }
 
-    fn surveyed(&self, drive: DriveNumber) -> Option<ActualValues> {
+    fn surveyed_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         Some(ActualValues {
-            status: StatusWord::new(u16::try_from(self.number(drive, STATUS)?).ok()?),
-            speed: i16::try_from(self.number(drive, SPEED)?).ok()?,
-            position: i32::try_from(self.number(drive, POSITION)?).ok()?,
+            status: StatusWord::new(u16::try_from(self.parameter_value(drive, STATUS)?).ok()?),
+            speed: i16::try_from(self.parameter_value(drive, SPEED)?).ok()?,
+            position: i32::try_from(self.parameter_value(drive, POSITION)?).ok()?,
         })
     }
 
     pub fn state(&self, drive: DriveNumber) -> Option<State> {
-        self.actual(drive).map(|own| own.status.state())
+        self.actual_values(drive).map(|own| own.status.state())
     }
 
     /// Returns whether a drive is known to be moving or about to move.
@@ -232,21 +233,21 @@ impl Unit {
     }
 
     pub fn ruler(&self, drive: DriveNumber) -> Ruler {
-        Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
+        Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.spindle_pitch(drive) }
     }
 
     pub fn edited_ruler(&self, drive: DriveNumber) -> Ruler {
-        let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
-        Ruler { scale, pitch: self.pitch(drive) }
+        let scale = self.staged.edited_values().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
+        Ruler { scale, pitch: self.spindle_pitch(drive) }
     }
 
     /// Returns the pitch of the spindle that a drive turns, if entered by the user.
-    pub fn pitch(&self, drive: DriveNumber) -> Option<Length> {
+    pub fn spindle_pitch(&self, drive: DriveNumber) -> Option<Length> {
         self.pitches.get(&drive).copied()
     }
 
     pub fn speed_scale(&self, drive: DriveNumber) -> SpeedScale {
-        let part = |number| self.number(drive, number).and_then(|value| u16::try_from(value).ok());
+        let part = |number| self.parameter_value(drive, number).and_then(|value| u16::try_from(value).ok());
         let scale = part(SPEED_NUMERATOR)
             .zip(part(SPEED_DENOMINATOR))
             .and_then(|(above, below)| SpeedScale::new(above, below).ok());
@@ -278,8 +279,8 @@ impl Unit {
         self.limits(drive).filter(|_| self.moves.unconfirmed_drives().contains(&drive))
     }
 
-    pub fn marks(&self) -> Vec<Mark> {
-        self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
+    pub fn findings(&self) -> Vec<EditFinding> {
+        self.staged.findings(|drive| self.actual_values(drive).map(|own| i64::from(own.position)))
     }
 
     pub fn is_dirty(&self) -> bool {

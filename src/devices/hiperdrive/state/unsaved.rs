@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use super::unit::Unit;
-use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written};
+use super::unit::HiperdriveDevice;
+use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written_values};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Unsaved {
+pub(super) struct UnsavedChanges {
     /// Saved values, by number, of the parameters written since the last save.
     before: BTreeMap<u16, i64>,
     /// Number of times this program has set the position of each drive.
@@ -17,12 +17,12 @@ pub(super) struct Unsaved {
     sets: Vec<DriveNumber>,
 }
 
-impl Unsaved {
+impl UnsavedChanges {
     /// Records that the execution of a plan is starting. Its parameters may differ from the saved values from then on.
-    pub(super) fn begin(&mut self, plan: &HiperdrivePlan) {
+    pub(super) fn begin_plan(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
-        let writes = written(plan);
+        let writes = written_values(plan);
         let touched: Vec<ParameterNumber> = match plan.ops.iter().any(changes_all) {
             true => base.values.keys().copied().collect(),
             false => writes.values.keys().copied().collect(),
@@ -32,12 +32,12 @@ impl Unsaved {
                 self.before.entry(number.get()).or_insert(before);
             }
         }
-        let reference = |number: &ParameterNumber| number.drive().filter(|_| number.base() == REFERENCE);
+        let reference = |number: &ParameterNumber| number.drive().filter(|_| number.drive1_number() == REFERENCE);
         self.sets = writes.values.keys().filter_map(reference).collect();
     }
 
-    pub(super) fn done(&mut self, plan: &HiperdrivePlan) {
-        self.ended(true);
+    pub(super) fn finish_plan(&mut self, plan: &HiperdrivePlan) {
+        self.interrupt_plan(true);
         let saves = |op: &Op| matches!(op, Op::Service(Service::Save | Service::FactoryAll));
         if plan.ops.iter().any(saves) {
             self.before.clear();
@@ -45,7 +45,7 @@ impl Unsaved {
     }
 
     /// Records that a plan ended early. `begun` tells whether part of it was or may have been written.
-    pub(super) fn ended(&mut self, begun: bool) {
+    pub(super) fn interrupt_plan(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);
         }
@@ -60,11 +60,11 @@ impl Unsaved {
     }
 
     /// Returns the saved values by number, for storage.
-    pub(super) const fn saved(&self) -> &BTreeMap<u16, i64> {
+    pub(super) const fn saved_values(&self) -> &BTreeMap<u16, i64> {
         &self.before
     }
 
-    pub(super) fn extend(&mut self, earlier: &BTreeMap<u16, i64>) {
+    pub(super) fn add_earlier(&mut self, earlier: &BTreeMap<u16, i64>) {
         for (number, before) in earlier {
             self.before.entry(*number).or_insert(*before);
         }
@@ -74,13 +74,13 @@ impl Unsaved {
     fn for_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         let own = |(number, before): (&u16, &i64)| {
             let number = ParameterNumber::new(*number).filter(|number| number.drive() == Some(drive))?;
-            Some((number.base(), *before))
+            Some((number.drive1_number(), *before))
         };
         self.before.iter().filter_map(own).collect()
     }
 }
 
-impl Unit {
+impl HiperdriveDevice {
     /// Returns the saved values of a drive that have been overwritten since, by their numbers for drive 1.
     pub(super) fn unsaved_values(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         self.unsaved.for_drive(drive)
@@ -113,27 +113,27 @@ mod tests {
     fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();
         let (factory, mut now) = (image(&[(24, 0), (366, 350)]), image(&[(24, 0), (366, 350)]));
-        let mut own = Unsaved::default();
+        let mut own = UnsavedChanges::default();
         for speed in [300, 200] {
             let (identity, positions) = (ProfileIdentity::default(), Positions::new());
             let state = DeviceState { identity, image: now.clone(), positions };
             let plan = plan_edits(&state, &image(&[(366, speed)])).unwrap().without_save();
-            own.begin(&plan);
-            own.done(&plan);
-            now = now.with(&image(&[(366, speed)]));
+            own.begin_plan(&plan);
+            own.finish_plan(&plan);
+            now = now.overlaid_with(&image(&[(366, speed)]));
             own.read(&values(&now));
         }
         assert_eq!(own.for_drive(three), BTreeMap::from([(166, 350)]));
         assert!(own.for_drive(DriveNumber::FIRST).is_empty());
-        let mut later = Unsaved::default();
-        later.extend(own.saved());
+        let mut later = UnsavedChanges::default();
+        later.add_earlier(own.saved_values());
         assert_eq!(later.for_drive(three), BTreeMap::from([(166, 350)]));
         // It has lost its supply, or the values were written back.
         later.read(&values(&factory));
         assert!(later.for_drive(three).is_empty());
         let plan = plan_service(&now, Service::Save);
-        own.begin(&plan);
-        own.done(&plan);
+        own.begin_plan(&plan);
+        own.finish_plan(&plan);
         assert!(own.for_drive(three).is_empty());
     }
 }

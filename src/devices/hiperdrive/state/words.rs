@@ -1,10 +1,10 @@
 //! Parameter texts for the table: values, units, the meaning of a number, and why an edit was refused.
 
-use super::staged::{EditError, Mark};
+use super::staged::{EditError, EditFinding};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    CONTROL, MAXIMUM_SPEED, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, REQUESTED, SERVICE, STATUS, TIMEOUT, VARIANT,
+    CONTROL, MAXIMUM_SPEED, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, REQUESTED_BY_BUS, SERVICE, STATUS, TIMEOUT, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
     self, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
@@ -17,7 +17,9 @@ use crate::devices::hiperdrive::state::explain as words;
 pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
-        Value::Number(value) if matches!(number.base(), CONTROL | STATUS | 108..=118) => format!("0x{value:04X}"),
+        Value::Number(value) if matches!(number.drive1_number(), CONTROL | STATUS | 108..=118) => {
+            format!("0x{value:04X}")
+        }
         Value::Number(value) => value.to_string(),
     }
 }
@@ -43,13 +45,13 @@ pub fn nominal_value(number: ParameterNumber, text: &str) -> Option<Text> {
 }
 
 /// Describes the meaning of a number, or returns `None` if the number is self-explanatory.
-pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
+pub fn value_meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     let tenths = |id: &'static str, name: &'static str| TEXTS.text(id).with_number(name, value as f64 / 10.0, 1);
     let word = || u16::try_from(value).ok();
-    Some(match number.base() {
+    Some(match number.drive1_number() {
         9 => tenths("hd_check.supply", "volts"),
         12 => match u8::try_from(value).ok().and_then(AddressSwitch::parse) {
-            Some(switch) => hiperdrive::switch(switch),
+            Some(switch) => hiperdrive::switch_text(switch),
             None => TEXTS.text("hd_check.unknown_switch").with("number", value),
         },
         SERVICE => TEXTS.text(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
@@ -61,8 +63,8 @@ pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
             0xFFFF => "hd_meaning.word_none",
             _ => "hd_meaning.word_error",
         }),
-        VARIANT => hiperdrive::variant(Variant::new(word()?)),
-        REQUESTED => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
+        VARIANT => hiperdrive::variant_text(Variant::new(word()?)),
+        REQUESTED_BY_BUS => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
         MAXIMUM_SPEED => tenths("hd_entry.rpm", "rpm"),
         TIMEOUT if value == NO_TIMEOUT => TEXTS.text("hd_meaning.no_timeout"),
         TIMEOUT => tenths("hd_check.timeout", "seconds"),
@@ -70,34 +72,36 @@ pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     })
 }
 
-pub fn refused(error: &EditError) -> Text {
+pub fn edit_error_text(error: &EditError) -> Text {
     match error {
         EditError::NothingRead => TEXTS.text("hd_entry.nothing_read"),
         EditError::Unknown(number) => TEXTS.text("hd_said.unknown").with("number", number),
-        EditError::NotRead(number) => about("hd_entry.not_read", *number),
-        EditError::NotAValue(number) => about("hd_entry.not_a_value", *number),
+        EditError::NotRead(number) => text_about("hd_entry.not_read", *number),
+        EditError::NotAValue(number) => text_about("hd_entry.not_a_value", *number),
         EditError::OutOfRange(error) => words::out_of_range(error),
         EditError::Crossed { lower, upper } => TEXTS.text("hd_entry.crossed").with("lower", lower).with("upper", upper),
     }
 }
 
-pub fn mark(mark: &Mark) -> Text {
+pub fn finding_text(mark: &EditFinding) -> Text {
     match mark {
-        Mark::OutOfRange(error) => words::out_of_range(error),
-        Mark::Crossed { lower, upper, .. } => TEXTS.text("hd_entry.crossed").with("lower", lower).with("upper", upper),
-        Mark::Outside { position, lower, upper, .. } => {
+        EditFinding::OutOfRange(error) => words::out_of_range(error),
+        EditFinding::Crossed { lower, upper, .. } => {
+            TEXTS.text("hd_entry.crossed").with("lower", lower).with("upper", upper)
+        }
+        EditFinding::Outside { position, lower, upper, .. } => {
             TEXTS.text("hd_mark.outside").with("position", position).with("lower", lower).with("upper", upper)
         }
-        Mark::LimitsMove { lower, upper, .. } => TEXTS
+        EditFinding::LimitsMove { lower, upper, .. } => TEXTS
             .text("hd_mark.limits_move")
             .with_number("lower_now", lower.0, 2)
             .with_number("lower_then", lower.1, 2)
             .with_number("upper_now", upper.0, 2)
             .with_number("upper_then", upper.1, 2),
-        Mark::NoTimeout { .. } => TEXTS.text("hd_mark.no_timeout"),
+        EditFinding::NoTimeout { .. } => TEXTS.text("hd_mark.no_timeout"),
     }
 }
 
-fn about(id: &'static str, number: ParameterNumber) -> Text {
+fn text_about(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", words::parameter(number))
 }

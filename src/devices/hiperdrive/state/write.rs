@@ -3,8 +3,8 @@
 use super::record::Record;
 use super::review::{Review, operation_texts};
 use super::ruler::PositionUnit;
-use super::unit::Unit;
-use super::unsaved::Unsaved;
+use super::unit::HiperdriveDevice;
+use super::unsaved::UnsavedChanges;
 use super::words;
 use crate::app::review::OperationTexts;
 use crate::app::services::Services;
@@ -17,20 +17,20 @@ use crate::devices::hiperdrive::profile::{
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::{Body, ProfileError};
 
-impl Unit {
+impl HiperdriveDevice {
     pub(crate) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 }
 
-impl HasMemory for Unit {
+impl HasMemory for HiperdriveDevice {
     fn operation_texts(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
-        operation_texts(prepared, op, |drive| self.pitch(drive))
+        operation_texts(prepared, op, |drive| self.spindle_pitch(drive))
     }
 
     fn edited_change(&self) -> Option<Change> {
-        let edited = self.staged.edited();
+        let edited = self.staged.changed_values();
         (!edited.values.is_empty()).then(|| Change::Write(Box::new(edited)))
     }
 
@@ -51,13 +51,13 @@ impl HasMemory for Unit {
     /// Stops all motion and returns the job that writes the plan. No limit of write cycles is known for these devices.
     fn commit_job(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
-        self.unsaved.begin(&agreed.prepared.plan);
+        self.unsaved.begin_plan(&agreed.prepared.plan);
         HiperdriveJob::Commit(Box::new(agreed))
     }
 
     fn handle_executed_plan(&mut self, _: &Committed, _: &mut Services) {
         if let Some(prepared) = self.session.review.as_ref().and_then(Review::plan_in_progress) {
-            self.unsaved.done(&prepared.plan);
+            self.unsaved.finish_plan(&prepared.plan);
         }
     }
 
@@ -69,18 +69,18 @@ impl HasMemory for Unit {
         (self.survey, self.status, self.check, self.refusal) = (None, None, None, None);
         self.staged.clear();
         self.moves.clear();
-        self.record.forget();
-        self.records.values_mut().for_each(Record::forget);
+        self.record.clear();
+        self.records.values_mut().for_each(Record::clear);
         self.records.retain(|_, record| !record.track.recorder.is_empty());
         self.readings.clear();
         self.pitches.clear();
         self.axes.clear();
-        self.unsaved = Unsaved::default();
+        self.unsaved = UnsavedChanges::default();
         (self.exchanged, self.measure) = (None, PositionUnit::default());
     }
 }
 
-impl HasProfile for Unit {
+impl HasProfile for HiperdriveDevice {
     fn read_all() -> HiperdriveJob {
         HiperdriveJob::Save
     }
@@ -90,19 +90,20 @@ impl HasProfile for Unit {
     }
 
     fn save_remarks(&self) -> Vec<Text> {
-        truncated_list(&self.marks(), words::mark)
+        truncated_list(&self.findings(), words::finding_text)
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
         // Values that the device refuses are in no profile. Values of the wrong length should have been in this one.
-        let missing: Vec<Text> = survey.wrong_lengths.iter().map(|own| explained::item(Item(own.number))).collect();
+        let missing: Vec<Text> =
+            survey.wrong_lengths.iter().map(|own| explained::item_text(Item(own.number))).collect();
         if !missing.is_empty() {
             return Some(Err(missing));
         }
         let kept = survey.identity.stored_parameters().filter_map(|number| Some((number, base.get(number)?)));
         let image = Image { values: kept.collect() };
-        let profile = HiperdriveProfile::of(survey.identity.profile(), image);
+        let profile = HiperdriveProfile::from_image(survey.identity.profile(), image);
         let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(profile), remarks)))
     }

@@ -13,10 +13,11 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, End, Entries, StepStatus, words, write_outcome_lines,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, LengthEntries, SetupEnd, StepStatus, words,
+    write_outcome_lines,
 };
-use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, TEXTS, explain};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{
     button_with_reason, card, card_with_trailing, enabled_button, labelled_button, paragraph, primary_button, row,
     severity, split,
@@ -32,7 +33,7 @@ pub(super) struct AxisUiState {
 
 impl AxisUiState {
     /// Returns how long a step has been displayed, or zero for a new step.
-    fn age(&mut self, step: AxisStep, now: f64) -> Duration {
+    fn time_displayed(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
         Duration::from_secs_f64((now - since).max(0.0))
@@ -40,7 +41,7 @@ impl AxisUiState {
 }
 
 pub(crate) struct AxisPanel<'a> {
-    unit: &'a Unit,
+    unit: &'a HiperdriveDevice,
     axis: &'a Axis,
     seen: &'a DriveFacts,
     /// Time for which the current step has been shown.
@@ -52,7 +53,7 @@ impl AxisPanel<'_> {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
-    fn button(
+    fn button_ui(
         &self,
         ui: &mut Ui,
         theme: &Theme,
@@ -60,34 +61,40 @@ impl AxisPanel<'_> {
         (icon, word): (&str, &str),
         actions: &mut Vec<Action>,
     ) {
-        let allowed = self.axis.ask(own, self.seen).map(|_| ());
+        let allowed = self.axis.request(own, self.seen).map(|_| ());
         if button_with_reason(ui, theme, &allowed, icon, word).clicked() {
             self.push(actions, Run::Press(own));
         }
     }
 }
 
-const NUMBERS: f32 = 15.0;
-const PRIMARY: f32 = 112.0;
+const NUMBER_WIDTH: f32 = 15.0;
+const PRIMARY_BUTTON_WIDTH: f32 = 112.0;
 /// Width below which the list of steps is placed above the step rather than beside it.
-const BESIDE: f32 = 640.0;
+const MIN_TWO_COLUMN_WIDTH: f32 = 640.0;
 
-pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &HiperdriveDevice,
+    view: &mut AxisUiState,
+    actions: &mut Vec<Action>,
+) {
     let Some(axis) = unit.axis() else {
         intro_ui(ui, theme, unit, actions);
         theme.add_gap(ui);
         notes_ui(ui, theme);
         return;
     };
-    let seen = unit.seen(unit.drive());
-    let looked_at = view.age(axis.step(), ui.input(|input| input.time));
+    let seen = unit.drive_facts(unit.drive());
+    let looked_at = view.time_displayed(axis.step(), ui.input(|input| input.time));
     let shown = AxisPanel { unit, axis, seen: &seen, looked_at };
-    if let Some(end) = axis.end() {
+    if let Some(end) = axis.setup_end() {
         end_ui(ui, theme, &shown, end, actions);
         theme.add_gap(ui);
     }
-    let goes_on = axis.end().is_none();
-    if ui.available_width() < BESIDE {
+    let goes_on = axis.setup_end().is_none();
+    if ui.available_width() < MIN_TWO_COLUMN_WIDTH {
         // In a narrow window, the list is not beside the step. At the end, the list is the result.
         if goes_on {
             step_ui(ui, theme, &shown, actions);
@@ -101,7 +108,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     split(
         ui,
         theme,
-        (0.36, BESIDE),
+        (0.36, MIN_TWO_COLUMN_WIDTH),
         actions,
         |ui, _| card(ui, theme, TEXTS.text("hd_axis.title"), |ui| step_list_ui(ui, theme, &shown)),
         |ui, actions| {
@@ -114,14 +121,14 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     );
 }
 
-fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_axis.title"), |ui| {
-        paragraph(ui, say(theme, "hd_axis.words"));
+        paragraph(ui, translate(theme, "hd_axis.words"));
         ui.add_space(theme.space.between);
         // The button comes before the list, so it is visible without scrolling in a low window.
         let allowed = unit.check_can_set_up();
         ui.horizontal(|ui| {
-            if primary_button(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
+            if primary_button(ui, theme, allowed.is_ok(), icons::PLAY, &translate(theme, "hd_axis.begin")).clicked() {
                 actions.push(Action::device(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
@@ -133,7 +140,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
         ui.spacing_mut().interact_size.y = ui.text_style_height(&egui::TextStyle::Body);
         for (number, step) in (1..).zip(AxisStep::ALL) {
             ui.horizontal(|ui| {
-                let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);
+                let size = egui::vec2(NUMBER_WIDTH, ui.spacing().interact_size.y);
                 let layout = egui::Layout::right_to_left(egui::Align::Center);
                 ui.allocate_ui_with_layout(size, layout, |ui| ui.label(theme.label(number.to_string())));
                 ui.label(theme.label(theme.format_text(&words::title(step))));
@@ -155,7 +162,7 @@ fn step_list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
         let has_result = matches!(reached, StepStatus::Done | StepStatus::Failed);
         let found = match (step, reached) {
             (AxisStep::Reference, StepStatus::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
-            _ => words::found(shown.axis, step, shown.axis.displayed_facts(shown.seen)).filter(|_| has_result),
+            _ => words::finding_text(shown.axis, step, shown.axis.displayed_facts(shown.seen)).filter(|_| has_result),
         };
         Line {
             title: theme.format_text(&words::title(step)),
@@ -191,27 +198,27 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
         ui.add_space(theme.space.between);
         live_ui(ui, theme, shown);
         ui.add_space(theme.space.between);
-        let mut entries = axis.entries().shown(theme.language);
+        let mut entries = axis.entries().localized(theme.language);
         content::content_ui(ui, theme, shown, &mut entries, actions);
-        if entries != axis.entries().shown(theme.language) {
+        if entries != axis.entries().localized(theme.language) {
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
         theme.add_gap(ui);
         buttons_ui(ui, theme, shown, actions);
         ui.add_space(theme.space.between);
-        messages(ui, theme, shown, &entries);
+        messages_ui(ui, theme, shown, &entries);
     });
 }
 
 /// Draws the messages that change: a fault, invalidated results, missing conditions, and findings.
-fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
+fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.invalidated_step().map(words::invalidated_step);
-    if let Some(why) = words::fault(seen) {
-        line(ui, theme, Severity::Error, &why);
+    if let Some(why) = words::fault_text(seen) {
+        line_ui(ui, theme, Severity::Error, &why);
     }
     if let Some(why) = &fallen {
-        line(ui, theme, Severity::Error, why);
+        line_ui(ui, theme, Severity::Error, why);
     }
     if let Some(why) = words::unexplained_change_text(axis, seen) {
         warning_ui(ui, theme, &why);
@@ -221,9 +228,9 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries
     }
     content::messages_ui(ui, theme, shown, entries);
     // The limits to be checked are shown large above.
-    if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
+    if let Some(found) = words::finding_text(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
         ui.add_space(theme.space.inside);
-        row(ui, theme, &say(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.format_text(&found)));
+        row(ui, theme, &translate(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.format_text(&found)));
     }
     if let (AxisStep::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
         warning_ui(ui, theme, &differences);
@@ -234,12 +241,12 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     theme.sunken_frame().show(ui, |ui| {
         crate::ui::controls::fill_width(ui);
         let position = shown.seen.position.map_or_else(
-            || say(theme, "hd_axis.none"),
-            |position| theme.format_text(&words::millimetres(shown.seen.ruler(), position.into())),
+            || translate(theme, "hd_axis.none"),
+            |position| theme.format_text(&words::millimetres_text(shown.seen.ruler(), position.into())),
         );
-        row(ui, theme, &say(theme, "hd_axis.position"), theme.value(position));
+        row(ui, theme, &translate(theme, "hd_axis.position"), theme.value(position));
         let state = shown.seen.actual.map_or_else(
-            || say(theme, "hd_axis.none"),
+            || translate(theme, "hd_axis.none"),
             |actual| theme.format_text(&explain::state(actual.status.state())),
         );
         let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
@@ -248,7 +255,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
             (true, None) => RichText::new(state).color(theme.palette.bad),
             (true, Some(code)) => RichText::new(format!("{state} {:04X}", code.code())).color(theme.palette.bad),
         };
-        row(ui, theme, &say(theme, "hd_axis.state"), state);
+        row(ui, theme, &translate(theme, "hd_axis.state"), state);
     });
 }
 
@@ -259,15 +266,20 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
     let step = axis.step();
     let allowed = axis.check_can_continue(seen);
     ui.horizontal_wrapped(|ui| {
-        if enabled_button(ui, settled && axis.can_go_back(seen), icons::ARROW_U_UP_LEFT, &say(theme, "hd_axis.back"))
-            .clicked()
+        if enabled_button(
+            ui,
+            settled && axis.can_go_back(seen),
+            icons::ARROW_U_UP_LEFT,
+            &translate(theme, "hd_axis.back"),
+        )
+        .clicked()
         {
             shown.push(actions, Run::Back);
         }
-        if labelled_button(ui, icons::X, &say(theme, "hd_axis.cancel")).clicked() {
+        if labelled_button(ui, icons::X, &translate(theme, "hd_axis.cancel")).clicked() {
             shown.push(actions, Run::Cancel);
         }
-        let word = say(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
+        let word = translate(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         right_aligned_ui(ui, |ui| {
             if primary_button(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
@@ -281,7 +293,7 @@ fn skip_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     if step.is_optional() {
         let id = if step == AxisStep::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
         let allowed = Axis::check_step_settled(shown.looked_at).is_ok() && shown.axis.can_skip(shown.seen);
-        if enabled_button(ui, allowed, "", &say(theme, id)).clicked() {
+        if enabled_button(ui, allowed, "", &translate(theme, id)).clicked() {
             shown.push(actions, Run::Skip);
         }
     }
@@ -296,25 +308,30 @@ fn with_nonbreaking_spaces(words: String) -> String {
 /// is below them.
 fn right_aligned_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
-    let width = if rest >= PRIMARY { rest } else { ui.available_width() };
+    let width = if rest >= PRIMARY_BUTTON_WIDTH { rest } else { ui.available_width() };
     let size = egui::vec2(width.max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: End, actions: &mut Vec<Action>) {
+fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: SetupEnd, actions: &mut Vec<Action>) {
     let axis = shown.axis;
-    let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
+    let title = if end == SetupEnd::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
     card(ui, theme, TEXTS.text(title), |ui| {
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, shown.unit.check_can_set_up().is_ok(), icons::PLAY, &say(theme, "hd_axis.again"))
-                .clicked()
+            if enabled_button(
+                ui,
+                shown.unit.check_can_set_up().is_ok(),
+                icons::PLAY,
+                &translate(theme, "hd_axis.again"),
+            )
+            .clicked()
             {
                 shown.push(actions, Run::Begin);
             }
-            if labelled_button(ui, icons::FLOPPY_DISK, &say(theme, "hd_axis.save_report")).clicked() {
+            if labelled_button(ui, icons::FLOPPY_DISK, &translate(theme, "hd_axis.save_report")).clicked() {
                 shown.push(actions, Run::AskReport);
             }
-            if labelled_button(ui, icons::COPY, &say(theme, "hd_axis.copy_report")).clicked()
+            if labelled_button(ui, icons::COPY, &translate(theme, "hd_axis.copy_report")).clicked()
                 && let Some(report) = shown.unit.axis_report(theme.language)
             {
                 ui.ctx().copy_text(report);
@@ -322,19 +339,19 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: End, actions: 
             write_back_button_ui(ui, theme, shown, actions);
         });
         ui.add_space(theme.space.inside);
-        if end == End::Cancelled {
-            line(ui, theme, Severity::Note, &TEXTS.text("hd_axis.stands"));
+        if end == SetupEnd::Cancelled {
+            line_ui(ui, theme, Severity::Note, &TEXTS.text("hd_axis.stands"));
         }
         let weight = if axis.is_saved() || axis.changes().is_empty() { Severity::Note } else { Severity::Warning };
         for text in write_outcome_lines(axis, shown.seen) {
-            line(ui, theme, weight, &text);
+            line_ui(ui, theme, weight, &text);
         }
     });
 }
 
 fn write_back_button_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
-    let word = say(theme, "hd_axis.recall");
-    shown.button(ui, theme, AxisButton::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
+    let word = translate(theme, "hd_axis.recall");
+    shown.button_ui(ui, theme, AxisButton::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
 fn notes_ui(ui: &mut Ui, theme: &Theme) {
@@ -347,12 +364,12 @@ fn notes_ui(ui: &mut Ui, theme: &Theme) {
             "hd_axis.note_factory",
             "hd_axis.note_words",
         ] {
-            line(ui, theme, Severity::Note, &TEXTS.text(id));
+            line_ui(ui, theme, Severity::Note, &TEXTS.text(id));
         }
     });
 }
 
-fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
+fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));

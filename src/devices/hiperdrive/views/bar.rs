@@ -5,16 +5,16 @@ use egui::{RichText, Stroke, Ui, vec2};
 use super::outside;
 use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
-use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, TEXTS, explain};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{button_with_reason, message_label, name, paragraph};
 use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 use crate::ui::{Theme, icons};
 
 /// Size of the STOP button, wide enough for a flat hand.
-const STOP: egui::Vec2 = vec2(112.0, 44.0);
+const STOP_BUTTON_SIZE: egui::Vec2 = vec2(112.0, 44.0);
 
-pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
+pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {
         stop_ui(ui, theme, studio, actions);
@@ -28,7 +28,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
                     false => ("hd_bar.take", unit.check_can_take_control(), Hiperdrive::Take),
                 };
                 let icon = if unit.moves.is_open() { icons::PLUGS } else { icons::PLUGS_CONNECTED };
-                if button_with_reason(ui, theme, &allowed, icon, &say(theme, word)).clicked() {
+                if button_with_reason(ui, theme, &allowed, icon, &translate(theme, word)).clicked() {
                     actions.push(Action::device(id, act));
                 }
                 if !is_hub {
@@ -40,20 +40,20 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
                 let place = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(size, place, |ui| control_ui(ui, theme, unit));
             }
-            paragraph(ui, theme.caption(format!("{}  {}", icons::WARNING, say(theme, "hd_bar.stop_is_not"))));
+            paragraph(ui, theme.caption(format!("{}  {}", icons::WARNING, translate(theme, "hd_bar.stop_is_not"))));
         });
     });
 }
 
 /// Draws whether this window has control of the drives, or why it lost control. Alarms come first. The height is
 /// constant, so no button moves when control is lost.
-fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+fn control_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     let palette = theme.palette;
-    let (words, ink) = match (unit.loss_reason(), outside::badge(theme, unit)) {
+    let (words, ink) = match (unit.loss_reason(), outside::warning_badge(theme, unit)) {
         (Some(why), _) => (format!("{}  {}", icons::WARNING_CIRCLE, theme.format_text(&why)), palette.bad),
         (None, Some(badge)) => (badge.text().to_owned(), palette.bad),
-        (None, None) if unit.moves.is_open() => (say(theme, "hd_bar.in_control"), palette.good),
-        (None, None) => (say(theme, "hd_bar.watching"), palette.muted),
+        (None, None) if unit.moves.is_open() => (translate(theme, "hd_bar.in_control"), palette.good),
+        (None, None) => (translate(theme, "hd_bar.watching"), palette.muted),
     };
     message_label(ui, theme, words, ink.into());
 }
@@ -66,10 +66,10 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.bold_font(theme.sizes.section)).color(ink);
     let button = egui::Button::new(text).fill(fill).stroke(Stroke::NONE);
     // The button acts when it is pressed down. A stop does not wait for the release.
-    let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP, button)).inner;
+    let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP_BUTTON_SIZE, button)).inner;
     let response = response
         .on_hover_text(theme.translate("hd_bar.stop_hint"))
-        .on_disabled_hover_text(say(theme, "hd_bar.stop_without_control"));
+        .on_disabled_hover_text(translate(theme, "hd_bar.stop_without_control"));
     let pressed = press_began(ui, &response);
     if name(response, active, &word).clicked() || pressed {
         // A second press shortly after the first has the same meaning.
@@ -78,12 +78,12 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     }
 }
 
-fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn drives(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let drives = unit.drives();
     if drives.len() < 2 {
         return;
     }
-    ui.label(theme.label(say(theme, "hd_bar.drive")));
+    ui.label(theme.label(translate(theme, "hd_bar.drive")));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
         ui.spacing_mut().button_padding.x = 6.0;
@@ -96,7 +96,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
+fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.polled_state(drive) };
     // All signs have the same width, so no button moves when a drive changes its state.
@@ -109,7 +109,8 @@ fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (Dri
         Some(State::NotReady) => (icons::PLUGS, palette.muted),
         None => (icons::QUESTION, palette.muted),
     };
-    let words = state.map_or_else(|| say(theme, "hd_bar.unknown"), |state| theme.format_text(&explain::state(state)));
+    let words =
+        state.map_or_else(|| translate(theme, "hd_bar.unknown"), |state| theme.format_text(&explain::state(state)));
     let name = TEXTS.text("hd_bar.named").with("drive", drive.get());
     let name = theme.format_text(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
     let is_shown = drive == unit.drive();

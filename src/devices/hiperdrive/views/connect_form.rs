@@ -7,7 +7,7 @@ use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{
     Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveLinkKind, TEXTS, VirtualHub,
 };
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{dropdown, enabled_button, entry, labelled_button, paragraph, problem_ui, spinner};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
@@ -49,7 +49,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
                 setpoint_interval_ui(ui, theme, form);
                 ui.add_space(theme.space.inside);
                 let finder = dialog.finder_as::<DiscoveryFinder>();
-                discovery(ui, theme, finder.and_then(|own| own.discovery.as_ref()), actions);
+                discovery_ui(ui, theme, finder.and_then(|own| own.discovery.as_ref()), actions);
             }
             HiperdriveLinkKind::Replay => recording_file_ui(ui, theme, &mut form.file, actions),
         }
@@ -57,51 +57,51 @@ impl TypedConnectForm for HiperdriveConnectForm {
             if form.kind == HiperdriveLinkKind::Virtual {
                 setpoint_interval_ui(ui, theme, form);
             }
-            let word = say(theme, "connect.byte_order");
+            let word = translate(theme, "connect.byte_order");
             entry(ui, theme, &word, |ui| {
                 let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
-                dropdown(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, say(theme, id))));
+                dropdown(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, translate(theme, id))));
             });
             let (_, rest) = HiperdriveForm::link_entries();
-            entries_ui(ui, theme, say, rest, &mut form.typed);
+            entries_ui(ui, theme, translate, rest, &mut form.typed);
         }
     }
 }
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
-    let word = say(theme, "connect.hub");
+    let word = translate(theme, "connect.hub");
     entry(ui, theme, &word, |ui| {
         let hubs = [
             (VirtualHub::Adapter, "connect.hub_adapter"),
             (VirtualHub::Four, "connect.hub_four"),
             (VirtualHub::Eight, "connect.hub_eight"),
         ];
-        dropdown(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, say(theme, id))));
+        dropdown(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, translate(theme, id))));
     });
     let own = form.virtual_device_entries();
-    entries_ui(ui, theme, say, own, &mut form.typed);
+    entries_ui(ui, theme, translate, own, &mut form.typed);
 }
 
 fn setpoint_interval_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     let (interval, _) = HiperdriveForm::link_entries();
-    entries_ui(ui, theme, say, interval, &mut form.typed);
+    entries_ui(ui, theme, translate, interval, &mut form.typed);
 }
 
-fn discovery(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actions: &mut Vec<Action>) {
+fn discovery_ui(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actions: &mut Vec<Action>) {
     let is_running = discovery.is_some_and(Discovery::is_running);
     ui.horizontal(|ui| {
-        let word = say(theme, "connect.discover");
+        let word = translate(theme, "connect.discover");
         if enabled_button(ui, !is_running, icons::MAGNIFYING_GLASS, &word).clicked() {
             actions.push(Action::Connect(Connect::find::<DiscoveryFinder>(DiscoveryAction::Discover)));
         }
         if is_running {
             spinner(ui, theme);
         }
-        ui.label(theme.caption(say(theme, "connect.discover_words")));
+        ui.label(theme.caption(translate(theme, "connect.discover_words")));
     });
     match discovery.and_then(|own| own.found.as_ref()) {
         Some(Err(why)) => problem_ui(ui, theme, Some(why)),
-        Some(Ok(found)) if found.is_empty() => paragraph(ui, theme.caption(say(theme, "connect.nobody"))),
+        Some(Ok(found)) if found.is_empty() => paragraph(ui, theme.caption(translate(theme, "connect.nobody"))),
         _ => {}
     }
     for (at, device) in discovery.map(Discovery::devices).unwrap_or_default().iter().enumerate() {
@@ -114,7 +114,7 @@ fn discovery(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actions:
             let serial = Text::new("check.serial").with("number", device.serial_number);
             ui.label(theme.label(theme.format_text(&serial)));
             if !device.is_hiperdrive {
-                ui.label(theme.caption(say(theme, "connect.other_maker")));
+                ui.label(theme.caption(translate(theme, "connect.other_maker")));
             }
         });
     }

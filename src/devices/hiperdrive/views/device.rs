@@ -5,8 +5,8 @@ use egui::Ui;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::Service;
-use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, TEXTS, explain};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
     card, card_with_trailing, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
@@ -21,7 +21,7 @@ const SERVICES: [(Service, &str); 5] = [
     (Service::Reset, "hd_services.reset"),
 ];
 
-pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let is_profile = unit.profile().is_some();
     two_columns(
         ui,
@@ -46,18 +46,23 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
     }
 }
 
-fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         if unit.profile().is_none()
-            && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &say(theme, "hd_device.read"))
-                .clicked()
+            && enabled_button(
+                ui,
+                unit.session.is_readable(),
+                icons::ARROW_CLOCKWISE,
+                &translate(theme, "hd_device.read"),
+            )
+            .clicked()
         {
             actions.push(Action::Command(unit.session.id, DeviceCommand::Read));
         }
     };
     card_with_trailing(ui, theme, TEXTS.text("hd_device.title"), read, |ui| {
         let Some(identity) = unit.identity() else {
-            empty_placeholder(ui, theme, &say(theme, "hd_device.nothing"), None);
+            empty_placeholder(ui, theme, &translate(theme, "hd_device.nothing"), None);
             return;
         };
         ui.label(theme.value(&identity.category));
@@ -69,30 +74,30 @@ fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action
             ("hd_device.date", &identity.production_date),
             ("hd_device.version", &identity.version),
         ] {
-            row(ui, theme, &say(theme, label), theme.monospace(value));
+            row(ui, theme, &translate(theme, label), theme.monospace(value));
         }
     });
 }
 
-fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     card(ui, theme, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {
-            empty_placeholder(ui, theme, &say(theme, "hd_device.nothing"), None);
+            empty_placeholder(ui, theme, &translate(theme, "hd_device.nothing"), None);
             return;
         };
         if identity.drives.is_empty() {
-            empty_placeholder(ui, theme, &say(theme, "hd_drives.none"), None);
+            empty_placeholder(ui, theme, &translate(theme, "hd_drives.none"), None);
         }
         for drive in &identity.drives {
             ui.horizontal_wrapped(|ui| {
                 ui.label(theme.heading(drive.number.get().to_string()));
                 ui.label(theme.monospace(&drive.name));
                 let id = if drive.requested { "hd_drives.requested" } else { "hd_drives.not_requested" };
-                ui.label(theme.caption(say(theme, id)));
+                ui.label(theme.caption(translate(theme, id)));
             });
-            row(ui, theme, &say(theme, "hd_device.serial"), theme.monospace(&drive.serial_number));
-            row(ui, theme, &say(theme, "hd_device.version"), theme.monospace(&drive.version));
-            row(ui, theme, &say(theme, "hd_device.article"), theme.monospace(&drive.article_number));
+            row(ui, theme, &translate(theme, "hd_device.serial"), theme.monospace(&drive.serial_number));
+            row(ui, theme, &translate(theme, "hd_device.version"), theme.monospace(&drive.version));
+            row(ui, theme, &translate(theme, "hd_device.article"), theme.monospace(&drive.article_number));
         }
         let places = identity.topology.drives();
         let taken = identity.drives.len();
@@ -103,7 +108,7 @@ fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn check_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &theme.translate("check_card.run")).clicked()
         {
@@ -115,18 +120,19 @@ fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-fn service_buttons_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn service_buttons_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
-            if enabled_button(ui, unit.session.is_ready(), "", &theme.format_text(&explain::service(service))).clicked()
+            if enabled_button(ui, unit.session.is_ready(), "", &theme.format_text(&explain::service_text(service)))
+                .clicked()
             {
                 let change = Change::Do(service);
                 actions.push(Action::device(unit.session.id, Hiperdrive::Plan(Box::new(change))));
             }
-            paragraph(ui, theme.caption(say(theme, note)));
+            paragraph(ui, theme.caption(translate(theme, note)));
             ui.add_space(theme.space.inside);
         }
-        paragraph(ui, theme.caption(say(theme, "hd_services.controller")));
+        paragraph(ui, theme.caption(translate(theme, "hd_services.controller")));
     });
 }
 
@@ -135,13 +141,13 @@ const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drive
 fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, theme.label(keep_pins_together(&say(theme, note))));
+            paragraph(ui, theme.label(with_pins_unbroken(&translate(theme, note))));
         }
     });
 }
 
 /// Returns the text with each pin and its signal, such as `2 RS-485 − green`, kept on one line.
-fn keep_pins_together(text: &str) -> String {
+fn with_pins_unbroken(text: &str) -> String {
     let is_pin = |part: &str| part.starts_with(|first: char| first.is_ascii_digit()) && !part.contains(". ");
     let parts = text.split_inclusive(": ").flat_map(|part| part.split_inclusive(", "));
     let join = |part: &str| {
@@ -153,13 +159,13 @@ fn keep_pins_together(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{WIRING, keep_pins_together};
+    use super::{WIRING, with_pins_unbroken};
     use crate::devices::hiperdrive::state::TEXTS;
     use crate::ui::wiring::assert_notes;
 
     #[test]
     fn a_pin_stays_on_the_line_of_its_signal() {
-        let kept = keep_pins_together("Each drive: 1 RS-485 + white, 2 RS-485 − green, 6 GND blue.");
+        let kept = with_pins_unbroken("Each drive: 1 RS-485 + white, 2 RS-485 − green, 6 GND blue.");
         assert_eq!(kept.replace('\u{a0}', "_"), "Each drive: 1_RS-485_+_white, 2_RS-485_−_green, 6_GND_blue.");
     }
 

@@ -25,7 +25,7 @@ use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
-use crate::devices::hiperdrive::state::{HiperdriveAction, Unit};
+use crate::devices::hiperdrive::state::{HiperdriveAction, HiperdriveDevice};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 
@@ -74,25 +74,25 @@ struct DriveEntries {
 pub(crate) struct HiperdriveView;
 
 impl TypedDeviceView for HiperdriveView {
-    type Device = Unit;
+    type Device = HiperdriveDevice;
     type Page = Page;
     type Memory = HiperdriveUiState;
     type ConnectForm = connect_form::HiperdriveConnectForm;
 
     const HAS_UNDO_KEYS: bool = true;
 
-    fn serial_number(unit: &Unit) -> Option<&str> {
+    fn serial_number(unit: &HiperdriveDevice) -> Option<&str> {
         unit.serial_number()
     }
 
-    fn named_actions(theme: &Theme, unit: &Unit) -> Vec<NamedAction> {
+    fn named_actions(theme: &Theme, unit: &HiperdriveDevice) -> Vec<NamedAction> {
         let own = |word, action| {
             NamedAction::new(theme, word, unit.session.is_ready(), Action::device(unit.session.id, action))
         };
         vec![own("check_card.run", HiperdriveAction::Check), own("palette.read_status", HiperdriveAction::ReadStatus)]
     }
 
-    fn is_edited(unit: &Unit, page: Page) -> bool {
+    fn is_edited(unit: &HiperdriveDevice, page: Page) -> bool {
         page == Page::Parameters && unit.is_dirty()
     }
 
@@ -100,7 +100,7 @@ impl TypedDeviceView for HiperdriveView {
         ui: &mut Ui,
         theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
-        unit: &Unit,
+        unit: &HiperdriveDevice,
         (page, view): (Page, &mut HiperdriveUiState),
         actions: &mut Vec<Action>,
     ) {
@@ -152,15 +152,21 @@ impl TypedDeviceView for HiperdriveView {
         });
     }
 
-    fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
+    fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink: Rgb) {
         live::value_ui(ui, theme, unit, ink);
     }
 
-    fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, _view: &mut HiperdriveUiState, actions: &mut Vec<Action>) {
+    fn watch_menu(
+        ui: &mut Ui,
+        theme: &Theme,
+        unit: &HiperdriveDevice,
+        _view: &mut HiperdriveUiState,
+        actions: &mut Vec<Action>,
+    ) {
         live::watch_menu(ui, theme, unit, actions);
     }
 
-    fn motion(unit: &Unit) -> Option<Text> {
+    fn motion(unit: &HiperdriveDevice) -> Option<Text> {
         if !unit.is_moving() {
             return None;
         }
@@ -174,6 +180,6 @@ impl TypedDeviceView for HiperdriveView {
 }
 
 /// Returns a string from this catalogue or the common one, in the window language.
-pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

@@ -7,8 +7,10 @@ use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{MotionKind, MotionLock, Phase, SpeedTorque};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd, State};
-use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{
+    HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand, TEXTS, explain, forms,
+};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{
     button_with_reason, card, card_with_trailing, dropdown, empty_placeholder, enabled_button, entry, folding_card,
     message_label, options, paragraph, row, show_error_below, show_error_beside, text_entry, two_columns,
@@ -29,26 +31,32 @@ pub(super) struct MotionUiState {
     pub(super) target: String,
 }
 
-const NUMBER: f32 = 88.0;
-const PERCENT: f32 = 56.0;
-const MEASURE: f32 = 64.0;
+const ENTRY_WIDTH: f32 = 88.0;
+const PERCENT_WIDTH: f32 = 56.0;
+const UNIT_SELECTOR_WIDTH: f32 = 64.0;
 /// Width from which speed and torque share one row, and width of the note between them.
 const ONE_ROW: f32 = 660.0;
-const NOTE: f32 = 112.0;
-const SAID: f32 = 32.0;
-const BESIDE: f32 = 560.0;
+const NOTE_WIDTH: f32 = 112.0;
+const MESSAGE_HEIGHT: f32 = 32.0;
+const MIN_TWO_COLUMN_WIDTH: f32 = 560.0;
 /// Window height below which the jog buttons are placed above the state diagram.
-const LOW: f32 = 760.0;
+const LOW_WINDOW_HEIGHT: f32 = 760.0;
 
-pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &HiperdriveDevice,
+    view: &mut MotionUiState,
+    actions: &mut Vec<Action>,
+) {
     if unit.profile().is_some() {
-        empty_placeholder(ui, theme, &say(theme, "hd_motion.offline"), None);
+        empty_placeholder(ui, theme, &translate(theme, "hd_motion.offline"), None);
         return;
     }
     // In a low window the pads come before the state diagram, unless the diagram shows a failure. The height of the
     // window counts, not the remaining height, so nothing moves when a notice appears.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
-    let low = ui.ctx().content_rect().height() < LOW && !has_failed;
+    let low = ui.ctx().content_rect().height() < LOW_WINDOW_HEIGHT && !has_failed;
     locks_ui(ui, theme, unit, actions);
     if !low {
         states_ui(ui, theme, unit, actions);
@@ -87,7 +95,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     figures::control_status_words_ui(ui, theme, unit, unit.drive());
 }
 
-fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.motion_locks(drive) {
         theme.sunken_frame().show(ui, |ui| {
@@ -103,18 +111,18 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
                     let places = unit.position_texts(drive, steps);
                     places.iter().map(|place| theme.format_text(place)).collect::<Vec<_>>().join("   ")
                 });
-                row(ui, theme, &say(theme, "hd_limits.lower"), theme.monospace(low));
-                row(ui, theme, &say(theme, "hd_limits.upper"), theme.monospace(high));
+                row(ui, theme, &translate(theme, "hd_limits.lower"), theme.monospace(low));
+                row(ui, theme, &translate(theme, "hd_limits.upper"), theme.monospace(high));
                 if button_with_reason(
                     ui,
                     theme,
                     &unit.check_can_confirm(drive),
                     icons::CHECK,
-                    &say(theme, "hd_limits.confirm"),
+                    &translate(theme, "hd_limits.confirm"),
                 )
                 .clicked()
                 {
-                    let confirm = Hiperdrive::Drive(Motor::ConfirmLimits(drive));
+                    let confirm = Hiperdrive::Drive(MotorCommand::ConfirmLimits(drive));
                     actions.push(Action::device(unit.session.id, confirm));
                 }
             }
@@ -125,8 +133,8 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
 
 /// Draws the state diagram and the current activity of the drive. The activity is beside the heading or, in a narrow
 /// window, below it. The height is constant, since nothing may move under a pointer that holds a drive's button.
-fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
-    let beside = ui.available_width() >= BESIDE;
+fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
+    let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     let mut acts = Vec::new();
     let aside = |ui: &mut Ui| {
         ui.allocate_space(vec2(0.0, ui.spacing().interact_size.y));
@@ -136,32 +144,32 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
     };
     card_with_trailing(ui, theme, TEXTS.text("hd_states.title"), aside, |ui| {
         let drive = unit.drive();
-        let actual = unit.actual(drive);
+        let actual = unit.actual_values(drive);
         let present = actual.map(|actual| actual.status.state());
         let names = State::ALL.map(|state| theme.format_text(&explain::state(state)));
         let open = unit.moves.is_open();
         let reachable: Vec<State> = if open { unit.reachable_states(drive) } else { Vec::new() };
-        let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| theme.format_text(&hint)));
+        let hints = State::ALL.map(|state| unit.transition_hint(drive, state).map(|hint| theme.format_text(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
-        if let Some(act) = state_machine(ui, theme, &machine).and_then(Unit::leads_to) {
+        if let Some(act) = state_machine(ui, theme, &machine).and_then(HiperdriveDevice::leads_to) {
             motor(actions, unit.session.id, act);
         }
         if !beside {
             let top = ui.cursor().top();
             ui.horizontal_wrapped(|ui| status_ui(ui, theme, unit, actions));
-            ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
+            ui.add_space((top + MESSAGE_HEIGHT - ui.cursor().top()).max(0.0));
         }
     });
     actions.append(&mut acts);
 }
 
 /// Draws a fault and how to clear it, or the outcome of the last action.
-fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn status_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
         let open = unit.moves.is_open();
-        if enabled_button(ui, open, icons::CHECK, &say(theme, "hd_states.acknowledge")).clicked() {
-            motor(actions, unit.session.id, Motor::Acknowledge);
+        if enabled_button(ui, open, icons::CHECK, &translate(theme, "hd_states.acknowledge")).clicked() {
+            motor(actions, unit.session.id, MotorCommand::Acknowledge);
         }
         let newest = unit.drive_status(drive).and_then(|own| own.buffer.first().copied());
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
@@ -177,7 +185,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
     }
 }
 
-fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
+fn motor(actions: &mut Vec<Action>, id: SessionId, motor: MotorCommand) {
     actions.push(Action::device(id, Hiperdrive::Drive(motor)));
 }
 
@@ -185,7 +193,7 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
 fn move_to_position_ui(
     ui: &mut Ui,
     theme: &Theme,
-    unit: &Unit,
+    unit: &HiperdriveDevice,
     view: &mut MotionUiState,
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
@@ -194,37 +202,37 @@ fn move_to_position_ui(
     position_entry_ui(ui, theme, unit, ("hd_move.target", &mut view.target), |text| parse(text).err(), actions);
     let target = parse(&view.target);
     let drafts = &mut view.move_effort;
-    let effort = effort_ui(
+    let effort = speed_torque_ui(
         ui,
         theme,
         unit,
         (unit.moves.move_speed_torque(drive), unit.moves.running_move_speed_torque(drive), drafts),
         &[],
-        Motor::MoveEffort,
+        MotorCommand::MoveEffort,
         actions,
     );
     let entered = effort.clone();
     let allowed = effort.and(unit.may_move(drive));
     let can_go = allowed.clone().and(target.clone().map(drop));
     ui.horizontal(|ui| {
-        if button_with_reason(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
-            target.iter().for_each(|target| motor(actions, id, Motor::Move { target: *target }));
+        if button_with_reason(ui, theme, &can_go, icons::PLAY, &translate(theme, "hd_move.go")).clicked() {
+            target.iter().for_each(|target| motor(actions, id, MotorCommand::Move { target: *target }));
         }
         match unit.moves.phase(drive) {
             Some(Phase::Paused { .. }) => {
                 let response =
-                    button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
+                    button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &translate(theme, "hd_move.resume"));
                 let pressed = press_began(ui, &response);
                 // The button replaces the pause button. A hasty second click was meant for that one.
                 if response.clicked() && !register_stop_press(ui.ctx(), false, press_time(ui, pressed)) {
-                    motor(actions, id, Motor::Resume);
+                    motor(actions, id, MotorCommand::Resume);
                 }
             }
             phase => {
                 let on_its_way = matches!(phase, Some(Phase::Moving(MotionKind::Job { .. })));
-                if enabled_button(ui, on_its_way, icons::PAUSE, &say(theme, "hd_move.pause")).clicked() {
+                if enabled_button(ui, on_its_way, icons::PAUSE, &translate(theme, "hd_move.pause")).clicked() {
                     register_stop_press(ui.ctx(), true, ui.input(|input| input.time));
-                    motor(actions, id, Motor::Pause);
+                    motor(actions, id, MotorCommand::Pause);
                 }
             }
         }
@@ -240,7 +248,13 @@ fn move_to_position_ui(
 }
 
 /// Draws the controls for a run at a speed, to the end of the range or, for experts, without end.
-fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
+fn speed_control_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &HiperdriveDevice,
+    allowed: &Result<(), Text>,
+    actions: &mut Vec<Action>,
+) {
     let id = unit.session.id;
     let allowed = &allowed.clone().and(unit.may_move_until_stopped(unit.drive()));
     let mut expert = unit.moves.allows_endless_run(unit.drive());
@@ -248,22 +262,22 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     ui.horizontal_wrapped(|ui| {
         let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
         for (direction, word) in ways {
-            if button_with_reason(ui, theme, allowed, "", &say(theme, word)).clicked() {
-                motor(actions, id, Motor::Run { direction, end });
+            if button_with_reason(ui, theme, allowed, "", &translate(theme, word)).clicked() {
+                motor(actions, id, MotorCommand::Run { direction, end });
             }
         }
     });
     let words = if expert { "hd_run.endless_words" } else { "hd_run.words" };
-    paragraph(ui, theme.caption(move_effort_text(theme, unit, words)));
+    paragraph(ui, theme.caption(move_speed_torque_text(theme, unit, words)));
     let endless = unit.check_can_allow_endless_run(unit.drive());
     // The option can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
-        if ui.checkbox(&mut expert, say(theme, "hd_run.expert")).changed() {
-            motor(actions, id, Motor::Expert(expert));
+        if ui.checkbox(&mut expert, translate(theme, "hd_run.expert")).changed() {
+            motor(actions, id, MotorCommand::Expert(expert));
         }
     });
     match endless {
-        Ok(()) => paragraph(ui, theme.caption(say(theme, "hd_run.expert_words"))),
+        Ok(()) => paragraph(ui, theme.caption(translate(theme, "hd_run.expert_words"))),
         Err(why) => paragraph(ui, theme.caption(theme.format_text(&why))),
     }
 }
@@ -273,16 +287,16 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
 ///
 /// # Errors
 /// Returns the reason if an entry is not a percentage. No motion may start with it.
-pub(super) fn effort_ui(
+pub(super) fn speed_torque_ui(
     ui: &mut Ui,
     theme: &Theme,
-    unit: &Unit,
+    unit: &HiperdriveDevice,
     (effort, under_way, [speed, torque]): (SpeedTorque, Option<SpeedTorque>, &mut [Draft; 2]),
     presets: &[Percent],
-    set: impl Fn(SpeedTorque) -> Motor,
+    set: impl Fn(SpeedTorque) -> MotorCommand,
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
-    let words = ["hd_effort.speed", "hd_effort.torque"].map(|word| say(theme, word));
+    let words = ["hd_effort.speed", "hd_effort.torque"].map(|word| translate(theme, word));
     let [speed_word, torque_word] = &words;
     let mut chosen = effort;
     let mut speed_ui = |ui: &mut Ui| {
@@ -307,8 +321,8 @@ pub(super) fn effort_ui(
             // The width is constant, so the torque entry does not move when the note changes.
             let height = ui.spacing().interact_size.y;
             let place = egui::Layout::left_to_right(egui::Align::Center);
-            let speed = ui.allocate_ui_with_layout(vec2(NOTE, height), place, |ui| {
-                ui.set_min_width(NOTE);
+            let speed = ui.allocate_ui_with_layout(vec2(NOTE_WIDTH, height), place, |ui| {
+                ui.set_min_width(NOTE_WIDTH);
                 note(ui, effort.speed, drawn)
             });
             ui.label(theme.label(torque_word));
@@ -350,7 +364,7 @@ fn percent_ui(
     // Typed text is dropped if another value has taken effect since: a preset, or the value of a new session.
     let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
     let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
-    let response = text_entry(ui, &mut text, PERCENT, word, "");
+    let response = text_entry(ui, &mut text, PERCENT_WIDTH, word, "");
     let typed = forms::percent(&text);
     if let Ok(percent) = &typed {
         *to = *percent;
@@ -362,7 +376,7 @@ fn percent_ui(
         // No preset is selected while the typed text is invalid, since each of them replaces it.
         let mut chosen = if typed.is_ok() { own } else { Percent::NONE };
         let shown = presets.iter().map(|own| (*own, format!("{} %", own.get())));
-        if options(ui, &say(theme, "hd_jog.speed"), &mut chosen, shown) {
+        if options(ui, &translate(theme, "hd_jog.speed"), &mut chosen, shown) {
             *draft = None;
             *to = chosen;
         }
@@ -381,7 +395,7 @@ fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: O
         (Ok(()), Some(sent), _) => {
             let words = theme.format_text(&TEXTS.text("hd_effort.sent").with("sent", sent.get()));
             let label = egui::Label::new(RichText::new(words).color(theme.palette.warn)).truncate();
-            ui.add(label).on_hover_text(say(theme, "hd_effort.waits"));
+            ui.add(label).on_hover_text(translate(theme, "hd_effort.waits"));
         }
         (Ok(()), None, Some(beside)) => {
             ui.add(egui::Label::new(theme.caption(theme.format_text(&beside))).truncate());
@@ -390,7 +404,7 @@ fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: O
     }
 }
 
-pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> String {
+pub(super) fn move_speed_torque_text(theme: &Theme, unit: &HiperdriveDevice, id: &'static str) -> String {
     let SpeedTorque { speed, torque } = unit.moves.move_speed_torque(unit.drive());
     theme.format_text(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
@@ -399,20 +413,20 @@ pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> 
 pub(super) fn position_entry_ui(
     ui: &mut Ui,
     theme: &Theme,
-    unit: &Unit,
+    unit: &HiperdriveDevice,
     (id, text): (&'static str, &mut String),
     problem: impl Fn(&str) -> Option<Text>,
     actions: &mut Vec<Action>,
 ) {
-    let word = say(theme, id);
+    let word = translate(theme, id);
     let ruler = unit.ruler(unit.drive());
     let mut measure = unit.measure;
     entry(ui, theme, &word, |ui| {
-        text_entry(ui, text, NUMBER, &word, "");
-        let measures = ruler.available_units().map(|own| (own, say(theme, own.unit())));
+        text_entry(ui, text, ENTRY_WIDTH, &word, "");
+        let measures = ruler.available_units().map(|own| (own, translate(theme, own.unit())));
         ui.push_id(id, |ui| {
-            ui.spacing_mut().combo_width = MEASURE;
-            if dropdown(ui, &say(theme, "hd_move.measure"), &mut measure, measures) {
+            ui.spacing_mut().combo_width = UNIT_SELECTOR_WIDTH;
+            if dropdown(ui, &translate(theme, "hd_move.measure"), &mut measure, measures) {
                 actions.push(Action::device(unit.session.id, Hiperdrive::SetMeasure(measure)));
             }
         });

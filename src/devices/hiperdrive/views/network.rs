@@ -8,8 +8,8 @@ use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::state::network::{self, Form};
-use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, TEXTS};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{
     button_with_reason, empty_placeholder, enabled_button, entry, folding_card, folding_card_with_trailing, mono_entry,
     options, paragraph, problem_ui, row, severity, split,
@@ -24,9 +24,15 @@ pub(super) struct NetworkUiState {
     form: Option<Form>,
 }
 
-const ADDRESS: f32 = 148.0;
+const ADDRESS_WIDTH: f32 = 148.0;
 
-pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &HiperdriveDevice,
+    view: &mut NetworkUiState,
+    actions: &mut Vec<Action>,
+) {
     if unit.profile().is_some() {
         switches_ui(ui, theme, unit);
         return;
@@ -41,29 +47,37 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Networ
     );
 }
 
-fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
+fn settings_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &HiperdriveDevice,
+    view: &mut NetworkUiState,
+    actions: &mut Vec<Action>,
+) {
     let id = unit.session.id;
     let mut asked = Vec::new();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &say(theme, "hd_net.read")).clicked() {
+        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &translate(theme, "hd_net.read"))
+            .clicked()
+        {
             asked.push(Action::Command(id, DeviceCommand::Read));
         }
     };
     folding_card_with_trailing(ui, theme, TEXTS.text("hd_net.title"), read, |ui| {
         let Some(now) = unit.network_settings() else {
-            empty_placeholder(ui, theme, &say(theme, "hd_net.nothing"), None);
+            empty_placeholder(ui, theme, &translate(theme, "hd_net.nothing"), None);
             return;
         };
         // Text entered for other settings does not apply to these.
         if view.of.as_ref() != Some(&now) {
             (view.of, view.form) = (Some(now.clone()), None);
         }
-        let before = Form::of(&now);
+        let before = Form::from_settings(&now);
         let mut form = view.form.clone().unwrap_or_else(|| before.clone());
         form_ui(ui, theme, &before, &mut form);
         if let Some(mac) = unit.network().and_then(|own| own.mac) {
             let mac: Vec<String> = mac.iter().map(|byte| format!("{byte:02X}")).collect();
-            row(ui, theme, &say(theme, "hd_net.mac"), theme.monospace(mac.join(":")));
+            row(ui, theme, &translate(theme, "hd_net.mac"), theme.monospace(mac.join(":")));
         }
         ui.add_space(theme.space.between);
         let wanted = form.settings(&now);
@@ -77,13 +91,14 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiStat
         };
         ui.horizontal_wrapped(|ui| {
             let may = allowed.as_ref().map(|_| ()).map_err(Clone::clone);
-            if button_with_reason(ui, theme, &may, icons::LIST_CHECKS, &say(theme, "hd_net.write")).clicked()
+            if button_with_reason(ui, theme, &may, icons::LIST_CHECKS, &translate(theme, "hd_net.write")).clicked()
                 && let Ok(own) = allowed
             {
                 let change = Change::Network(own);
                 actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
             }
-            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &say(theme, "hd_net.revert")).clicked() {
+            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &translate(theme, "hd_net.revert")).clicked()
+            {
                 form = before.clone();
             }
         });
@@ -93,7 +108,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiStat
 }
 
 fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
-    let word = say(theme, "hd_net.source");
+    let word = translate(theme, "hd_net.source");
     let mut sources = vec![AddressSource::Dhcp, AddressSource::Bootp, AddressSource::Stored];
     if !sources.contains(&before.source) {
         sources.push(before.source);
@@ -114,15 +129,15 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
         ("hd_net.second_server", second, second_before, false),
         ("hd_net.domain", &mut form.domain, &before.domain, false),
     ] {
-        let word = say(theme, id);
+        let word = translate(theme, id);
         if !types {
-            let shown = if was.is_empty() { say(theme, "hd_axis.none") } else { was.clone() };
+            let shown = if was.is_empty() { translate(theme, "hd_axis.none") } else { was.clone() };
             row(ui, theme, &word, theme.monospace(shown));
             continue;
         }
         entry(ui, theme, &word, |ui| {
-            let hint = if is_needed { String::new() } else { say(theme, "hd_net.optional") };
-            mono_entry(ui, theme, own, ADDRESS, &word, &hint);
+            let hint = if is_needed { String::new() } else { translate(theme, "hd_net.optional") };
+            mono_entry(ui, theme, own, ADDRESS_WIDTH, &word, &hint);
             if own != was && !was.is_empty() {
                 let was = TEXTS.text("hd_net.was").with("value", was);
                 ui.add(egui::Label::new(RichText::new(theme.format_text(&was)).color(theme.palette.staged)).truncate());
@@ -134,11 +149,11 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
 fn change_preview_ui(
     ui: &mut Ui,
     theme: &Theme,
-    unit: &Unit,
+    unit: &HiperdriveDevice,
     now: &NetworkSettings,
     wanted: &Result<NetworkSettings, Text>,
 ) {
-    ui.label(theme.label(say(theme, "hd_net.at_power_up")));
+    ui.label(theme.label(translate(theme, "hd_net.at_power_up")));
     match wanted {
         Err(why) => problem_ui(ui, theme, Some(why)),
         Ok(wanted) => {
@@ -157,14 +172,14 @@ fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     });
 }
 
-fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     folding_card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();
         if let Some(own) = switch {
-            row(ui, theme, &say(theme, "hd_net.switch_now"), theme.value(own.number().to_string()));
+            row(ui, theme, &translate(theme, "hd_net.switch_now"), theme.value(own.number().to_string()));
             ui.add_space(theme.space.inside);
         }
-        for position in network::positions(switch) {
+        for position in network::switch_positions(switch) {
             let words = theme.format_text(&position.meaning);
             ui.horizontal_top(|ui| {
                 let ink = if position.is_now { theme.palette.accent } else { theme.palette.muted };
@@ -181,6 +196,6 @@ fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             });
         }
         ui.add_space(theme.space.inside);
-        paragraph(ui, theme.caption(say(theme, "hd_net.switch_words")));
+        paragraph(ui, theme.caption(translate(theme, "hd_net.switch_words")));
     });
 }

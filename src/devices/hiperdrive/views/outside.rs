@@ -7,8 +7,8 @@ use super::motion::position_entry_ui;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand, TEXTS, forms};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{button_with_reason, card, paragraph, show_error_below};
 use crate::ui::{Theme, icons};
 
@@ -20,15 +20,21 @@ pub(super) struct Draft {
 }
 
 /// Returns a one-line warning if a drive is outside its limits.
-pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
+pub(crate) fn warning_badge(theme: &Theme, unit: &HiperdriveDevice) -> Option<RichText> {
     unit.outside_limits_text(unit.drive())?;
-    let words = format!("{}  {}", icons::WARNING, say(theme, "hd_outside.short"));
+    let words = format!("{}  {}", icons::WARNING, translate(theme, "hd_outside.short"));
     Some(RichText::new(words).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad))
 }
 
 /// Draws a card stating how the drive is outside its limits, what is blocked, and what can be done. Draws nothing if
 /// the drive is inside its limits or at the end of its range.
-pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &HiperdriveDevice,
+    draft: &mut Draft,
+    actions: &mut Vec<Action>,
+) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_limits_text(drive), unit.out_of_range_position(drive)) else {
         *draft = Draft::default();
@@ -52,7 +58,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
             (None, OutsideLimits::At(LimitSide::Above)) => "hd_outside.blocked_up",
             (None, OutsideLimits::At(LimitSide::Below)) => "hd_outside.blocked_down",
         };
-        paragraph(ui, theme.caption(say(theme, words)));
+        paragraph(ui, theme.caption(translate(theme, words)));
         // The buttons stay after a press, so the widgets below them do not move under the pointer.
         let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move_until_stopped(drive) };
         ui.horizontal_wrapped(|ui| {
@@ -61,14 +67,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
                     Direction::Clockwise => "hd_outside.free_up",
                     Direction::Counterclockwise => "hd_outside.free_down",
                 };
-                if button_with_reason(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &say(theme, free)).clicked() {
-                    actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+                if button_with_reason(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &translate(theme, free)).clicked() {
+                    actions.push(Action::device(id, Hiperdrive::Drive(MotorCommand::FreeOutward(way))));
                 }
             }
         });
         position_entry_ui(ui, theme, unit, ("hd_outside.place", &mut draft.place), |_| None, actions);
-        if button_with_reason(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
-            let change = forms::steps(unit, &draft.place, unit.measure)
+        if button_with_reason(ui, theme, &unit.check_can_plan(), "", &translate(theme, "hd_outside.set")).clicked() {
+            let change = forms::parse_position(unit, &draft.place, unit.measure)
                 .and_then(|position| unit.reference_change(drive, position));
             draft.problem =
                 change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::iter::once;
 
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::views::translate;
 
 use egui::{RichText, ScrollArea, Ui};
 
 use super::scale;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
-use crate::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Row, Unit, forms};
+use crate::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, HiperdriveDevice, Row, forms};
 use crate::ui::controls::{empty_placeholder, options, paragraph, text_entry};
 use crate::ui::widgets::{
     RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable, RegisterView,
@@ -42,12 +42,12 @@ pub(crate) enum ParameterFilter {
     Scale,
 }
 
-const SOUGHT: f32 = 160.0;
+const SEARCH_WIDTH: f32 = 160.0;
 
 pub(super) fn page_ui(
     ui: &mut Ui,
     theme: &Theme,
-    unit: &Unit,
+    unit: &HiperdriveDevice,
     view: &mut DriveParametersUiState,
     actions: &mut Vec<Action>,
 ) {
@@ -65,11 +65,11 @@ pub(super) fn page_ui(
         return;
     }
     let rows = once(Some(unit.drive())).chain(once(None)).map(|of| {
-        let rows = unit.rows(of).into_iter().filter(|row| view.shows(theme, row));
+        let rows = unit.rows(of).into_iter().filter(|row| view.matches_filter(theme, row));
         rows.collect::<Vec<Row>>()
     });
     let rows: Vec<Vec<Row>> = rows.collect();
-    view.follow(&rows);
+    view.follow_rows(&rows);
     let id = egui::Id::unique(unit.session.id).with("hiperdrive_parameters_foot");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
@@ -80,24 +80,25 @@ pub(super) fn page_ui(
             paragraph(ui, RichText::new(words).color(theme.palette.bad));
         } else if view.is_narrow {
             let row = view.table.selected().and_then(|place| rows.get(place.group)?.get(place.row));
-            let words = row.map_or_else(|| say(theme, "hd_params.select"), |row| row_details(theme, row));
+            let words = row.map_or_else(|| translate(theme, "hd_params.select"), |row| row_details(theme, row));
             ui.add(egui::Label::new(theme.caption(words).color(theme.palette.text)).truncate());
         }
-        paragraph(ui, theme.caption(say(theme, "hd_params.controller")));
-        paragraph(ui, theme.caption(say(theme, "hd_params.not_kept")));
+        paragraph(ui, theme.caption(translate(theme, "hd_params.controller")));
+        paragraph(ui, theme.caption(translate(theme, "hd_params.not_kept")));
     });
     if rows.iter().all(Vec::is_empty) {
-        empty_placeholder(ui, theme, &say(theme, "hd_params.none"), None);
+        empty_placeholder(ui, theme, &translate(theme, "hd_params.none"), None);
     } else {
-        table(ui, theme, unit, &rows, view, actions);
+        table_ui(ui, theme, unit, &rows, view, actions);
     }
 }
 
 /// Draws the search and the filter.
 fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
-        let sought = say(theme, "hd_params.seek");
-        if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == ParameterFilter::Scale
+        let sought = translate(theme, "hd_params.seek");
+        if text_entry(ui, &mut view.sought, SEARCH_WIDTH, &sought, &sought).changed()
+            && view.shown == ParameterFilter::Scale
         {
             view.shown = ParameterFilter::All;
         }
@@ -107,7 +108,12 @@ fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
             (ParameterFilter::Changed, "hd_params.changed"),
             (ParameterFilter::Scale, "hd_scale.title"),
         ];
-        if options(ui, &say(theme, "hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, say(theme, id)))) {
+        if options(
+            ui,
+            &translate(theme, "hd_params.show"),
+            &mut view.shown,
+            shown.map(|(own, id)| (own, translate(theme, id))),
+        ) {
             // Typed text takes effect before other lines are shown.
             ui.memory_mut(|memory| memory.stop_text_input());
         }
@@ -120,13 +126,13 @@ impl DriveParametersUiState {
         self.shown == ParameterFilter::Scale && (self.table.edited_location().is_none() || self.table.is_refused())
     }
 
-    fn typed(&self) -> Option<ParameterNumber> {
+    fn typed_number(&self) -> Option<ParameterNumber> {
         let place = self.table.edited_location()?;
         self.lines.get(place.group)?.get(place.row).copied()
     }
 
-    fn shows(&self, theme: &Theme, row: &Row) -> bool {
-        if self.typed() == Some(row.number) {
+    fn matches_filter(&self, theme: &Theme, row: &Row) -> bool {
+        if self.typed_number() == Some(row.number) {
             return true;
         }
         let sought = self.sought.trim().to_lowercase();
@@ -141,7 +147,7 @@ impl DriveParametersUiState {
     }
 
     /// Adjusts the view to changed rows. Selection and typed value stay with their parameter.
-    fn follow(&mut self, rows: &[Vec<Row>]) {
+    fn follow_rows(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {
             return;
@@ -156,10 +162,10 @@ impl DriveParametersUiState {
     }
 }
 
-fn table(
+fn table_ui(
     ui: &mut Ui,
     theme: &Theme,
-    unit: &Unit,
+    unit: &HiperdriveDevice,
     rows: &[Vec<Row>],
     view: &mut DriveParametersUiState,
     actions: &mut Vec<Action>,
@@ -167,7 +173,7 @@ fn table(
     let groups: Vec<RegisterGroup> = ["hd_params.drive", "hd_params.device"]
         .into_iter()
         .zip(rows)
-        .map(|(title, rows)| RegisterGroup { title: say(theme, title), note: String::new(), rows: rows.len() })
+        .map(|(title, rows)| RegisterGroup { title: translate(theme, title), note: String::new(), rows: rows.len() })
         .collect();
     let at = |place: RegisterLocation| rows.get(place.group)?.get(place.row);
     let row = |place: RegisterLocation| at(place).map(|row| register_row(theme, row)).unwrap_or_default();
@@ -233,7 +239,7 @@ fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
         changed: row.changed_from.is_some(),
         before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
         edited: row.is_edited,
-        kept: row.kind.saved.then(|| say(theme, "hd_params.is_kept")),
+        kept: row.kind.saved.then(|| translate(theme, "hd_params.is_kept")),
         read_only: row.not_editable_reason().map(|why| theme.format_text(&why)),
         value,
         ..RegisterRow::default()

@@ -24,14 +24,14 @@ pub(crate) struct StateMachine<'a> {
     pub(crate) hints: &'a [Option<String>; 7],
 }
 
-const BOX: f32 = 28.0;
-const GAP: f32 = 28.0;
-const BETWEEN: f32 = 16.0;
-const MOST: f32 = 128.0;
+const BOX_HEIGHT: f32 = 28.0;
+const MAX_GAP: f32 = 28.0;
+const BOX_SPACING: f32 = 16.0;
+const MAX_BOX_WIDTH: f32 = 128.0;
 /// Length and half the width of an arrowhead.
-const HEAD: f32 = 6.0;
+const ARROWHEAD: f32 = 6.0;
 
-const fn place(state: State) -> (f32, f32) {
+const fn grid_position(state: State) -> (f32, f32) {
     match state {
         State::NotReady => (0.0, 0.0),
         State::Ready => (1.0, 0.0),
@@ -43,36 +43,36 @@ const fn place(state: State) -> (f32, f32) {
     }
 }
 
-struct Plan {
+struct DiagramLayout {
     origin: Pos2,
     width: f32,
     gap: f32,
 }
 
-impl Plan {
+impl DiagramLayout {
     fn new(rect: Rect) -> Self {
-        let gap = GAP.min(rect.width() / 20.0);
-        let width = ((rect.width() - 4.0 * gap) / 5.0).clamp(1.0, MOST);
+        let gap = MAX_GAP.min(rect.width() / 20.0);
+        let width = ((rect.width() - 4.0 * gap) / 5.0).clamp(1.0, MAX_BOX_WIDTH);
         // Excess width goes between the boxes, up to a limit.
-        let gap = ((rect.width() - 5.0 * width) / 4.0).clamp(gap, GAP * 2.0);
-        Plan { origin: rect.min, width, gap }
+        let gap = ((rect.width() - 5.0 * width) / 4.0).clamp(gap, MAX_GAP * 2.0);
+        DiagramLayout { origin: rect.min, width, gap }
     }
 
-    fn rect(&self, state: State) -> Rect {
-        let (column, row) = place(state);
-        let min = self.origin + vec2(column * (self.width + self.gap), row * (BOX + BETWEEN));
-        Rect::from_min_size(min, vec2(self.width, BOX))
+    fn box_rect(&self, state: State) -> Rect {
+        let (column, row) = grid_position(state);
+        let min = self.origin + vec2(column * (self.width + self.gap), row * (BOX_HEIGHT + BOX_SPACING));
+        Rect::from_min_size(min, vec2(self.width, BOX_HEIGHT))
     }
 }
 
 pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'_>) -> Option<State> {
-    let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
+    let size = vec2(ui.available_width().max(240.0), 2.0 * BOX_HEIGHT + BOX_SPACING);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-    let plan = Plan::new(rect);
+    let plan = DiagramLayout::new(rect);
     paint_arrows(ui.painter(), theme, &plan, machine.present);
     let mut wanted = None;
     for ((state, name), hint) in State::ALL.into_iter().zip(machine.names).zip(machine.hints) {
-        let place = plan.rect(state);
+        let place = plan.box_rect(state);
         let is_reachable = machine.reachable.contains(&state);
         let is_present = machine.present == Some(state);
         let sense = if is_reachable { Sense::click() } else { Sense::hover() };
@@ -90,7 +90,7 @@ pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'
             theme,
             place,
             name,
-            look(theme, state, is_present, is_reachable, response.hovered()),
+            box_style(theme, state, is_present, is_reachable, response.hovered()),
         );
         if response.has_focus() {
             focus_ring(ui.painter(), theme, place, theme.radius);
@@ -109,7 +109,7 @@ struct BoxStyle {
     strong: bool,
 }
 
-fn look(theme: &Theme, state: State, is_present: bool, is_reachable: bool, hovered: bool) -> BoxStyle {
+fn box_style(theme: &Theme, state: State, is_present: bool, is_reachable: bool, hovered: bool) -> BoxStyle {
     let palette = theme.palette;
     if is_present {
         let (fill, ink) = match state {
@@ -144,7 +144,7 @@ fn state_box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: 
 
 /// Draws the arrows between the boxes: both directions within the row, three arrows into the fault, and two out of the
 /// lock.
-fn paint_arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
+fn paint_arrows(painter: &Painter, theme: &Theme, plan: &DiagramLayout, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
     // Arrows from the present state are highlighted.
     let ink = |from: &[State]| {
@@ -153,29 +153,29 @@ fn paint_arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<S
     };
     let row = [State::NotReady, State::Ready, State::Operational, State::Enabled, State::Moving];
     for (left, right) in row.iter().zip(row.iter().skip(1)) {
-        let (a, b) = (plan.rect(*left), plan.rect(*right));
+        let (a, b) = (plan.box_rect(*left), plan.box_rect(*right));
         let (up, down) = (a.center().y - 6.0, a.center().y + 6.0);
         paint_line(painter, &[pos2(a.right() + 2.0, up), pos2(b.left() - 2.0, up)], ink(&[*left]));
         paint_line(painter, &[pos2(b.left() - 2.0, down), pos2(a.right() + 2.0, down)], ink(&[*right]));
     }
-    let level = plan.rect(State::Enabled).bottom() + BETWEEN / 2.0;
-    let fault = plan.rect(State::Fault);
+    let level = plan.box_rect(State::Enabled).bottom() + BOX_SPACING / 2.0;
+    let fault = plan.box_rect(State::Fault);
     for from in [State::Operational, State::Enabled, State::Moving] {
-        let from_box = plan.rect(from);
+        let from_box = plan.box_rect(from);
         let start = pos2(from_box.center().x, from_box.bottom() + 2.0);
         let bends = [start, pos2(start.x, level), pos2(fault.center().x, level), fault.center_top() - vec2(0.0, 2.0)];
         paint_line(painter, &bends, ink(&[from]));
     }
-    let lock = plan.rect(State::Locked);
+    let lock = plan.box_rect(State::Locked);
     let between = [pos2(fault.left() - 2.0, fault.center().y), pos2(lock.right() + 2.0, lock.center().y)];
     paint_line(painter, &between, ink(&[State::Fault]));
-    let ready = plan.rect(State::Ready);
+    let ready = plan.box_rect(State::Ready);
     paint_line(
         painter,
         &[lock.center_top() - vec2(0.0, 2.0), ready.center_bottom() + vec2(0.0, 2.0)],
         ink(&[State::Locked]),
     );
-    let idle = plan.rect(State::NotReady);
+    let idle = plan.box_rect(State::NotReady);
     let side = [
         pos2(lock.left() - 2.0, lock.center().y),
         pos2(idle.center().x, lock.center().y),
@@ -190,7 +190,7 @@ fn paint_line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
     }
     let mut last = points.iter().rev();
     let (Some(tip), Some(before)) = (last.next(), last.find(|before| points.last() != Some(before))) else { return };
-    let along = (*tip - *before).normalized() * HEAD;
+    let along = (*tip - *before).normalized() * ARROWHEAD;
     let across = along.rot90() * 0.5;
     let head = vec![*tip, *tip - along + across, *tip - along - across];
     painter.add(egui::Shape::convex_polygon(head, stroke.color, Stroke::NONE));

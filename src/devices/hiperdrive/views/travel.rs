@@ -14,22 +14,22 @@ use egui::{
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits};
 use crate::devices::hiperdrive::protocol::State;
-use crate::devices::hiperdrive::state::{TEXTS, Unit, forms};
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::state::{HiperdriveDevice, TEXTS, forms};
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::widgets::series_colour;
 use crate::ui::{Theme, icons};
 
 /// Height of the line above the bar, in points.
-const LINE: f32 = 20.0;
-const BAR: f32 = 14.0;
-const LIMITS: f32 = 16.0;
-const GAP: f32 = 6.0;
+const LINE_HEIGHT: f32 = 20.0;
+const BAR_HEIGHT: f32 = 14.0;
+const LIMITS_HEIGHT: f32 = 16.0;
+const GAP_HEIGHT: f32 = 6.0;
 /// Margin at both ends of the bar for a marker.
-const END: f32 = 8.0;
+const END_MARGIN: f32 = 8.0;
 /// Half the size of the target's diamond.
-const DIAMOND: f32 = 6.0;
+const DIAMOND_RADIUS: f32 = 6.0;
 /// Fraction of the bar reserved for a position outside the limits.
-const BEYOND: f64 = 0.04;
+const OUTSIDE_FRACTION: f64 = 0.04;
 
 /// Mapping of steps to the pixels of the bar.
 struct Scale {
@@ -45,14 +45,14 @@ impl Scale {
         let (low, high) = (f64::from(low), f64::from(high));
         let position = position.map_or(low, f64::from);
         let (mut from, mut to) = (low.min(position), high.max(position));
-        let room = (to - from) * BEYOND;
+        let room = (to - from) * OUTSIDE_FRACTION;
         if from < low {
             from -= room;
         }
         if to > high {
             to += room;
         }
-        Scale { from, to: to.max(from + 1.0), left: bar.left() + END, right: bar.right() - END }
+        Scale { from, to: to.max(from + 1.0), left: bar.left() + END_MARGIN, right: bar.right() - END_MARGIN }
     }
 
     fn x(&self, steps: i32) -> f32 {
@@ -61,7 +61,7 @@ impl Scale {
     }
 }
 
-struct Shown {
+struct BarValues {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
     target: Option<i32>,
@@ -71,27 +71,28 @@ struct Shown {
 }
 
 /// Draws the travel of the displayed drive. `typed` is the target entered for the next move.
-pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
+pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, typed: &str) {
     let drive = unit.drive();
     let typed = || forms::target(unit, typed, unit.measure).ok();
-    let shown = Shown {
+    let shown = BarValues {
         limits: unit.limits(drive),
-        position: unit.actual(drive).map(|actual| actual.position),
+        position: unit.actual_values(drive).map(|actual| actual.position),
         target: unit.moves.target(drive).or_else(typed),
         outside: unit.out_of_range_position(drive).filter(|own| own.is_far).map(|own| own.outside),
         is_moving: unit.state(drive) == Some(State::Moving),
     };
-    let size = vec2(ui.available_width().max(120.0), LINE + GAP + BAR + LIMITS);
+    let size = vec2(ui.available_width().max(120.0), LINE_HEIGHT + GAP_HEIGHT + BAR_HEIGHT + LIMITS_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let place =
-        |steps: Option<i32>| steps.map_or_else(|| "–".to_owned(), |steps| theme.format_text(&unit.place(drive, steps)));
+    let place = |steps: Option<i32>| {
+        steps.map_or_else(|| "–".to_owned(), |steps| theme.format_text(&unit.position_text(drive, steps)))
+    };
     let named = |id: &'static str, steps| theme.format_text(&TEXTS.text(id).with("place", place(steps)));
     let position = named("hd_travel.position", shown.position);
     let target = named("hd_travel.target", shown.target);
     let warning = shown.outside.map(|own| theme.format_text(&return_instructions(own)));
     let limits = shown.limits.map(|(low, high)| [place(Some(low)), place(Some(high))]);
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::Image, true, say(theme, "hd_travel.title"));
+        let mut info = WidgetInfo::labeled(Role::Image, true, translate(theme, "hd_travel.title"));
         let limits = limits.as_ref().map(|own| own.join(" … "));
         let told = [warning.clone(), Some(position.clone()), limits, Some(target.clone())];
         info.current_text_value = Some(told.into_iter().flatten().collect::<Vec<_>>().join(", "));
@@ -101,10 +102,10 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
         return;
     }
     let painter = ui.painter();
-    let line = Rect::from_min_size(rect.min, vec2(rect.width(), LINE));
+    let line = Rect::from_min_size(rect.min, vec2(rect.width(), LINE_HEIGHT));
     line_ui(painter, theme, line, &shown, (&position, &target, warning.as_deref()));
-    let bar = Rect::from_min_size(pos2(rect.left(), line.bottom() + GAP), vec2(rect.width(), BAR));
-    let below = Rect::from_min_size(bar.left_bottom(), vec2(rect.width(), LIMITS));
+    let bar = Rect::from_min_size(pos2(rect.left(), line.bottom() + GAP_HEIGHT), vec2(rect.width(), BAR_HEIGHT));
+    let below = Rect::from_min_size(bar.left_bottom(), vec2(rect.width(), LIMITS_HEIGHT));
     bar_ui(painter, theme, bar, &shown);
     match shown.limits.zip(limits) {
         Some(((low, high), names)) => {
@@ -112,7 +113,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
             limits_ui(painter, theme, below, [scale.x(low), scale.x(high)], names);
         }
         None => {
-            let (words, font) = (say(theme, "hd_travel.unknown"), FontId::proportional(theme.sizes.caption));
+            let (words, font) = (translate(theme, "hd_travel.unknown"), FontId::proportional(theme.sizes.caption));
             painter.text(below.left_bottom(), Align2::LEFT_BOTTOM, words, font, theme.palette.muted.into());
         }
     }
@@ -132,7 +133,7 @@ fn line_ui(
     painter: &Painter,
     theme: &Theme,
     line: Rect,
-    shown: &Shown,
+    shown: &BarValues,
     (position, target, warning): (&str, &str, Option<&str>),
 ) {
     let palette = theme.palette;
@@ -143,7 +144,7 @@ fn line_ui(
         painter.text(at, Align2::LEFT_CENTER, position, font.clone(), palette.text.into());
         let ink = if shown.target.is_some() { palette.text } else { palette.muted };
         let words = painter.text(line.right_center(), Align2::RIGHT_CENTER, target, font, ink.into());
-        paint_diamond(painter, pos2(words.left() - DIAMOND - 6.0, line.center().y), target_colour(theme));
+        paint_diamond(painter, pos2(words.left() - DIAMOND_RADIUS - 6.0, line.center().y), target_colour(theme));
         return;
     };
     let words = format!("{}  {warning}", icons::WARNING);
@@ -160,7 +161,7 @@ fn line_ui(
     painter.text(line.right_center(), Align2::RIGHT_CENTER, position, font, ink);
 }
 
-fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
+fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &BarValues) {
     let palette = theme.palette;
     let edge = if shown.outside.is_some() { palette.bad } else { palette.line };
     painter.rect_filled(bar, theme.radius, palette.sunken);
@@ -180,7 +181,7 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
             paint_diamond(painter, pos2(scale.x(target), bar.center().y), target_colour(theme));
         }
         if let Some(position) = shown.position {
-            let at = Rect::from_center_size(pos2(scale.x(position), bar.center().y), vec2(4.0, BAR + 8.0));
+            let at = Rect::from_center_size(pos2(scale.x(position), bar.center().y), vec2(4.0, BAR_HEIGHT + 8.0));
             painter.rect_filled(at, 2.0, position_colour(theme, shown));
         }
     }
@@ -200,10 +201,10 @@ fn limits_ui(painter: &Painter, theme: &Theme, below: Rect, [low, high]: [f32; 2
     }
 }
 
-fn position_colour(theme: &Theme, shown: &Shown) -> Color32 {
+fn position_colour(theme: &Theme, shown: &BarValues) -> Color32 {
     match shown {
-        Shown { outside: Some(_), .. } => theme.palette.bad.into(),
-        Shown { is_moving: true, .. } => theme.palette.good.into(),
+        BarValues { outside: Some(_), .. } => theme.palette.bad.into(),
+        BarValues { is_moving: true, .. } => theme.palette.good.into(),
         _ => theme.palette.text.into(),
     }
 }
@@ -214,25 +215,26 @@ fn target_colour(theme: &Theme) -> Color32 {
 
 /// Draws the position marker of the legend and returns the position of its label.
 fn paint_marker(painter: &Painter, at: Pos2, ink: Color32) -> Pos2 {
-    painter.rect_filled(Rect::from_center_size(at, vec2(4.0, BAR)), 2.0, ink);
+    painter.rect_filled(Rect::from_center_size(at, vec2(4.0, BAR_HEIGHT)), 2.0, ink);
     at + vec2(9.0, 0.0)
 }
 
 fn paint_diamond(painter: &Painter, at: Pos2, ink: Color32) {
-    let corners = [vec2(0.0, -DIAMOND), vec2(DIAMOND, 0.0), vec2(0.0, DIAMOND), vec2(-DIAMOND, 0.0)];
+    let corners =
+        [vec2(0.0, -DIAMOND_RADIUS), vec2(DIAMOND_RADIUS, 0.0), vec2(0.0, DIAMOND_RADIUS), vec2(-DIAMOND_RADIUS, 0.0)];
     painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), Stroke::new(2.0, ink)));
 }
 
 /// Draws an arrow from a position back to a limit if there is room.
 fn paint_arrow(painter: &Painter, from: Pos2, limit: f32, ink: Color32) {
-    const HEAD: f32 = 6.0;
+    const ARROWHEAD: f32 = 6.0;
     let way = limit - from.x;
-    if way.abs() < 3.0 * HEAD {
+    if way.abs() < 3.0 * ARROWHEAD {
         return;
     }
-    let (tip, back) = (pos2(limit, from.y), vec2(-HEAD * way.signum(), 0.0));
+    let (tip, back) = (pos2(limit, from.y), vec2(-ARROWHEAD * way.signum(), 0.0));
     painter.line_segment([from, tip], Stroke::new(2.0, ink));
-    let across = vec2(0.0, HEAD * 0.7);
+    let across = vec2(0.0, ARROWHEAD * 0.7);
     painter.add(Shape::convex_polygon(vec![tip, tip + back + across, tip + back - across], ink, Stroke::NONE));
 }
 
@@ -241,7 +243,7 @@ mod tests {
     use super::*;
 
     fn bar() -> Rect {
-        Rect::from_min_size(Pos2::ZERO, vec2(116.0, BAR))
+        Rect::from_min_size(Pos2::ZERO, vec2(116.0, BAR_HEIGHT))
     }
 
     #[test]

@@ -95,7 +95,7 @@ impl Scale {
     }
 
     /// Creates a scale. `steps` is the number of steps per turn or per millimetre, and is ignored if the unit is
-    /// [`Unit::Steps`].
+    /// [`HiperdriveDevice::ProgressSteps`].
     ///
     /// # Errors
     /// Returns [`ScaleError`] if `steps` is used and not above 0.

@@ -133,7 +133,7 @@ impl Connection {
     }
 
     fn image(&self, data: &[u8]) -> Option<InputImage> {
-        let bare = data.len().checked_sub(HEADER).filter(|length| *length == self.layout.length());
+        let bare = data.len().checked_sub(HEADER).filter(|length| *length == self.layout.byte_length());
         let data = if bare.is_some() { data.get(HEADER..)? } else { data };
         InputImage::parse(data, self.layout).ok()
     }

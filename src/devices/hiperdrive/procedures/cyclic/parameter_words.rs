@@ -130,7 +130,7 @@ fn parameter_result(number: ParameterNumber, words: Pkw, answer: Answer) -> Opti
     }
     let kind = number.row()?.kind;
     let bytes = words.pwe.to_le_bytes();
-    match kind.parse(bytes.get(..kind.length()?)?).ok()? {
+    match kind.parse(bytes.get(..kind.byte_length()?)?).ok()? {
         Value::Number(value) => Some(ParameterResult::Number(value)),
         Value::Text(_) => None,
     }

@@ -325,7 +325,7 @@ impl Permit {
     /// Checks whether a motion may begin or continue. `target` is its final position, if it has one.
     ///
     /// # Errors
-    /// Returns the [`MotionRefusal`] if the motion is not permitted.
+    /// Returns the [`ExtendedStatus`] if the motion is not permitted.
     pub fn check_request(&self, request: MotionRequest, target: Option<i32>) -> Result<(), MotionRefusal> {
         if !request.needs_motion() {
             return Ok(());

@@ -6,13 +6,13 @@
 use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use super::{Master, ONCE, RetryPolicy};
+use super::{Master, RetryPolicy, SEND_ONCE};
 use crate::buses::ethernet_ip::protocol::{
     ConnectionOwner, ConnectionTimeout, EPath, ForwardClose, ForwardOpen, ForwardOpenSuccess, GeneralStatus, IoPacket,
     Item, NetworkParameters, NetworkPriority, NetworkType, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
 };
 use crate::devices::hiperdrive::procedures::Error;
-use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
+use crate::devices::hiperdrive::procedures::error::{ErrorReply, RequestedItem};
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,14 +37,14 @@ const VENDOR: u16 = 0x1234;
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
 /// Shortest interval that counts as long.
-const LONG: Duration = Duration::from_millis(35);
+const LONG_INTERVAL: Duration = Duration::from_millis(35);
 /// Factor by which a device may extend the requested interval, up to the longest that may be requested.
-const SLOWER: u32 = 2;
-const LONGEST: Duration = Duration::from_millis(100);
+const MAX_INTERVAL_FACTOR: u32 = 2;
+const MAX_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Status code with which a device refuses a connection that is already in use.
 const CONNECTION_IN_USE: u16 = 0x0100;
-const OWNED: u16 = 0x0106;
+const OWNED_BY_OTHER: u16 = 0x0106;
 const KIND: u16 = 0x0108;
 const KINDS: [u16; 3] = [KIND, 0x0123, 0x0124];
 const SIZES: [u16; 3] = [0x0109, 0x0127, 0x0128];
@@ -65,13 +65,13 @@ impl Master<'_> {
         ];
         let mut refused = None;
         for (layout, kind) in tries {
-            let matters = refused.as_ref().is_none_or(|refusal| answers(refusal, layout, kind));
+            let matters = refused.as_ref().is_none_or(|refusal| avoids_refusal(refusal, layout, kind));
             if !matters {
                 continue;
             }
             match self.open_with_layout(layout, kind, port) {
                 Err(Error::Refused { refusal, .. }) => match refusal.extended.first() {
-                    Some(&extended @ (CONNECTION_IN_USE | OWNED)) if is_connection_refusal(&refusal) => {
+                    Some(&extended @ (CONNECTION_IN_USE | OWNED_BY_OTHER)) if is_connection_refusal(&refusal) => {
                         return Err(Error::OtherMaster { extended });
                     }
                     _ => refused = Some(refusal),
@@ -90,11 +90,11 @@ impl Master<'_> {
     /// # Errors
     /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
-        const ENDED: u16 = 0x0107;
+        const CONNECTION_NOT_FOUND: u16 = 0x0107;
         match self
             .run_uncancellable(|master| master.request(RequestedItem::Close, &close.request(), RetryPolicy::Always))
         {
-            Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&ENDED) => Ok(()),
+            Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&CONNECTION_NOT_FOUND) => Ok(()),
             ended => ended.map(|_| ()),
         }
     }
@@ -112,7 +112,7 @@ impl Master<'_> {
         let owner =
             ConnectionOwner { connection_serial: serial, vendor: VENDOR, serial_number: self.station.originator };
         // No image is longer than 72 bytes.
-        let length = layout.length() as u16;
+        let length = layout.byte_length() as u16;
         let parameters = |kind, format| {
             let size = length + IoPacket::size_overhead(format);
             NetworkParameters::new(kind, NetworkPriority::Scheduled, size)
@@ -120,7 +120,7 @@ impl Master<'_> {
         let to_target = parameters(NetworkType::PointToPoint, RealTimeFormat::Header).ok_or(Error::NoCyclic)?;
         let to_originator = parameters(kind, RealTimeFormat::Modeless).ok_or(Error::NoCyclic)?;
         let interval = self.station.link.interval.as_micros() as u32;
-        let timeout = if self.station.link.interval < LONG { TIMEOUT } else { LONG_TIMEOUT };
+        let timeout = if self.station.link.interval < LONG_INTERVAL { TIMEOUT } else { LONG_TIMEOUT };
         let [configuration, to, from] = ASSEMBLIES;
         let open = ForwardOpen {
             timeout: RequestTimeout::TWO_SECONDS,
@@ -139,7 +139,7 @@ impl Master<'_> {
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
         // The request is sent once, because a second one would be refused as in use. The connection may be open even if
         // the reply is not understood.
-        let requested = self.request_with_items(RequestedItem::Open, &open.request(), &[ours], ONCE);
+        let requested = self.request_with_items(RequestedItem::Open, &open.request(), &[ours], SEND_ONCE);
         let opened = requested.and_then(|(reply, items)| match ForwardOpenSuccess::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
             Err(cause) => Err(Error::Damaged { requested: RequestedItem::Open, tries: 1, cause: cause.into() }),
@@ -151,7 +151,7 @@ impl Master<'_> {
         let micros = |us: u32| Duration::from_micros(us.into());
         let to_target_interval = micros(opened.to_target_interval_us);
         let slowest = to_target_interval.max(micros(opened.to_originator_interval_us));
-        if slowest > LONGEST.min(self.station.link.interval * SLOWER) {
+        if slowest > MAX_INTERVAL.min(self.station.link.interval * MAX_INTERVAL_FACTOR) {
             self.close_without_reply(&close);
             let milliseconds = |time: Duration| time.as_millis() as u64;
             let (asked_ms, got_ms) = (milliseconds(self.station.link.interval), milliseconds(slowest));
@@ -165,22 +165,22 @@ impl Master<'_> {
             timeout: open.connection_timeout.for_interval(to_target_interval),
             layout,
             port: items.socket_to_target().map_or(self.station.udp, |address| address.port),
-            group: items.socket_to_originator().and_then(group),
+            group: items.socket_to_originator().and_then(multicast_address),
             close,
         })
     }
 }
 
-fn group(to: SocketAddress) -> Option<SocketAddrV4> {
+fn multicast_address(to: SocketAddress) -> Option<SocketAddrV4> {
     to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
 }
 
-fn is_connection_refusal(refusal: &Refusal) -> bool {
+fn is_connection_refusal(refusal: &ErrorReply) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
 /// Returns whether a request with this layout and type would avoid the refusal.
-fn answers(refusal: &Refusal, layout: Layout, kind: NetworkType) -> bool {
+fn avoids_refusal(refusal: &ErrorReply, layout: Layout, kind: NetworkType) -> bool {
     let first = refusal.extended.first().filter(|_| is_connection_refusal(refusal));
     match first {
         Some(code) if KINDS.contains(code) => kind == NetworkType::Multicast,

@@ -4,13 +4,13 @@
 use super::{Master, RetryPolicy, writable_parameter};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
 use crate::devices::hiperdrive::procedures::Error;
-use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
-use crate::devices::hiperdrive::procedures::identify::topology;
+use crate::devices::hiperdrive::procedures::error::{ErrorReply, RequestedItem};
+use crate::devices::hiperdrive::procedures::identify::read_topology;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, REQUESTED, UPPER, VARIANT,
+    DENOMINATOR, LOWER_LIMIT, NUMERATOR, POSITION, REFERENCE, REQUESTED_BY_BUS, UPPER_LIMIT, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
-    DriveNumber, OutOfRange, ParameterNumber, ParameterRow, PositionScale, Range, Travel, Value, Variant,
+    DriveNumber, OutOfRange, ParameterNumber, ParameterRange, ParameterRow, PositionScale, Travel, Value, Variant,
 };
 
 impl Master<'_> {
@@ -22,11 +22,11 @@ impl Master<'_> {
         &mut self,
         requested: RequestedItem,
         number: ParameterNumber,
-        refusal: Refusal,
+        refusal: ErrorReply,
     ) -> Result<Error, Error> {
         let Some(drive) = number.drive() else { return Ok(Error::Refused { requested, refusal }) };
         let topology = match self.station.known.topology {
-            None if refusal.status == GeneralStatus::PATH_UNKNOWN => Some(topology(self)?),
+            None if refusal.status == GeneralStatus::PATH_UNKNOWN => Some(read_topology(self)?),
             known => known,
         };
         if let Some(topology) = topology.filter(|topology| drive.get() > topology.drives()) {
@@ -36,7 +36,7 @@ impl Master<'_> {
             return Ok(Error::NoDrive { drive });
         }
         // The drive refuses the request in its present state. The cause may be that it is not requested.
-        if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED, drive)? {
+        if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED_BY_BUS, drive)? {
             return Ok(Error::NotRequested { drive });
         }
         Ok(Error::Refused { requested, refusal })
@@ -59,7 +59,7 @@ impl Master<'_> {
         &mut self,
         number: ParameterNumber,
         value: i64,
-        refusal: Refusal,
+        refusal: ErrorReply,
     ) -> Result<Error, Error> {
         let row = writable_parameter(number)?;
         match refusal.status {
@@ -77,13 +77,13 @@ impl Master<'_> {
 
     /// Returns the present range of a parameter. Limit 160 is above limit 158, and position and reference lie between
     /// them (reference 4). No limit is farther from 0 than the turns of the drive (reference 5).
-    fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
+    fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<ParameterRange>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,
             None => Travel::UNKNOWN,
         };
-        let allowed = row.allowed(travel);
-        let Some(drive) = number.drive().filter(|_| matches!(row.number, LOWER | UPPER | REFERENCE)) else {
+        let allowed = row.allowed_values(travel);
+        let Some(drive) = number.drive().filter(|_| matches!(row.number, LOWER_LIMIT | UPPER_LIMIT | REFERENCE)) else {
             return Ok(allowed);
         };
         let mut of_drive = |base| match ParameterNumber::for_drive(base, drive) {
@@ -95,13 +95,13 @@ impl Master<'_> {
             },
             None => Ok(None),
         };
-        let values = [of_drive(LOWER)?, of_drive(UPPER)?, of_drive(POSITION)?];
-        let Some(Range::Within(least, most)) = allowed else { return Ok(allowed) };
+        let values = [of_drive(LOWER_LIMIT)?, of_drive(UPPER_LIMIT)?, of_drive(POSITION)?];
+        let Some(ParameterRange::Within(least, most)) = allowed else { return Ok(allowed) };
         let [Some(lower), Some(upper), Some(position)] = values else { return Ok(allowed) };
         Ok(Some(match row.number {
-            LOWER => Range::Within(least, position.min(upper - 1).min(most)),
-            UPPER => Range::Within(position.max(lower + 1).max(least), most),
-            _ => Range::Within(lower.max(least), upper.min(most)),
+            LOWER_LIMIT => ParameterRange::Within(least, position.min(upper - 1).min(most)),
+            UPPER_LIMIT => ParameterRange::Within(position.max(lower + 1).max(least), most),
+            _ => ParameterRange::Within(lower.max(least), upper.min(most)),
         }))
     }
 

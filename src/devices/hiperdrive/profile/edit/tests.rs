@@ -1,9 +1,9 @@
 //! Orders of writing, refusals, warnings: compared with the rules of the manual, worked out by hand.
 
 use super::*;
-use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number};
-use crate::devices::hiperdrive::profile::{Warning, warnings};
-use crate::devices::hiperdrive::protocol::{Range, Variant};
+use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_with_values, parameter};
+use crate::devices::hiperdrive::profile::{Warning, plan_warnings};
+use crate::devices::hiperdrive::protocol::{ParameterRange, Variant};
 
 /// Returns the writes of a plan in order; a service by its code.
 fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
@@ -34,7 +34,7 @@ fn plan_set_position(device: &Image, drive: DriveNumber, position: i32) -> Resul
 }
 
 fn plan(wanted: &[(u16, i64)], position: i32) -> Result<HiperdrivePlan, PlanError> {
-    plan_edits(&image(&[1, 3]), &image_of(wanted), &at(1, position))
+    plan_edits(&image(&[1, 3]), &image_with_values(wanted), &at(1, position))
 }
 
 #[test]
@@ -49,15 +49,15 @@ fn differences_are_written_and_saved_once() {
     let plan = plan(&[(24, 5), (26, 7), (166, 200), (366, 100)], 0).unwrap();
     assert_eq!(steps(&plan), [(24, 5), (166, 200), (366, 100), (47, 1)]);
     assert_eq!(plan.write_cycles(), 1);
-    assert_eq!(plan.ops[1], Op::Write { number: number(166), old: Some(350), new: 200 });
-    assert_eq!(plan.base.values, image_of(&[(24, 0), (166, 350), (366, 350)]).values);
+    assert_eq!(plan.ops[1], Op::Write { number: parameter(166), old: Some(350), new: 200 });
+    assert_eq!(plan.base.values, image_with_values(&[(24, 0), (166, 350), (366, 350)]).values);
     assert_eq!(steps(&plan.without_save()), [(24, 5), (166, 200), (366, 100)]);
 }
 
 #[test]
 fn volatile_parameters_need_no_save() {
-    let device = image(&[1]).with(&image_of(&[(170, 4096)]));
-    let plan = plan_edits(&device, &image_of(&[(170, 100)]), &Positions::new()).unwrap();
+    let device = image(&[1]).overlaid_with(&image_with_values(&[(170, 4096)]));
+    let plan = plan_edits(&device, &image_with_values(&[(170, 100)]), &Positions::new()).unwrap();
     assert_eq!((steps(&plan), plan.write_cycles()), (vec![(170, 100)], 0));
 }
 
@@ -71,11 +71,11 @@ fn the_scale_is_written_first_and_the_limits_after_the_speed() {
 
 #[test]
 fn a_drive_is_requested_first_and_released_last() {
-    let device = image(&[1, 3]).with(&image_of(&[(152, 0)]));
-    let wanted = image_of(&[(24, 1), (152, 1), (166, 200), (352, 0), (366, 200)]);
+    let device = image(&[1, 3]).overlaid_with(&image_with_values(&[(152, 0)]));
+    let wanted = image_with_values(&[(24, 1), (152, 1), (166, 200), (352, 0), (366, 200)]);
     let plan = plan_edits(&device, &wanted, &Positions::new()).unwrap();
     assert_eq!(steps(&plan), [(152, 1), (24, 1), (166, 200), (366, 200), (352, 0), (47, 1)]);
-    assert_eq!(warnings(&plan), [Warning::NotRequested(drive(3))]);
+    assert_eq!(plan_warnings(&plan), [Warning::NotRequested(drive(3))]);
 }
 
 /// Old limits, position, new limits; and which of them the drive accepts first. The rules (reference 4): 160 is above
@@ -92,8 +92,8 @@ fn limits_are_written_in_the_order_the_drive_accepts() {
         ("the drive above, overlapping", (-100, 100), 200, (0, 300), [160, 158]),
     ];
     for (name, old, position, new, order) in cases {
-        let device = image(&[1]).with(&image_of(&[(158, old.0), (160, old.1)]));
-        let wanted = image_of(&[(158, new.0), (160, new.1)]);
+        let device = image(&[1]).overlaid_with(&image_with_values(&[(158, old.0), (160, old.1)]));
+        let wanted = image_with_values(&[(158, new.0), (160, new.1)]);
         let plan = plan_edits(&device, &wanted, &at(1, position)).unwrap();
         let (mut lower, mut upper) = old;
         let mut written = Vec::new();
@@ -120,8 +120,8 @@ proptest::proptest! {
         position in -110i32..110,
     ) {
         let (old, new) = ((old.0, old.0 + old.1), (new.0, new.0 + new.1));
-        let device = image(&[1]).with(&image_of(&[(158, old.0), (160, old.1)]));
-        let plan = plan_edits(&device, &image_of(&[(158, new.0), (160, new.1)]), &at(1, position));
+        let device = image(&[1]).overlaid_with(&image_with_values(&[(158, old.0), (160, old.1)]));
+        let plan = plan_edits(&device, &image_with_values(&[(158, new.0), (160, new.1)]), &at(1, position));
         let is_inside = (new.0..=new.1).contains(&i64::from(position));
         // Without differences nothing is checked.
         proptest::prop_assert_eq!(plan.is_ok(), is_inside || old == new);
@@ -149,7 +149,7 @@ fn a_drive_outside_its_new_limits_is_not_changed() {
     // −1 step of 65536 per turn is step −1 of 400, which reaches from −1/400 turn to 0.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], -1), outside(-1, 0, 999));
     // The position of another drive has no effect.
-    assert!(plan_edits(&image(&[1, 3]), &image_of(&[(358, 0)]), &at(1, -1)).is_ok());
+    assert!(plan_edits(&image(&[1, 3]), &image_with_values(&[(358, 0)]), &at(1, -1)).is_ok());
 }
 
 #[test]
@@ -170,9 +170,10 @@ fn crossed_limits_are_refused() {
 
 #[test]
 fn unwritable_parameters_are_refused_with_a_reason() {
-    let device = image(&[1]).with(&image_of(&[(101, 0), (104, 0), (105, 0), (107, 0), (47, 0), (199, 0)]));
-    let refused = |own, value| plan_edits(&device, &image_of(&[(own, value)]), &Positions::new()).unwrap_err();
-    let item = |own| Item(number(own));
+    let device =
+        image(&[1]).overlaid_with(&image_with_values(&[(101, 0), (104, 0), (105, 0), (107, 0), (47, 0), (199, 0)]));
+    let refused = |own, value| plan_edits(&device, &image_with_values(&[(own, value)]), &Positions::new()).unwrap_err();
+    let item = |own| Item(parameter(own));
     assert_eq!(refused(101, 0x0400), PlanError::Moves { item: item(101) });
     assert_eq!(refused(104, 1), PlanError::Moves { item: item(104) });
     assert_eq!(refused(107, 1), PlanError::ReadOnly { item: item(107) });
@@ -181,18 +182,18 @@ fn unwritable_parameters_are_refused_with_a_reason() {
     }
     assert_eq!(refused(352, 1), PlanError::NotRead { item: item(352) });
     let PlanError::OutOfRange(error) = refused(166, 351) else { panic!() };
-    assert_eq!((error.value, error.range), (351, Range::Within(5, 350)));
+    assert_eq!((error.value, error.range), (351, ParameterRange::Within(5, 350)));
     let PlanError::OutOfRange(error) = refused(158, 1 << 31) else { panic!() };
     // 512 turns of 65536 steps.
-    assert_eq!(error.range, Range::Within(-33_554_432, 33_554_432));
+    assert_eq!(error.range, ParameterRange::Within(-33_554_432, 33_554_432));
 }
 
 /// Issue 21.10: ±512 turns of an HDA30 in steps of the planned scale: 65536 per turn are 33554432, 400 are 204800. A
 /// step of the drive's own keys is at most its travel of 1024 turns.
 #[test]
 fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
-    let jogs = |image: Image| image.with(&image_of(&[(170, 4096), (176, -4096)]));
-    let scaled = image(&[1, 3]).with(&image_of(&[(154, 400), (156, 256), (158, -1000), (160, 1000)]));
+    let jogs = |image: Image| image.overlaid_with(&image_with_values(&[(170, 4096), (176, -4096)]));
+    let scaled = image(&[1, 3]).overlaid_with(&image_with_values(&[(154, 400), (156, 256), (158, -1000), (160, 1000)]));
     let factory = image(&[1, 3]);
     type Case<'c> = (&'c Image, &'c [(u16, i64)], Option<(u16, i64)>);
     let cases: [Case<'_>; 12] = [
@@ -212,11 +213,15 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
         (&factory, &[(154, 400), (156, 256)], None),
     ];
     for (device, wanted, refused) in cases {
-        let planned = plan_edits(&jogs(device.clone()), &image_of(wanted), &at(1, 0));
+        let planned = plan_edits(&jogs(device.clone()), &image_with_values(wanted), &at(1, 0));
         match (planned, refused) {
             (Ok(_), None) => {}
             (Err(PlanError::OutOfRange(error)), Some((own, most))) => {
-                assert_eq!((error.number, error.range), (number(own), Range::Within(-most, most)), "{wanted:?}");
+                assert_eq!(
+                    (error.number, error.range),
+                    (parameter(own), ParameterRange::Within(-most, most)),
+                    "{wanted:?}"
+                );
             }
             (planned, _) => panic!("{wanted:?}: {planned:?}"),
         }
@@ -225,20 +230,20 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
     for (variant, most) in [(Variant::OTHER, i64::from(i32::MAX)), (Variant::new(13), 1_048_576_000)] {
         let mut state = state(&factory, &at(1, 0));
         state.identity.drives[0].variant = Some(variant);
-        assert!(super::plan_edits(&state, &image_of(&[(160, most)])).is_ok(), "{variant:?}");
-        let error = super::plan_edits(&state, &image_of(&[(160, most + 1)])).unwrap_err();
+        assert!(super::plan_edits(&state, &image_with_values(&[(160, most)])).is_ok(), "{variant:?}");
+        let error = super::plan_edits(&state, &image_with_values(&[(160, most + 1)])).unwrap_err();
         let PlanError::OutOfRange(error) = error else { panic!("{error}") };
-        assert!(matches!(error.range, Range::Within(_, high) if high == most), "{variant:?}");
+        assert!(matches!(error.range, ParameterRange::Within(_, high) if high == most), "{variant:?}");
     }
     // Limits beyond the travel after a change of scale do not allow setting a position there either.
-    let moved = image(&[1]).with(&image_of(&[(154, 400), (156, 256)]));
+    let moved = image(&[1]).overlaid_with(&image_with_values(&[(154, 400), (156, 256)]));
     let PlanError::OutOfRange(error) = plan_set_position(&moved, drive(1), 300_000).unwrap_err() else { panic!() };
-    assert_eq!((error.number, error.range), (number(198), Range::Within(-204_800, 204_800)));
+    assert_eq!((error.number, error.range), (parameter(198), ParameterRange::Within(-204_800, 204_800)));
 }
 
 #[test]
 fn a_scale_that_moves_limits_is_warned_about() {
-    let warned = |wanted: &[(u16, i64)]| warnings(&plan(wanted, 0).unwrap());
+    let warned = |wanted: &[(u16, i64)]| plan_warnings(&plan(wanted, 0).unwrap());
     // 511 turns of 65536 steps are 33488896; of 400 steps they are 83722.24 turns.
     let moved = warned(&[(154, 400), (156, 256)]);
     let [Warning::LimitsMove { drive: of, now, then }] = moved.as_slice() else { panic!("{moved:?}") };
@@ -253,9 +258,9 @@ fn a_scale_that_moves_limits_is_warned_about() {
 
 #[test]
 fn side_effects_of_a_plan_are_warned_about() {
-    let warned = |wanted: &[(u16, i64)]| warnings(&plan(wanted, 0).unwrap());
+    let warned = |wanted: &[(u16, i64)]| plan_warnings(&plan(wanted, 0).unwrap());
     assert_eq!(warned(&[(186, 255)]), [Warning::NoTimeout(drive(1))]);
-    assert_eq!(warned(&[(390, 9600)]), [Warning::AfterReset(Item(number(390)))]);
+    assert_eq!(warned(&[(390, 9600)]), [Warning::AfterReset(Item(parameter(390)))]);
     assert_eq!(warned(&[(166, 200), (186, 100)]), []);
 }
 
@@ -271,7 +276,7 @@ fn a_position_is_set_to_the_next_multiple_of_64() {
 
 #[test]
 fn a_position_beyond_the_limits_is_not_set() {
-    let device = image(&[1]).with(&image_of(&[(158, 0), (160, 100)]));
+    let device = image(&[1]).overlaid_with(&image_with_values(&[(158, 0), (160, 100)]));
     let refused = |position| plan_set_position(&device, drive(1), position).map(|plan| steps(&plan)).unwrap_err();
     let outside =
         |position, becomes| PlanError::ReferenceOutside { drive: drive(1), position, becomes, lower: 0, upper: 100 };
@@ -280,7 +285,7 @@ fn a_position_beyond_the_limits_is_not_set() {
     assert_eq!(refused(i32::MAX), outside(i32::MAX, 2_147_483_648));
     assert!(plan_set_position(&device, drive(1), 95).is_ok());
     let error = plan_set_position(&device, drive(2), 0).unwrap_err();
-    assert_eq!(error, PlanError::NotRead { item: Item(number(298)) });
+    assert_eq!(error, PlanError::NotRead { item: Item(parameter(298)) });
 }
 
 #[test]

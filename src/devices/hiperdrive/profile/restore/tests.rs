@@ -1,7 +1,9 @@
 //! Restored, unchanged and refused items, and differences.
 
 use super::*;
-use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number, profile};
+use crate::devices::hiperdrive::profile::test_profiles::{
+    drive, identity, image, image_with_values, parameter, profile,
+};
 use crate::devices::hiperdrive::profile::{MountingMark, Op, Service};
 use crate::devices::hiperdrive::protocol::{Topology, Variant};
 use crate::profile::{Profile, ProfileDocument};
@@ -28,21 +30,21 @@ fn written(restore: &Restore) -> Vec<u16> {
 #[test]
 fn only_differences_are_written() {
     let mut device = device();
-    device.image = device.image.with(&image_of(&[(166, 100), (398, 64)]));
+    device.image = device.image.overlaid_with(&image_with_values(&[(166, 100), (398, 64)]));
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
     assert_eq!(written(&restore), [166]);
     assert_eq!(restore.plan.ops.last(), Some(&Op::Service(Service::Save)));
     // 2 registers and 2 · 13 parameters, less these two.
     assert_eq!((restore.unchanged, restore.missing.len()), (26, 0));
-    assert_eq!(restore.mounting_left, [Item(number(398))], "a reference is never restored, on its own drive either");
+    assert_eq!(restore.mounting_left, [Item(parameter(398))], "a reference is never restored, on its own drive either");
     let restore = plan_restore(&profile(), &device, ALL).unwrap();
-    assert_eq!((written(&restore), restore.mounting_left), (vec![166], vec![Item(number(398))]));
+    assert_eq!((written(&restore), restore.mounting_left), (vec![166], vec![Item(parameter(398))]));
 }
 
 #[test]
 fn ports_without_a_drive_are_skipped_and_named() {
     let mut device = device();
-    device.image = image(&[1]).with(&image_of(&[(166, 100)]));
+    device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
     device.identity = identity("100", &[(1, "4711")]);
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
     assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13));
@@ -71,7 +73,7 @@ fn another_device_or_drive_is_refused() {
 fn another_type_of_device_or_drive_is_refused() {
     let mut device = device();
     device.identity.topology = Some(Topology::Adapter);
-    device.image = image(&[1]).with(&image_of(&[(166, 100)]));
+    device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
     let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
     assert_eq!(error, TypeMismatch::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
     assert_eq!(error.to_string(), "the profile is of a HIPERDRIVE HUB-4, the device is a HIPERDRIVE SINGLE");
@@ -97,24 +99,24 @@ fn another_type_of_device_or_drive_is_refused() {
 #[test]
 fn marked_parameters_stay_on_their_own_drive() {
     let mut marked = profile();
-    let mark = |own| MountingMark { item: Item(number(own)), meaning: String::new(), unknown: Default::default() };
+    let mark = |own| MountingMark { item: Item(parameter(own)), meaning: String::new(), unknown: Default::default() };
     marked.mounting.extend([mark(160), mark(360)]);
     let mut device = device();
-    device.image = device.image.with(&image_of(&[(160, 1000), (360, 1000)]));
+    device.image = device.image.overlaid_with(&image_with_values(&[(160, 1000), (360, 1000)]));
     device.identity = identity("100", &[(1, "4711"), (3, "5000")]);
     let restore = plan_restore(&marked, &device, OTHER).unwrap();
-    assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(number(360))]));
+    assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(parameter(360))]));
     let restore = plan_restore(&marked, &device, ALL).unwrap();
     assert_eq!(written(&restore), [160, 360]);
     // Issue 22.7: items from another mounting are named if they are written; drive 1 is the profile's own.
-    assert_eq!(restore.mounting_written, [Item(number(360))]);
+    assert_eq!(restore.mounting_written, [Item(parameter(360))]);
 }
 
 #[test]
 fn differences_are_named_by_drive() {
     let mut right = profile();
-    right.image = image(&[1, 3, 4]).with(&image_of(&[(24, 1), (166, 100), (366, 200)]));
-    right.image.values.remove(&number(190));
+    right.image = image(&[1, 3, 4]).overlaid_with(&image_with_values(&[(24, 1), (166, 100), (366, 200)]));
+    right.image.values.remove(&parameter(190));
     let comparison = profile().compare(&right);
     let differences: Vec<(&str, &str, &str)> =
         comparison.differences.iter().map(|own| (own.item.as_str(), own.left.as_str(), own.right.as_str())).collect();
@@ -152,7 +154,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
         };
         assert_eq!(restore.plan.ops.iter().filter_map(write).collect::<Vec<_>>(), writes, "{name}");
         assert_eq!((restore.missing, restore.mounting_left), (Vec::new(), Vec::new()), "{name}");
-        let after = now.image.with(&profile.image);
+        let after = now.image.overlaid_with(&profile.image);
         assert_eq!(after.scale(drive(1)).map(|scale| scale.steps_per_turn()), Some(steps), "{name}");
     }
 }

@@ -1,6 +1,6 @@
 //! The text, written and parsed, in the form of a user, and its errors.
 
-use super::super::test_profiles::{drive, identity, image_of, number, profile};
+use super::super::test_profiles::{drive, identity, image_with_values, parameter, profile};
 use super::*;
 use crate::profile::testing::{assert_edit_in_place, edit_profile};
 use crate::profile::{Body, ProfileDocument};
@@ -59,8 +59,8 @@ fn emitted_profiles_parse_back() {
 fn a_handwritten_profile_has_no_identity() {
     let profile = parse(SHORT).unwrap();
     assert!(profile.identity.is_device_unknown());
-    assert_eq!(profile.image, image_of(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
-    assert_eq!(profile.drive(drive(2)), Some(&ProfileDrive::at(drive(2))));
+    assert_eq!(profile.image, image_with_values(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
+    assert_eq!(profile.drive(drive(2)), Some(&ProfileDrive::unknown_drive(drive(2))));
     let text = document(profile.clone()).emit();
     assert!(!text.contains("identity"), "{text}");
     // 204400 steps of 400 a turn.
@@ -71,7 +71,7 @@ fn a_handwritten_profile_has_no_identity() {
 #[test]
 fn drive_parameters_may_be_listed_with_device_parameters() {
     let text = r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 366: 100})"#;
-    assert_eq!(parse(text).unwrap().image, image_of(&[(166, 200), (366, 100)]));
+    assert_eq!(parse(text).unwrap().image, image_with_values(&[(166, 200), (366, 100)]));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn unknown_fields_are_kept() {
         .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
     let document = ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap();
     let profile = document.body.get::<HiperdriveProfile>().unwrap();
-    assert!(profile.depends_on_mounting(Item(number(258))) && profile.depends_on_mounting(Item(number(398))));
+    assert!(profile.depends_on_mounting(Item(parameter(258))) && profile.depends_on_mounting(Item(parameter(398))));
     let written = document.emit();
     for kept in [
         "\"owner\": (name: \"CK\"),",
@@ -139,7 +139,7 @@ fn profile_errors_name_their_location() {
 
 #[test]
 fn the_identity_round_trips() {
-    let profile = HiperdriveProfile::of(identity("7", &[(8, "1")]), image_of(&[(898, 64)]));
+    let profile = HiperdriveProfile::from_image(identity("7", &[(8, "1")]), image_with_values(&[(898, 64)]));
     assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
 }
 
@@ -149,7 +149,7 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 /// Issue 22.26: one changed value changes one place in the text.
 #[test]
 fn a_change_edits_only_its_value() {
-    let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(number(166), 40), Some(50));
+    let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(parameter(166), 40), Some(50));
     assert_edit_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
@@ -157,8 +157,8 @@ fn a_change_edits_only_its_value() {
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |_, own: &mut HiperdriveProfile| {
-        own.image.values.remove(&number(158));
-        own.image.values.insert(number(24), 1);
+        own.image.values.remove(&parameter(158));
+        own.image.values.insert(parameter(24), 1);
     });
     assert!(carried.text.contains("\n166: 50, // slow\n})],\n"), "{}", carried.text);
     assert!(carried.text.contains("parameters: {"), "{}", carried.text);

@@ -10,7 +10,7 @@ fn pkw(text: &str, order: ByteOrder) -> Pkw {
     Pkw::parse(bytes(text).try_into().unwrap(), order)
 }
 
-fn number(number: u16) -> ParameterNumber {
+fn parameter(number: u16) -> ParameterNumber {
     ParameterNumber::new(number).unwrap()
 }
 
@@ -89,9 +89,9 @@ fn parameters_map_to_cip_attributes() {
         (801, 0x6C, 0x65, DriveNumber::new(8), 101),
         (807, 0x6C, 0x6B, DriveNumber::new(8), 107),
     ] {
-        let parameter = number(own);
+        let parameter = parameter(own);
         assert_eq!((parameter.class(), parameter.attribute()), (class, attribute), "{own}");
-        assert_eq!((parameter.drive(), parameter.base()), (drive, base), "{own}");
+        assert_eq!((parameter.drive(), parameter.drive1_number()), (drive, base), "{own}");
         assert_eq!(ParameterNumber::from_attribute(class, attribute), Some(parameter), "{own}");
         let drives = drive.and_then(|drive| ParameterNumber::for_drive(base, drive));
         assert_eq!(drives, drive.map(|_| parameter), "{own}");
@@ -101,7 +101,7 @@ fn parameters_map_to_cip_attributes() {
     }
     assert_eq!((ParameterNumber::new(0), ParameterNumber::new(900)), (None, None));
     assert_eq!((DriveNumber::new(0), DriveNumber::new(9)), (None, None));
-    assert_eq!(DriveNumber::of(Topology::Hub4).map(DriveNumber::get).collect::<Vec<_>>(), [1, 2, 3, 4]);
+    assert_eq!(DriveNumber::all_for(Topology::Hub4).map(DriveNumber::get).collect::<Vec<_>>(), [1, 2, 3, 4]);
 }
 
 /// Reference 4.
@@ -116,11 +116,14 @@ fn the_parameter_table_matches_the_reference() {
     assert!((101..=129).all(|number| numbers.contains(&number)));
     let saved: Vec<u16> = PARAMETERS.iter().filter(|row| row.saved && row.number > 100).map(|row| row.number).collect();
     assert_eq!(saved, [152, 154, 156, 158, 160, 162, 164, 166, 186, 188, 190, 192, 198]);
-    let row = |own| number(own).row().unwrap();
-    assert_eq!((row(107).kind, row(107).unit, row(107).access), (Kind::I32, "steps", Access::Read));
+    let row = |own| parameter(own).row().unwrap();
+    assert_eq!((row(107).kind, row(107).unit, row(107).access), (Kind::I32, "steps", ParameterAccess::Read));
     assert_eq!((row(166).kind, row(166).unit, row(166).factory), (Kind::U16, "0.1 rpm", FactoryValue::Number(350)));
-    assert_eq!((row(199).access, row(47).access, row(42).saved), (Access::Write, Access::ReadWrite, true));
-    assert_eq!((row(807).number, number(25).row().is_none(), number(148).row().is_none()), (107, true, true));
+    assert_eq!(
+        (row(199).access, row(47).access, row(42).saved),
+        (ParameterAccess::Write, ParameterAccess::ReadWrite, true)
+    );
+    assert_eq!((row(807).number, parameter(25).row().is_none(), parameter(148).row().is_none()), (107, true, true));
     // Factory values: 511 and 16000 turns of 65536 steps.
     let factory = |own, topology, family| row(own).factory_value(topology, family);
     use Topology::{Adapter, Hub8};
@@ -148,17 +151,17 @@ fn parameter_ranges_are_checked() {
         (158, &[i64::from(i32::MIN), i64::from(i32::MAX)], &[i64::from(i32::MIN) - 1, i64::from(i32::MAX) + 1]),
         (13, &[], &[0]),
     ] {
-        let parameter = number(own);
+        let parameter = parameter(own);
         let row = parameter.row().unwrap();
         for value in good {
-            assert_eq!(row.check(parameter, *value, Travel::UNKNOWN), Ok(*value), "{own}");
+            assert_eq!(row.check_value(parameter, *value, Travel::UNKNOWN), Ok(*value), "{own}");
         }
         for value in bad {
-            assert!(row.check(parameter, *value, Travel::UNKNOWN).is_err(), "{own}: {value}");
+            assert!(row.check_value(parameter, *value, Travel::UNKNOWN).is_err(), "{own}: {value}");
         }
     }
     let message = |own, value| {
-        let refused = number(own).row().unwrap().check(number(own), value, Travel::UNKNOWN);
+        let refused = parameter(own).row().unwrap().check_value(parameter(own), value, Travel::UNKNOWN);
         refused.unwrap_err().to_string()
     };
     assert_eq!(message(266, 400), "parameter 266 (maximum speed) cannot be 400: it may be 5 to 350");
@@ -219,7 +222,7 @@ fn steps_convert_to_turns_and_millimetres() {
         let scale = PositionScale::new(numerator, denominator).unwrap();
         assert_eq!(scale.steps_of_turns(1), Some(steps));
         assert_eq!(scale.steps_per_turn(), f64::from(steps));
-        assert_eq!(scale.turns(-steps), -1.0);
+        assert_eq!(scale.to_turns(-steps), -1.0);
     }
     // One degree is 182.04 steps at 65536 steps per turn and 1.11 at 400; 5 degrees at 400 are 5.6.
     for (numerator, denominator, degrees, steps) in
@@ -246,20 +249,20 @@ fn steps_convert_to_turns_and_millimetres() {
     assert_eq!(scale(0, 1), Err(ScaleError::NoLength));
     assert_eq!((PositionScale::new(0, 1), PositionScale::new(1, 0)), (Err(ScaleError::Zero), Err(ScaleError::Zero)));
     let four = scale(400, 1).unwrap();
-    assert!((four.millimetres(150, millimetres(400)) - 1.5).abs() < 1e-12);
+    assert!((four.to_millimetres(150, millimetres(400)) - 1.5).abs() < 1e-12);
     // Limits in steps, which change with the scale: 33488896 / 400 = 83722.24 turns.
     for (turns, steps) in [(512, 33_554_432), (-511, -33_488_896), (16_000, 1_048_576_000), (127, 8_323_072)] {
         assert_eq!(PositionScale::FACTORY.steps_of_turns(turns), Some(steps));
     }
     assert_eq!(PositionScale::FACTORY.steps_of_turns(40_000), None);
-    assert!((four.turns(33_488_896) - 83_722.24).abs() < 1e-6);
+    assert!((four.to_turns(33_488_896) - 83_722.24).abs() < 1e-6);
 }
 
 /// Reference 2 and 5.
 #[test]
 fn turns_reference_torque_and_speed_convert() {
     for (position, expected) in [(-1, (-1, 65_535)), (0, (0, 0)), (163_840, (2, 32_768)), (i32::MIN, (-32_768, 0))] {
-        assert_eq!(turns(position), expected);
+        assert_eq!(split_turns(position), expected);
     }
     for (position, reference) in [(31, 0), (32, 64), (33, 64), (100, 128), (-33, -64), (163_840, 163_840)] {
         assert_eq!(nearest_reference(position), Some(reference), "{position}");
@@ -279,7 +282,7 @@ fn turns_reference_torque_and_speed_convert() {
 #[test]
 fn error_variant_led_and_switch_tables_match_the_reference() {
     assert!(ERROR_CODES.is_sorted_by(|one, other| one.code.code() < other.code.code()));
-    assert_eq!(ErrorCode::FOLLOWING.to_string(), "8203 following error");
+    assert_eq!(ErrorCode::FOLLOWING_ERROR.to_string(), "8203 following error");
     assert_eq!(ErrorCode::new(0x8999).to_string(), "8999 unknown error");
     assert!(ErrorCode::NONE.row().is_none());
     let variant = |number| Variant::new(number).row().map(|row| (row.name, row.family));
@@ -323,7 +326,7 @@ proptest! {
 
     #[test]
     fn every_parameter_has_one_address(own in 1u16..900) {
-        let parameter = number(own);
+        let parameter = parameter(own);
         prop_assert_eq!(ParameterNumber::from_attribute(parameter.class(), parameter.attribute()), Some(parameter));
     }
 

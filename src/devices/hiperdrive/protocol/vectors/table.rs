@@ -9,7 +9,7 @@ use super::super::*;
 const FILE: &str = include_str!("../../../../../tests/vectors/hiperdrive_parameters.txt");
 
 /// Row of the transcribed table: number, then range, saved, factory, access, unit, bits, answered.
-struct Typed<'t> {
+struct TranscribedRow<'t> {
     number: u16,
     bits: &'t str,
     range: &'t str,
@@ -26,13 +26,13 @@ struct TurnsTable {
     rows: BTreeMap<u16, (i64, i64, i64)>,
 }
 
-fn lines() -> impl Iterator<Item = &'static str> {
+fn table_lines() -> impl Iterator<Item = &'static str> {
     FILE.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'))
 }
 
-fn typed() -> Vec<Typed<'static>> {
+fn transcribed_rows() -> Vec<TranscribedRow<'static>> {
     let mut rows = Vec::new();
-    for line in lines().filter(|line| line.contains(" | ") && !line.starts_with('[')) {
+    for line in table_lines().filter(|line| line.contains(" | ") && !line.starts_with('[')) {
         let fields: Vec<&str> = line.split('|').map(str::trim).collect();
         let [numbers, _name, bits, range, saved, factory, access, unit, page, answered] = fields[..] else {
             panic!("{line}");
@@ -47,7 +47,7 @@ fn typed() -> Vec<Typed<'static>> {
         };
         let (first, last): (u16, u16) = (first.parse().unwrap(), last.parse().unwrap());
         for number in (first..=last).step_by(every.parse().unwrap()) {
-            rows.push(Typed { number, bits, range, saved, factory, access, unit, answered });
+            rows.push(TranscribedRow { number, bits, range, saved, factory, access, unit, answered });
         }
     }
     rows
@@ -56,7 +56,7 @@ fn typed() -> Vec<Typed<'static>> {
 fn families() -> BTreeMap<&'static str, TurnsTable> {
     let mut families = BTreeMap::new();
     let mut current = "";
-    for line in lines().skip_while(|line| !line.starts_with('[')) {
+    for line in table_lines().skip_while(|line| !line.starts_with('[')) {
         if let Some(head) = line.strip_prefix('[') {
             let (name, rest) = head.split_once(" | ").unwrap();
             let way = rest.rsplit_once("way ").unwrap().1.trim_end_matches(']').parse().unwrap();
@@ -86,13 +86,13 @@ fn kind(bits: &str) -> Kind {
     }
 }
 
-fn numbers(text: &str) -> Vec<i64> {
+fn parse_numbers(text: &str) -> Vec<i64> {
     text.split(',').map(|own| own.trim().parse().unwrap()).collect()
 }
 
 /// Returns values that the manual allows and values that it does not: the limits, the values next to the limits, and
 /// the gaps of a list.
-fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
+fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     let all = || match typed.bits {
         "32" => (0, 4_294_967_295),
         "16" => (0, 65_535),
@@ -117,7 +117,7 @@ fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
                 (good, bad)
             }
             (None, list) => {
-                let good = numbers(list);
+                let good = parse_numbers(list);
                 let beside = good.iter().flat_map(|own| [own - 1, own + 1]);
                 let bad = beside.filter(|own| !good.contains(own)).collect();
                 (good, bad)
@@ -130,7 +130,7 @@ fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
 /// missing or surplus.
 #[test]
 fn every_row_matches_the_manual() {
-    let typed = typed();
+    let typed = transcribed_rows();
     let own: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
     assert_eq!(own, typed.iter().map(|row| row.number).collect::<Vec<_>>());
     for typed in &typed {
@@ -139,9 +139,9 @@ fn every_row_matches_the_manual() {
         let row = number.row().unwrap();
         assert_eq!((row.kind, row.unit), (kind(typed.bits), typed.unit), "{own}");
         let access = match typed.access {
-            "R" => Access::Read,
-            "R/W" => Access::ReadWrite,
-            "W" => Access::Write,
+            "R" => ParameterAccess::Read,
+            "R/W" => ParameterAccess::ReadWrite,
+            "W" => ParameterAccess::Write,
             other => panic!("{other}"),
         };
         assert_eq!((row.access, row.saved), (access, typed.saved == "ja"), "{own}");
@@ -161,15 +161,15 @@ fn every_row_matches_the_manual() {
         };
         assert_eq!(row.reach, reach, "{own}");
         if typed.range == "-" {
-            assert_eq!((row.access, typed.saved), (Access::Read, "-"), "{own}");
+            assert_eq!((row.access, typed.saved), (ParameterAccess::Read, "-"), "{own}");
             continue;
         }
-        let (good, bad) = probe(typed);
+        let (good, bad) = probe_values(typed);
         for value in good {
-            assert_eq!(row.check(number, value, Travel::UNKNOWN), Ok(value), "{own}");
+            assert_eq!(row.check_value(number, value, Travel::UNKNOWN), Ok(value), "{own}");
         }
         for value in bad {
-            let refused = row.check(number, value, Travel::UNKNOWN).unwrap_err();
+            let refused = row.check_value(number, value, Travel::UNKNOWN).unwrap_err();
             assert_eq!((refused.number, refused.value), (number, value), "{own}");
         }
     }
@@ -178,7 +178,7 @@ fn every_row_matches_the_manual() {
 /// Issue 21.8: only the listed values take long to write.
 #[test]
 fn every_row_is_answered_within_the_manuals_time() {
-    for typed in typed() {
+    for typed in transcribed_rows() {
         let row = ParameterNumber::new(typed.number).unwrap().row().unwrap();
         let mut expected = BTreeMap::new();
         for part in typed.answered.split(';').filter(|part| *part != "-") {
@@ -190,7 +190,7 @@ fn every_row_is_answered_within_the_manuals_time() {
             expected.insert(value.parse::<i64>().unwrap(), (adapter, hub));
         }
         for value in -5..=2 {
-            let ms = |topology| row.takes(value, topology).map(|time: Duration| time.as_millis() as u64);
+            let ms = |topology| row.write_duration(value, topology).map(|time: Duration| time.as_millis() as u64);
             let (adapter, hub) = expected.get(&value).copied().unzip();
             let own = typed.number;
             assert_eq!((ms(Some(Topology::Adapter)), ms(Some(Topology::Hub4))), (adapter, hub), "{own} = {value}");
@@ -224,11 +224,11 @@ fn limit_ranges_are_the_familys_turns_in_scaled_units() {
                 let (low, high) = (steps(low), steps(high));
                 let label = format!("{own} of {name} at {numerator}/{denominator}");
                 for value in [low, 0, high] {
-                    assert_eq!(row.check(number, value, travel), Ok(value), "{label}");
+                    assert_eq!(row.check_value(number, value, travel), Ok(value), "{label}");
                 }
                 for value in [low - 1, high + 1] {
-                    let refused = row.check(number, value, travel).unwrap_err();
-                    assert_eq!(refused.range, Range::Within(low, high), "{label}");
+                    let refused = row.check_value(number, value, travel).unwrap_err();
+                    assert_eq!(refused.range, ParameterRange::Within(low, high), "{label}");
                 }
             }
             for topology in [Topology::Adapter, Topology::Hub8] {
@@ -242,8 +242,8 @@ fn limit_ranges_are_the_familys_turns_in_scaled_units() {
     }
     // Unknown turns or scale leave only the limit of the bits.
     let number = ParameterNumber::new(158).unwrap();
-    let all = Range::Within(-2_147_483_648, 2_147_483_647);
+    let all = ParameterRange::Within(-2_147_483_648, 2_147_483_647);
     for (family, scale) in [(None, PositionScale::new(400, 256).ok()), (Some(Family::Short), None)] {
-        assert_eq!(number.row().unwrap().allowed(Travel { family, scale }), Some(all));
+        assert_eq!(number.row().unwrap().allowed_values(Travel { family, scale }), Some(all));
     }
 }

@@ -10,7 +10,7 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
 use super::cyclic::Cyclic;
-use super::objects::{object, wrong};
+use super::objects::{class_and_attribute, status_of};
 use super::plant::{Originator, TargetDevice};
 use crate::buses::ethernet_ip::protocol::{
     ConnectionOwner, EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
@@ -39,32 +39,32 @@ struct ExplicitConnection {
 }
 
 /// Reason why a connection is refused, as the first extended status word.
-type Refusal = u16;
+type ExtendedStatus = u16;
 
-const IN_USE: Refusal = 0x0100;
-const TRANSPORT: Refusal = 0x0103;
-const OTHER_MASTER: Refusal = 0x0106;
-const NOT_FOUND: Refusal = 0x0107;
-const NETWORK_TYPE: Refusal = 0x0108;
-const INTERVAL: Refusal = 0x0111;
-const NONE_LEFT: Refusal = 0x0113;
-const WRONG_MAKER: Refusal = 0x0114;
-const WRONG_TYPE: Refusal = 0x0115;
-const WRONG_REVISION: Refusal = 0x0116;
-const ASSEMBLY: Refusal = 0x0117;
-const TO_TARGET_SIZE: Refusal = 0x0127;
-const TO_ORIGINATOR_SIZE: Refusal = 0x0128;
-const SEGMENT: Refusal = 0x0315;
+const IN_USE: ExtendedStatus = 0x0100;
+const TRANSPORT: ExtendedStatus = 0x0103;
+const OTHER_MASTER: ExtendedStatus = 0x0106;
+const NOT_FOUND: ExtendedStatus = 0x0107;
+const NETWORK_TYPE: ExtendedStatus = 0x0108;
+const INTERVAL: ExtendedStatus = 0x0111;
+const NO_MORE_CONNECTIONS: ExtendedStatus = 0x0113;
+const WRONG_MAKER: ExtendedStatus = 0x0114;
+const WRONG_TYPE: ExtendedStatus = 0x0115;
+const WRONG_REVISION: ExtendedStatus = 0x0116;
+const ASSEMBLY: ExtendedStatus = 0x0117;
+const TO_TARGET_SIZE: ExtendedStatus = 0x0127;
+const TO_ORIGINATOR_SIZE: ExtendedStatus = 0x0128;
+const SEGMENT: ExtendedStatus = 0x0315;
 
 const INTERVALS_US: std::ops::RangeInclusive<u32> = 5_000..=100_000;
-const MOST_EXPLICIT: usize = 4;
+const MAX_EXPLICIT: usize = 4;
 const UNCONNECTED_SEND: u8 = 0x52;
 const ASSEMBLY_CLASS: u16 = 0x04;
 const MESSAGE_ROUTER: u16 = 0x02;
 
 impl Connections {
     /// Creates the state after a loss of the supply, without connections.
-    pub(super) fn after(lost: &Connections) -> Self {
+    pub(super) fn after_power_loss(lost: &Connections) -> Self {
         Connections { opened: lost.opened, ..Connections::default() }
     }
 
@@ -72,11 +72,11 @@ impl Connections {
         self.cyclic.is_some()
     }
 
-    pub(super) fn due(&self) -> Option<Moment> {
-        self.cyclic.as_ref().map(Cyclic::due)
+    pub(super) fn next_due(&self) -> Option<Moment> {
+        self.cyclic.as_ref().map(Cyclic::next_packet_time)
     }
 
-    pub(super) fn end(&mut self, session: u32) {
+    pub(super) fn end_session(&mut self, session: u32) {
         self.explicit.retain(|explicit| explicit.session != session);
     }
 
@@ -107,23 +107,23 @@ impl TargetDevice {
         items: &ItemList,
     ) -> (Reply, Vec<Item>) {
         let alone = |reply| (reply, Vec::new());
-        if let Err(status) = object(&request.path) {
+        if let Err(status) = class_and_attribute(&request.path) {
             return alone(request.error_reply(status));
         }
         match request.service {
             Service::FORWARD_OPEN => match ForwardOpen::parse(&request.data) {
                 Ok(open) => self.open(from, request, &open, items),
-                Err(error) => alone(request.error_reply(wrong(error))),
+                Err(error) => alone(request.error_reply(status_of(error))),
             },
             Service::FORWARD_CLOSE => match ForwardClose::parse(&request.data) {
                 Ok(close) => alone(self.close(request, &close)),
-                Err(error) => alone(request.error_reply(wrong(error))),
+                Err(error) => alone(request.error_reply(status_of(error))),
             },
-            service if service.code() == UNCONNECTED_SEND => match wrapped(&request.data) {
+            service if service.code() == UNCONNECTED_SEND => match unwrap_request(&request.data) {
                 Ok(inner) if inner.class_id() == Some(Request::CONNECTION_MANAGER) => {
                     self.handle_connection(from, &inner, items)
                 }
-                Ok(inner) => alone(self.object(&inner)),
+                Ok(inner) => alone(self.handle_request(&inner)),
                 Err(status) => alone(request.error_reply(status)),
             },
             _ => alone(request.error_reply(GeneralStatus::NO_SERVICE)),
@@ -166,7 +166,7 @@ impl TargetDevice {
         from: Originator,
         open: &ForwardOpen,
         items: &ItemList,
-    ) -> Result<(u32, Vec<Item>), Refusal> {
+    ) -> Result<(u32, Vec<Item>), ExtendedStatus> {
         match &self.connections.cyclic {
             Some(cyclic) if cyclic.owner == open.owner => return Err(IN_USE),
             Some(_) => return Err(OTHER_MASTER),
@@ -194,7 +194,7 @@ impl TargetDevice {
     }
 
     /// Checks that a path names assemblies 100 and 101, optionally 104 for configuration, and that its key fits.
-    fn check_path(&mut self, path: &EPath) -> Result<(), Refusal> {
+    fn check_path(&mut self, path: &EPath) -> Result<(), ExtendedStatus> {
         let [configuration, to_target, to_originator] = ASSEMBLIES;
         for segment in &path.0 {
             match segment {
@@ -212,7 +212,7 @@ impl TargetDevice {
     }
 
     /// Checks an electronic key. A field of 0 matches every device.
-    fn check_key(&mut self, key: &ElectronicKey) -> Result<(), Refusal> {
+    fn check_key(&mut self, key: &ElectronicKey) -> Result<(), ExtendedStatus> {
         let own = self.identity();
         let fits = |wanted: u16, own: u16| wanted == 0 || wanted == own;
         let (major, compatible) = (key.major & 0x7F, key.major & 0x80 != 0);
@@ -232,22 +232,22 @@ impl TargetDevice {
     }
 
     /// Returns the layout of an open request, with or without parameter words in both directions.
-    fn layout(&self, open: &ForwardOpen) -> Result<Layout, Refusal> {
+    fn layout(&self, open: &ForwardOpen) -> Result<Layout, ExtendedStatus> {
         let topology = self.station.topology();
         let layouts = [true, false].map(|pkw| Layout { topology, pkw, order: self.order });
         let length = usize::from(open.to_target.size().saturating_sub(IoPacket::size_overhead(RealTimeFormat::Header)));
-        let layout = layouts.into_iter().find(|layout| layout.length() == length).ok_or(TO_TARGET_SIZE)?;
-        let back = layout.length() + usize::from(IoPacket::size_overhead(RealTimeFormat::Modeless));
+        let layout = layouts.into_iter().find(|layout| layout.byte_length() == length).ok_or(TO_TARGET_SIZE)?;
+        let back = layout.byte_length() + usize::from(IoPacket::size_overhead(RealTimeFormat::Modeless));
         if usize::from(open.to_originator.size()) == back { Ok(layout) } else { Err(TO_ORIGINATOR_SIZE) }
     }
 
-    fn open_explicit_connection(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, Refusal> {
+    fn open_explicit_connection(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, ExtendedStatus> {
         let connections = &mut self.connections;
         if connections.explicit.iter().any(|explicit| explicit.owner == open.owner) {
             return Err(IN_USE);
         }
-        if connections.explicit.len() >= MOST_EXPLICIT {
-            return Err(NONE_LEFT);
+        if connections.explicit.len() >= MAX_EXPLICIT {
+            return Err(NO_MORE_CONNECTIONS);
         }
         let path = EPath::to_instance(MESSAGE_ROUTER, 1);
         if open.path.emit() != path.emit() {
@@ -292,7 +292,7 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
 
 /// Unwraps the request in an Unconnected_Send. The data contain a time-out, a length, the request padded to whole
 /// words, and a route, which is ignored.
-fn wrapped(data: &[u8]) -> Result<Request, GeneralStatus> {
+fn unwrap_request(data: &[u8]) -> Result<Request, GeneralStatus> {
     let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };
     let length = usize::from(u16::from_le_bytes([*low, *high]));
     let message = rest.get(..length).ok_or(GeneralStatus::TOO_SHORT)?;

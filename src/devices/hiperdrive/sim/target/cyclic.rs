@@ -46,7 +46,7 @@ impl Cyclic {
     }
 
     /// Returns the time at which the next packet is due.
-    pub(super) const fn due(&self) -> Moment {
+    pub(super) const fn next_packet_time(&self) -> Moment {
         self.next
     }
 }
@@ -82,7 +82,7 @@ impl TargetDevice {
     }
 
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
-        self.advance(now);
+        self.advance_to(now);
         if !self.accept_arrival() || !self.decide_delivery() {
             return;
         }
@@ -108,7 +108,7 @@ impl TargetDevice {
         match cyclic.arrivals.classify(packet.sequence) {
             PacketVerdict::New { .. } => {
                 self.figures.packets += 1;
-                self.station.cyclic(self.now, &image, runs);
+                self.station.handle_process_data(self.now, &image, runs);
             }
             PacketVerdict::Stale => self.figures.stale += 1,
         }

@@ -20,7 +20,7 @@ type Refusal = EncapsulationStatus;
 
 impl TargetDevice {
     /// Returns the reply to a frame, if there is one.
-    pub(super) fn answer(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
+    pub(super) fn reply_to(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
         // By ODVA, a frame with unknown options or with the status of a reply is void.
         if frame.options != 0 || frame.status != EncapsulationStatus::OK {
             return None;
@@ -29,13 +29,15 @@ impl TargetDevice {
             Command::NOP => return None,
             Command::UNREGISTER_SESSION => {
                 if self.sessions.get(&frame.session) == Some(&from) {
-                    self.end(frame.session);
+                    self.end_session(frame.session);
                 }
                 return None;
             }
             Command::REGISTER_SESSION => return Some(self.register(from, frame)),
-            Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => Ok(self.list(frame.command)),
-            Command::SEND_RR_DATA => self.unconnected(from, frame),
+            Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => {
+                Ok(self.list_reply(frame.command))
+            }
+            Command::SEND_RR_DATA => self.unconnected_reply(from, frame),
             Command::SEND_UNIT_DATA => self.handle_unit_data(from, frame).transpose()?,
             _ => Err(EncapsulationStatus::UNSUPPORTED),
         };
@@ -49,7 +51,7 @@ impl TargetDevice {
     pub(super) fn answer_datagram(&mut self, from: SocketAddrV4, frame: &Frame) -> bool {
         let asked = matches!(frame.command, Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES);
         if asked && frame.options == 0 {
-            let reply = frame.reply(&self.list(frame.command));
+            let reply = frame.reply(&self.list_reply(frame.command));
             self.send(self.now, from, reply.emit());
         }
         asked
@@ -79,7 +81,7 @@ impl TargetDevice {
         Frame { session, ..frame.reply(&Body::Register { version: Frame::VERSION, options: 0 }) }
     }
 
-    fn list(&mut self, command: Command) -> Body {
+    fn list_reply(&mut self, command: Command) -> Body {
         let items = match command {
             Command::LIST_IDENTITY => vec![Item::Identity(IdentityItem {
                 version: Frame::VERSION,
@@ -94,7 +96,7 @@ impl TargetDevice {
     }
 
     /// Parses the items of a frame that belongs to the originator's own session.
-    fn items(&self, from: Originator, frame: &Frame) -> Result<ItemList, Refusal> {
+    fn parse_items(&self, from: Originator, frame: &Frame) -> Result<ItemList, Refusal> {
         if self.sessions.get(&frame.session) != Some(&from) {
             return Err(EncapsulationStatus::NO_SESSION);
         }
@@ -104,8 +106,8 @@ impl TargetDevice {
         }
     }
 
-    fn unconnected(&mut self, from: Originator, frame: &Frame) -> Result<Body, Refusal> {
-        let items = self.items(from, frame)?;
+    fn unconnected_reply(&mut self, from: Originator, frame: &Frame) -> Result<Body, Refusal> {
+        let items = self.parse_items(from, frame)?;
         let (Some(Item::Null), Some(message)) = (items.0.first(), items.unconnected_data()) else {
             return Err(EncapsulationStatus::MALFORMED);
         };
@@ -116,7 +118,7 @@ impl TargetDevice {
 
     /// Handles SendUnitData. Returns `None` for an unknown connection.
     fn handle_unit_data(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
-        let items = self.items(from, frame)?;
+        let items = self.parse_items(from, frame)?;
         let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
             return Err(EncapsulationStatus::MALFORMED);
         };
@@ -141,7 +143,7 @@ impl TargetDevice {
             Ok(request) if request.class_id() == Some(Request::CONNECTION_MANAGER) => {
                 Ok(self.handle_connection(from, &request, items))
             }
-            Ok(request) => Ok((self.object(&request), Vec::new())),
+            Ok(request) => Ok((self.handle_request(&request), Vec::new())),
             Err(_) => {
                 let service = message.first().and_then(|code| Service::new(*code));
                 let service = service.ok_or(EncapsulationStatus::MALFORMED)?;

@@ -37,7 +37,7 @@ use crate::sim::{ByteDevice, DatagramDevice, SimulatedFaults};
 use crate::units::Moment;
 
 /// A TCP connection of one originator to a virtual adapter or hub, with the datagrams of all originators. It is created
-/// from a [`Config`]. [`connection`](Self::connection) and cloning create the connection of another originator.
+/// from a [`Config`]. [`connect_from`](Self::connect_from) and cloning create the connection of another originator.
 #[derive(Debug)]
 pub struct Target {
     shared: Arc<Mutex<TargetDevice>>,
@@ -64,21 +64,21 @@ pub struct TrafficCounters {
 
 impl Target {
     pub fn new(config: &Config) -> Self {
-        Target::to(Arc::new(Mutex::new(TargetDevice::new(config))), Ipv4Addr::LOCALHOST)
+        Target::with_device(Arc::new(Mutex::new(TargetDevice::new(config))), Ipv4Addr::LOCALHOST)
     }
 
     /// Creates a connection of another originator, with this address, to the same device.
-    pub fn connection(&self, peer: Ipv4Addr) -> Self {
-        Target::to(self.shared.clone(), peer)
+    pub fn connect_from(&self, peer: Ipv4Addr) -> Self {
+        Target::with_device(self.shared.clone(), peer)
     }
 
-    fn to(shared: Arc<Mutex<TargetDevice>>, peer: Ipv4Addr) -> Self {
+    fn with_device(shared: Arc<Mutex<TargetDevice>>, peer: Ipv4Addr) -> Self {
         let originator = lock(&shared).add_originator(peer);
         Target { shared, originator, receiver: Receiver::default(), to_host: TransitQueue::default(), ended: false }
     }
 
     /// Gives access to the station, for reading it or for changes that are not possible over a bus.
-    pub fn with<T>(&self, work: impl FnOnce(&mut Station) -> T) -> T {
+    pub fn with_station<T>(&self, work: impl FnOnce(&mut Station) -> T) -> T {
         work(&mut self.lock().station)
     }
 
@@ -88,7 +88,7 @@ impl Target {
     }
 
     /// Sets the TCP and UDP address that the device reports and at which it receives cyclic data.
-    pub fn listen(&self, at: SocketAddrV4) {
+    pub fn set_address(&self, at: SocketAddrV4) {
         let mut plant = self.lock();
         (plant.listens, plant.udp) = (at, at.port());
     }
@@ -98,7 +98,7 @@ impl Target {
         self.lock().set_faults(faults);
     }
 
-    pub fn figures(&self) -> TrafficCounters {
+    pub fn traffic_counters(&self) -> TrafficCounters {
         self.lock().figures
     }
 
@@ -118,14 +118,14 @@ fn lock(shared: &Mutex<TargetDevice>) -> MutexGuard<'_, TargetDevice> {
 
 impl Clone for Target {
     fn clone(&self) -> Self {
-        self.connection(self.originator.address)
+        self.connect_from(self.originator.address)
     }
 }
 
 impl Drop for Target {
     fn drop(&mut self) {
         let originator = self.originator;
-        self.lock().leave(originator);
+        self.lock().disconnect_originator(originator);
     }
 }
 
@@ -136,7 +136,7 @@ impl ByteDevice for Target {
             let mut plant = lock(&self.shared);
             match self.receiver.next_frame() {
                 Ok(Some(frame)) => {
-                    let reply = plant.take(now, self.originator, &frame);
+                    let reply = plant.handle_frame(now, self.originator, &frame);
                     self.ended = !plant.keeps_connection_open(&frame);
                     drop(plant);
                     reply.into_iter().for_each(|(at, bytes)| self.to_host.insert(at, bytes));
@@ -144,7 +144,7 @@ impl ByteDevice for Target {
                 Ok(None) => break,
                 Err(_) => {
                     plant.figures.broken += 1;
-                    plant.leave(self.originator);
+                    plant.disconnect_originator(self.originator);
                     self.ended = true;
                 }
             }
@@ -152,7 +152,7 @@ impl ByteDevice for Target {
     }
 
     fn poll(&mut self, now: Moment) -> Vec<u8> {
-        self.lock().advance(now);
+        self.lock().advance_to(now);
         std::iter::from_fn(|| self.to_host.pop_until(now)).flatten().collect()
     }
 
@@ -164,8 +164,8 @@ impl ByteDevice for Target {
         (self.receiver, self.to_host, self.ended) = (Receiver::default(), TransitQueue::default(), false);
         let originator = self.originator;
         let mut plant = self.lock();
-        plant.leave(originator);
-        plant.supply(now);
+        plant.disconnect_originator(originator);
+        plant.update_supply(now);
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::net::Ipv4Addr;
 
-use super::objects::wrong;
+use super::objects::status_of;
 use crate::buses::ethernet_ip::protocol::{
     AddressSource, ConfigurationControl, EPath, GeneralStatus, InterfaceConfiguration,
 };
@@ -30,7 +30,7 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
 };
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
 /// Address assigned by a virtual DHCP or BOOTP server.
-const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
+const ASSIGNED_ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
 /// Value of attribute 1 of the TCP/IP object: an address was obtained. The value of attribute 2 below means BOOTP, DHCP
 /// and settable.
 const CONFIGURED: u32 = 1;
@@ -61,12 +61,15 @@ impl Network {
             Some(AddressSwitch::Object) | None => self.control.source(),
         };
         let stored = source == AddressSource::Stored && self.stored.address != Ipv4Addr::UNSPECIFIED;
-        self.present =
-            if stored { self.stored.clone() } else { InterfaceConfiguration { address: GIVEN, mask: NETWORK, ..NONE } };
+        self.present = if stored {
+            self.stored.clone()
+        } else {
+            InterfaceConfiguration { address: ASSIGNED_ADDRESS, mask: NETWORK, ..NONE }
+        };
     }
 
     /// Restores the factory settings. The address is kept until the next power cycle.
-    pub(super) fn factory(&mut self) {
+    pub(super) fn restore_factory(&mut self) {
         (self.control, self.stored) = (dhcp_control(), NONE);
     }
 
@@ -92,10 +95,10 @@ impl Network {
         (1..=6).filter_map(|attribute| self.interface(attribute)).flatten().collect()
     }
 
-    pub(super) fn set(&mut self, attribute: u16, data: &[u8]) -> Result<Vec<u8>, GeneralStatus> {
+    pub(super) fn set_attribute(&mut self, attribute: u16, data: &[u8]) -> Result<Vec<u8>, GeneralStatus> {
         match attribute {
             ConfigurationControl::ATTRIBUTE => {
-                let control = ConfigurationControl::parse(data).map_err(wrong)?;
+                let control = ConfigurationControl::parse(data).map_err(status_of)?;
                 if matches!(control.source(), AddressSource::Unknown(_)) {
                     return Err(GeneralStatus::INVALID_VALUE);
                 }
@@ -106,7 +109,7 @@ impl Network {
                 self.control = control;
             }
             InterfaceConfiguration::ATTRIBUTE => {
-                let configuration = InterfaceConfiguration::parse(data).map_err(wrong)?;
+                let configuration = InterfaceConfiguration::parse(data).map_err(status_of)?;
                 if self.control.source() != AddressSource::Stored {
                     return Err(GeneralStatus::STATE);
                 }
@@ -118,7 +121,7 @@ impl Network {
         Ok(Vec::new())
     }
 
-    pub(super) fn link(&self, attribute: u16) -> Option<Vec<u8>> {
+    pub(super) fn link_attribute(&self, attribute: u16) -> Option<Vec<u8>> {
         match attribute {
             1 => Some(MEGABITS.to_le_bytes().to_vec()),
             2 => Some(LINK_UP.to_le_bytes().to_vec()),
@@ -128,7 +131,7 @@ impl Network {
     }
 
     pub(super) fn link_attributes(&self) -> Vec<u8> {
-        (1..=3).filter_map(|attribute| self.link(attribute)).flatten().collect()
+        (1..=3).filter_map(|attribute| self.link_attribute(attribute)).flatten().collect()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::buses::ethernet_ip::protocol::{
     ConfigurationControl, EPath, GeneralStatus, Identity, LogicalKind, PacketError, Reply, Request, Revision, Segment,
     Service,
 };
-use crate::devices::hiperdrive::protocol::{Access, ParameterNumber, ParameterRow, VENDOR, Value};
+use crate::devices::hiperdrive::protocol::{ParameterAccess, ParameterNumber, ParameterRow, VENDOR, Value};
 
 /// Device type of a communications adapter, from ODVA's list.
 const DEVICE_TYPE: u16 = 0x0C;
@@ -22,11 +22,11 @@ const PARAMETERS: u16 = 0x64;
 /// Status for an attribute that can only be set.
 const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
 
-type Answer = Result<Vec<u8>, GeneralStatus>;
+type ServiceResult = Result<Vec<u8>, GeneralStatus>;
 
 impl TargetDevice {
-    pub(super) fn object(&mut self, request: &Request) -> Reply {
-        match self.ask(request) {
+    pub(super) fn handle_request(&mut self, request: &Request) -> Reply {
+        match self.execute(request) {
             Ok(data) => request.success_reply(data),
             Err(status) => request.error_reply(status),
         }
@@ -50,28 +50,28 @@ impl TargetDevice {
         }
     }
 
-    fn ask(&mut self, request: &Request) -> Answer {
-        let (class, attribute) = object(&request.path)?;
+    fn execute(&mut self, request: &Request) -> ServiceResult {
+        let (class, attribute) = class_and_attribute(&request.path)?;
         match class {
             Identity::CLASS => {
                 let identity = self.identity();
                 read(request, attribute, identity.emit_all(), |number| identity.attribute_bytes(number))
             }
             ConfigurationControl::CLASS if request.service == Service::SET => {
-                self.network.set(attribute.ok_or(GeneralStatus::NO_ATTRIBUTE)?, &request.data)
+                self.network.set_attribute(attribute.ok_or(GeneralStatus::NO_ATTRIBUTE)?, &request.data)
             }
             ConfigurationControl::CLASS => {
                 let network = &self.network;
                 read(request, attribute, network.interface_attributes(), |number| network.interface(number))
             }
             ETHERNET_LINK => {
-                read(request, attribute, self.network.link_attributes(), |number| self.network.link(number))
+                read(request, attribute, self.network.link_attributes(), |number| self.network.link_attribute(number))
             }
             class => self.parameter(request, class, attribute),
         }
     }
 
-    fn parameter(&mut self, request: &Request, class: u16, attribute: Option<u16>) -> Answer {
+    fn parameter(&mut self, request: &Request, class: u16, attribute: Option<u16>) -> ServiceResult {
         let places = u16::from(self.station.topology().drives());
         if !(PARAMETERS..=PARAMETERS + places).contains(&class) {
             return Err(GeneralStatus::PATH_UNKNOWN);
@@ -82,36 +82,44 @@ impl TargetDevice {
         let number = attribute.and_then(|attribute| ParameterNumber::from_attribute(class, attribute));
         let (number, row) =
             number.and_then(|number| Some((number, number.row()?))).ok_or(GeneralStatus::NO_ATTRIBUTE)?;
-        if request.service == Service::GET { self.get(number, row) } else { self.set(number, row, &request.data) }
+        if request.service == Service::GET {
+            self.get(number, row)
+        } else {
+            self.set_parameter(number, row, &request.data)
+        }
     }
 
-    fn get(&mut self, number: ParameterNumber, row: &ParameterRow) -> Answer {
-        if row.access == Access::Write {
+    fn get(&mut self, number: ParameterNumber, row: &ParameterRow) -> ServiceResult {
+        if row.access == ParameterAccess::Write {
             return Err(NOT_GETTABLE);
         }
         let value = self.station.read(self.now, number).map_err(|refused| refused.status())?;
         let data = row.kind.emit(&value).map_err(|_| GeneralStatus::STATE)?;
         // Strings are short, so their length fits in a byte.
-        let length = (self.counted_texts && row.kind.length().is_none()).then_some(data.len() as u8);
+        let length = (self.counted_texts && row.kind.byte_length().is_none()).then_some(data.len() as u8);
         Ok(length.into_iter().chain(data).collect())
     }
 
-    fn set(&mut self, number: ParameterNumber, row: &ParameterRow, data: &[u8]) -> Answer {
-        let length = row.kind.length().filter(|_| row.access != Access::Read).ok_or(GeneralStatus::NOT_SETTABLE)?;
+    fn set_parameter(&mut self, number: ParameterNumber, row: &ParameterRow, data: &[u8]) -> ServiceResult {
+        let length = row
+            .kind
+            .byte_length()
+            .filter(|_| row.access != ParameterAccess::Read)
+            .ok_or(GeneralStatus::NOT_SETTABLE)?;
         if data.len() < length {
             return Err(GeneralStatus::TOO_SHORT);
         }
         let value = row.kind.parse(data).map_err(|_| GeneralStatus::TOO_LONG)?;
         self.station.write(self.now, number, &value).map_err(|refused| refused.status())?;
         if (number, value) == (ParameterNumber::SAVE, Value::Number(-3)) {
-            self.network.factory();
+            self.network.restore_factory();
         }
         Ok(Vec::new())
     }
 }
 
 /// Returns class and attribute of a path that refers to the only instance of an object.
-pub(super) fn object(path: &EPath) -> Result<(u16, Option<u16>), GeneralStatus> {
+pub(super) fn class_and_attribute(path: &EPath) -> Result<(u16, Option<u16>), GeneralStatus> {
     let understood = |segment: &Segment| match segment {
         Segment::Logical { kind, .. } => *kind != LogicalKind::ConnectionPoint,
         _ => false,
@@ -123,7 +131,7 @@ pub(super) fn object(path: &EPath) -> Result<(u16, Option<u16>), GeneralStatus> 
     Ok((class.ok_or(GeneralStatus::PATH_UNKNOWN)?, path.first_value(LogicalKind::Attribute)))
 }
 
-pub(super) const fn wrong(error: PacketError) -> GeneralStatus {
+pub(super) const fn status_of(error: PacketError) -> GeneralStatus {
     match error {
         PacketError::Short { .. } => GeneralStatus::TOO_SHORT,
         PacketError::Long { .. } => GeneralStatus::TOO_LONG,
@@ -132,7 +140,12 @@ pub(super) const fn wrong(error: PacketError) -> GeneralStatus {
 }
 
 /// Reads an object that cannot be set.
-fn read(request: &Request, attribute: Option<u16>, all: Vec<u8>, one: impl FnOnce(u16) -> Option<Vec<u8>>) -> Answer {
+fn read(
+    request: &Request,
+    attribute: Option<u16>,
+    all: Vec<u8>,
+    one: impl FnOnce(u16) -> Option<Vec<u8>>,
+) -> ServiceResult {
     let found = attribute.and_then(one);
     match request.service {
         Service::GET_ALL => Ok(all),

@@ -48,7 +48,7 @@ const REPLY: Duration = Duration::from_millis(1);
 impl TargetDevice {
     pub(super) fn new(config: &Config) -> Self {
         TargetDevice {
-            station: Station::of(config),
+            station: Station::from_config(config),
             network: Network::new(config.switch, config.serial_number),
             connections: Connections::default(),
             order: config.order,
@@ -72,11 +72,11 @@ impl TargetDevice {
     }
 
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.station.die_in_store(faults.failing_store());
+        self.station.fail_in_store(faults.failing_store());
         self.faults = faults.clone();
     }
 
-    pub(super) fn advance(&mut self, now: Moment) {
+    pub(super) fn advance_to(&mut self, now: Moment) {
         self.now = self.now.max(now);
         self.send_due_packets();
         self.connections.remove_timed_out(self.now);
@@ -87,15 +87,15 @@ impl TargetDevice {
 
     /// Handles a frame received over TCP. Returns the reply with its time of sending, unless there is no reply or a
     /// fault drops it.
-    pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
-        self.advance(now);
+    pub(super) fn handle_frame(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
+        self.advance_to(now);
         self.figures.frames += 1;
         if !self.accept_arrival() {
             return None;
         }
-        let reply = self.answer(from, frame)?;
+        let reply = self.reply_to(from, frame)?;
         let leaves = self.station.delayed_reply_time().map_or(self.now, |at| at.max(self.now));
-        let bytes = self.carry(reply.emit()).filter(|_| !self.station.is_cut_off())?;
+        let bytes = self.apply_faults(reply.emit()).filter(|_| !self.station.is_cut_off())?;
         Some((leaves + REPLY + self.faults.reply_delay(), bytes))
     }
 
@@ -105,18 +105,18 @@ impl TargetDevice {
     }
 
     /// Ends the TCP connection of an originator, with its session and its explicit connections.
-    pub(super) fn leave(&mut self, originator: Originator) {
+    pub(super) fn disconnect_originator(&mut self, originator: Originator) {
         let own: Vec<u32> = self.sessions.iter().filter(|(_, owner)| **owner == originator).map(|(s, _)| *s).collect();
-        own.into_iter().for_each(|session| self.end(session));
+        own.into_iter().for_each(|session| self.end_session(session));
     }
 
-    pub(super) fn end(&mut self, session: u32) {
+    pub(super) fn end_session(&mut self, session: u32) {
         self.sessions.remove(&session);
-        self.connections.end(session);
+        self.connections.end_session(session);
     }
 
-    pub(super) fn supply(&mut self, now: Moment) {
-        self.advance(now);
+    pub(super) fn update_supply(&mut self, now: Moment) {
+        self.advance_to(now);
         if self.station.is_dead(self.now) {
             self.power_cycle();
         }
@@ -130,7 +130,7 @@ impl TargetDevice {
 
     fn disconnect(&mut self) {
         self.sessions.clear();
-        self.connections = Connections::after(&self.connections);
+        self.connections = Connections::after_power_loss(&self.connections);
         self.datagrams = TransitQueue::default();
     }
 
@@ -151,7 +151,7 @@ impl TargetDevice {
 
     /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all. A fault that affects one
     /// byte on a serial line therefore affects all bytes here.
-    pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
+    pub(super) fn apply_faults(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
         if passage.inserted.is_some() {
@@ -166,17 +166,17 @@ impl TargetDevice {
 
     /// Sends a datagram at the given moment, unless a fault drops it.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
-        if let Some(bytes) = self.carry(bytes) {
+        if let Some(bytes) = self.apply_faults(bytes) {
             self.datagrams.insert(at + self.faults.reply_delay(), (to, bytes));
         }
     }
 
     pub(super) fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)> {
-        self.advance(now);
+        self.advance_to(now);
         std::iter::from_fn(|| self.datagrams.pop_until(self.now)).collect()
     }
 
     pub(super) fn poll_datagrams_at(&self) -> Option<Moment> {
-        [self.datagrams.next_due(), self.connections.due()].into_iter().flatten().min()
+        [self.datagrams.next_due(), self.connections.next_due()].into_iter().flatten().min()
     }
 }

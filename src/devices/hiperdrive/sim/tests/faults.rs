@@ -50,7 +50,7 @@ fn insufficient_torque_causes_a_following_error() {
     bench.start(65_536);
     bench.run(1000);
     assert!(is_fault(&mut bench));
-    assert_eq!((bench.error(), bench.position()), (ErrorCode::FOLLOWING, 0));
+    assert_eq!((bench.error(), bench.position()), (ErrorCode::FOLLOWING_ERROR, 0));
     acknowledge(&mut bench);
     bench.out[FIRST].torque = 51;
     bench.words(&[0x0439, 0x0479]);
@@ -85,14 +85,14 @@ fn a_target_beyond_the_limits_is_a_fault() {
     assert!(is_fault(&mut bench));
     assert_eq!((bench.error(), bench.position()), (ErrorCode::INVALID_TARGET, 0));
     let now = bench.now;
-    bench.drive().fail(now, ErrorCode::OVER_CURRENT);
+    bench.drive().inject_error(now, ErrorCode::OVER_CURRENT);
     assert_eq!(bench.error(), ErrorCode::OVER_CURRENT);
     assert_eq!(bench.read(109), Value::Number(0x8503));
     assert_eq!((bench.read(110), bench.read(197)), (Value::Number(0), Value::Number(2)));
     assert_ne!(bench.actual(FIRST).status.to_u16() & 0x4000, 0, "over-current is a bit of its own");
     acknowledge(&mut bench);
     assert_eq!(bench.actual(FIRST).status.to_u16() & 0x4080, 0);
-    (0..20).for_each(|_| bench.drive().fail(now, ErrorCode::SINCOS));
+    (0..20).for_each(|_| bench.drive().inject_error(now, ErrorCode::SINCOS));
     assert_eq!(bench.read(115), Value::Number(0x8502));
 }
 
@@ -101,7 +101,7 @@ fn a_target_beyond_the_limits_is_a_fault() {
 fn a_drive_that_is_switched_off_warns() {
     let mut bench = Bench::single();
     let now = bench.now;
-    bench.drive().fail(now, ErrorCode::RS485);
+    bench.drive().inject_error(now, ErrorCode::RS485);
     assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2AB0);
     assert_eq!(bench.write(197, 0), Ok(()));
     assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);
@@ -113,7 +113,7 @@ fn releasing_the_lock_needs_an_edge() {
     let mut bench = Bench::single();
     bench.enable();
     let now = bench.now;
-    bench.drive().fail(now, ErrorCode::CONTROL_LOOP);
+    bench.drive().inject_error(now, ErrorCode::CONTROL_LOOP);
     assert_eq!(bench.words(&[0x0480, 0x0400]), 0x2A70);
     assert_eq!(bench.word(0x0400), 0x2A70);
     assert_eq!(bench.words(&UNLOCK.map(|step| step.word.to_u16())), 0x2A31);
@@ -157,7 +157,7 @@ fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
     bench.run(500);
     for _ in 0..20 {
         let image = OutputImage { drives: bench.out.clone(), pkw: None };
-        bench.station.cyclic(bench.now, &image, false);
+        bench.station.handle_process_data(bench.now, &image, false);
         bench.now = bench.now + Duration::from_millis(10);
     }
     assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);

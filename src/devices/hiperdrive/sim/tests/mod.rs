@@ -43,7 +43,7 @@ impl Bench {
 
     fn cycle(&mut self) {
         let image = OutputImage { drives: self.out.clone(), pkw: self.pkw };
-        self.station.cyclic(self.now, &image, true);
+        self.station.handle_process_data(self.now, &image, true);
         self.now = self.now + Duration::from_millis(10);
     }
 
@@ -106,7 +106,7 @@ impl Bench {
         self.station.read(self.now, number(own)).unwrap()
     }
 
-    fn write(&mut self, own: u16, value: i64) -> Result<(), super::Refused> {
+    fn write(&mut self, own: u16, value: i64) -> Result<(), super::ParameterError> {
         self.station.write(self.now, number(own), &Value::Number(value))
     }
 

@@ -183,9 +183,9 @@ fn motion_is_independent_of_the_polling_interval() {
         let out = OutputData { control: 0x0479, speed: 80, torque: 50, target: 100_000 };
         drive.command(at(0), out);
         for ms in portions {
-            drive.actual(at(*ms));
+            drive.actual_values(at(*ms));
         }
-        drive.actual(at(1500))
+        drive.actual_values(at(1500))
     };
     let whole = run(&[]);
     let fine: Vec<u64> = (0..1500).collect();

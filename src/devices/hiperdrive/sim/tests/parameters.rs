@@ -1,6 +1,6 @@
 //! Parameters: allowed values, stored values, and the parameter words in the process data (reference 4 to 6).
 
-use super::super::Refused;
+use super::super::ParameterError;
 use super::*;
 use crate::buses::ethernet_ip::protocol::GeneralStatus;
 use crate::devices::hiperdrive::protocol::{Answer, PARAMETERS, PkwError, Task};
@@ -21,8 +21,8 @@ fn every_parameter_can_be_read() {
     }
     let mut read = |own| bench.station.read(bench.now, number(own));
     // The third place is empty, a fifth one does not exist.
-    assert_eq!((read(320), read(352), read(307)), (Ok(value(0)), Ok(value(0)), Err(Refused::State)));
-    assert_eq!((read(507), read(25)), (Err(Refused::Unknown), Err(Refused::Unknown)));
+    assert_eq!((read(320), read(352), read(307)), (Ok(value(0)), Ok(value(0)), Err(ParameterError::State)));
+    assert_eq!((read(507), read(25)), (Err(ParameterError::Unknown), Err(ParameterError::Unknown)));
     assert_eq!((read(13), read(120)), (Ok(Value::Text("HIPERDRIVE HUB-4".to_owned())), Ok(value(13))));
     // HDA70: 16000 turns.
     assert_eq!((read(160), read(152)), (Ok(value(1_048_576_000)), Ok(value(0))));
@@ -33,16 +33,16 @@ fn refusals_have_the_matching_status() {
     let mut bench = Bench::single();
     let text = Value::Text("x".to_owned());
     for (own, refused, status) in [
-        (107, Refused::ReadOnly, GeneralStatus::NOT_SETTABLE),
-        (25, Refused::Unknown, GeneralStatus::NO_ATTRIBUTE),
-        (207, Refused::Unknown, GeneralStatus::NO_ATTRIBUTE),
+        (107, ParameterError::ReadOnly, GeneralStatus::NOT_SETTABLE),
+        (25, ParameterError::Unknown, GeneralStatus::NO_ATTRIBUTE),
+        (207, ParameterError::Unknown, GeneralStatus::NO_ATTRIBUTE),
     ] {
         assert_eq!(bench.write(own, 1), Err(refused), "{own}");
         assert_eq!(refused.status(), status);
     }
-    assert_eq!(bench.station.write(bench.now, number(24), &text), Err(Refused::Value));
+    assert_eq!(bench.station.write(bench.now, number(24), &text), Err(ParameterError::Value));
     assert_eq!(bench.error(), ErrorCode::NONE);
-    assert_eq!(bench.write(166, 351), Err(Refused::Value));
+    assert_eq!(bench.write(166, 351), Err(ParameterError::Value));
     assert_eq!((bench.error(), bench.read(166)), (ErrorCode::INVALID_VALUE, value(350)));
 }
 
@@ -50,9 +50,9 @@ fn refusals_have_the_matching_status() {
 #[test]
 fn limits_must_contain_the_position() {
     let mut bench = Bench::single();
-    assert_eq!(bench.write(158, 1), Err(Refused::Value), "the position is 0");
-    assert_eq!(bench.write(160, -1), Err(Refused::Value));
-    assert_eq!((bench.write(158, 0), bench.write(160, 0)), (Ok(()), Err(Refused::Value)));
+    assert_eq!(bench.write(158, 1), Err(ParameterError::Value), "the position is 0");
+    assert_eq!(bench.write(160, -1), Err(ParameterError::Value));
+    assert_eq!((bench.write(158, 0), bench.write(160, 0)), (Ok(()), Err(ParameterError::Value)));
     assert_eq!((bench.write(160, 1), bench.read(158), bench.read(160)), (Ok(()), value(0), value(1)));
 }
 
@@ -67,14 +67,14 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
         (170, 67_108_864, 67_108_865),
         (176, -67_108_864, -67_108_865),
     ] {
-        assert_eq!((bench.write(own, good), bench.write(own, bad)), (Ok(()), Err(Refused::Value)), "{own}");
+        assert_eq!((bench.write(own, good), bench.write(own, bad)), (Ok(()), Err(ParameterError::Value)), "{own}");
         assert_eq!((bench.read(own), bench.error()), (value(good), ErrorCode::INVALID_VALUE), "{own}");
     }
     assert_eq!((bench.write(154, 400), bench.write(156, 256)), (Ok(()), Ok(())));
-    assert_eq!((bench.write(160, 204_801), bench.write(160, 204_800)), (Err(Refused::Value), Ok(())));
-    assert_eq!((bench.write(158, -204_801), bench.write(158, -204_800)), (Err(Refused::Value), Ok(())));
+    assert_eq!((bench.write(160, 204_801), bench.write(160, 204_800)), (Err(ParameterError::Value), Ok(())));
+    assert_eq!((bench.write(158, -204_801), bench.write(158, -204_800)), (Err(ParameterError::Value), Ok(())));
     let mut hub = Bench::hub();
-    assert_eq!((hub.write(260, 1_048_576_001), hub.write(260, 1_048_575_999)), (Err(Refused::Value), Ok(())));
+    assert_eq!((hub.write(260, 1_048_576_001), hub.write(260, 1_048_575_999)), (Err(ParameterError::Value), Ok(())));
 }
 
 /// Reference 5: the nearest multiple of 64, within the limits, and only at standstill.
@@ -85,11 +85,11 @@ fn the_position_can_be_set() {
         assert_eq!(bench.write(198, given), Ok(()));
         assert_eq!((i64::from(bench.position()), bench.read(198)), (becomes, value(becomes)));
     }
-    assert_eq!(bench.write(198, 33_554_432), Err(Refused::Value));
+    assert_eq!(bench.write(198, 33_554_432), Err(ParameterError::Value));
     assert_eq!(bench.write(197, 0), Ok(()));
     // From 2.5 turns by one more.
     bench.start(229_376);
-    assert_eq!(bench.write(198, 0), Err(Refused::State));
+    assert_eq!(bench.write(198, 0), Err(ParameterError::State));
     bench.until(0x3E37);
     assert_eq!(bench.position(), 229_376);
 }
@@ -127,7 +127,7 @@ fn saved_parameters_survive_a_power_cycle() {
     assert_eq!(read_all(&mut bench), factory);
     write_all(&mut bench);
     assert_eq!(bench.write(47, 1), Ok(()));
-    assert_eq!((bench.read(47), bench.write(166, 100)), (value(1), Err(Refused::State)), "it is at work");
+    assert_eq!((bench.read(47), bench.write(166, 100)), (value(1), Err(ParameterError::State)), "it is at work");
     bench.now = bench.now + Duration::from_millis(200);
     assert_eq!(bench.read(47), value(0));
     bench.station.power_cycle(bench.now);
@@ -137,7 +137,7 @@ fn saved_parameters_survive_a_power_cycle() {
     assert_eq!(read_all(&mut bench), factory);
     bench.station.power_cycle(bench.now);
     assert_eq!(read_all(&mut bench), factory, "−3 has saved");
-    assert_eq!(bench.write(47, 2), Err(Refused::Value));
+    assert_eq!(bench.write(47, 2), Err(ParameterError::Value));
 }
 
 /// Issue 21.6 (d): 47 = −1 and −2 concern the parameters that the adapter or hub stores itself (manual, 47): its

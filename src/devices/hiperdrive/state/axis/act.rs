@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Entries, TestTarget};
+use super::{LengthEntries, TestTarget};
 use crate::app::Language;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub enum AxisButton {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AxisAction {
     Begin,
-    Edit(Box<Entries>),
+    Edit(Box<LengthEntries>),
     Press(AxisButton),
     /// Adopts the present position as the limit that the current step sets.
     TakePlace,

@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::state::ruler::{PositionRangeError, PositionUnit,
 
 /// Typed values in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Entries {
+pub struct LengthEntries {
     /// Pitch of the spindle in millimetres per turn.
     pub pitch: String,
     /// Length of a step in millimetres.
@@ -21,7 +21,7 @@ pub struct Entries {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Preview {
+pub struct LimitsPreview {
     /// Position scale for parameters 154 and 156.
     pub scale: PositionScale,
     pub ruler: Ruler,
@@ -41,22 +41,22 @@ pub struct ReferencePosition {
     pub becomes: i32,
 }
 
-impl Entries {
+impl LengthEntries {
     /// Creates the initial entries from the known data of the spindle. An unconfirmed pitch is not proposed, since it
     /// would yield wrong measurements.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
         let pitch = known.map(|(pitch, _)| trimmed_number(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
         let step = known.filter(|(_, own)| own.scale != PositionScale::FACTORY);
-        let resolution = step.and_then(|(_, own)| own.of(1, PositionUnit::Millimetres)).map(trimmed_number);
+        let resolution = step.and_then(|(_, own)| own.from_steps(1, PositionUnit::Millimetres)).map(trimmed_number);
         let resolution = resolution.unwrap_or_else(|| "0.01".to_owned());
-        Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
+        LengthEntries { pitch, resolution, reference: "0".to_owned(), ..LengthEntries::default() }
     }
 
     /// Returns the entries with the decimal separator of a language.
-    pub fn shown(&self, language: Language) -> Self {
+    pub fn localized(&self, language: Language) -> Self {
         let shown = |text: &String| localize_number(text, language);
-        Entries {
+        LengthEntries {
             pitch: shown(&self.pitch),
             resolution: shown(&self.resolution),
             reference: shown(&self.reference),
@@ -69,16 +69,16 @@ impl Entries {
     ///
     /// # Errors
     /// Returns the reason if the entry is invalid.
-    pub fn pitch(&self) -> Result<Length, Text> {
-        length("hd_axis.pitch", &self.pitch, 1000.0)
+    pub fn parse_pitch(&self) -> Result<Length, Text> {
+        parse_length("hd_axis.pitch", &self.pitch, 1000.0)
     }
 
     /// Returns the values that result from the entered pitch and resolution.
     ///
     /// # Errors
     /// Returns the reason if an entry is invalid.
-    pub fn preview(&self, seen: &DriveFacts) -> Result<Preview, Text> {
-        let (pitch, step) = (self.pitch()?, length("hd_axis.resolution", &self.resolution, 100.0)?);
+    pub fn preview(&self, seen: &DriveFacts) -> Result<LimitsPreview, Text> {
+        let (pitch, step) = (self.parse_pitch()?, parse_length("hd_axis.resolution", &self.resolution, 100.0)?);
         let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
         let ruler = Ruler { scale, pitch: Some(pitch) };
         let turns = seen.family.unwrap_or(Family::Short).factory_turns();
@@ -86,22 +86,22 @@ impl Entries {
         let lower = scale.steps_of_turns(-turns).unwrap_or(i32::MIN);
         let upper = scale.steps_of_turns(turns).unwrap_or(i32::MAX);
         let unchanged = seen.limits.and_then(|(low, high)| {
-            let mm = |steps: i32| ruler.of(steps.into(), PositionUnit::Millimetres);
+            let mm = |steps: i32| ruler.from_steps(steps.into(), PositionUnit::Millimetres);
             Some((mm(low)?, mm(high)?))
         });
-        Ok(Preview { scale, ruler, lower, upper, unchanged })
+        Ok(LimitsPreview { scale, ruler, lower, upper, unchanged })
     }
 
     /// Returns the number to assign to the present location of the axis.
     ///
     /// # Errors
     /// Returns the reason if the number is invalid or outside the limits.
-    pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<ReferencePosition, Text> {
+    pub fn parse_reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<ReferencePosition, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(asked).filter(|own| (low..=high).contains(own));
         let becomes = becomes.ok_or_else(|| {
-            let mm = |steps: i32| words::millimetres(ruler, steps.into());
+            let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
             TEXTS.text("hd_axis.reference_outside").with_text("low", mm(low)).with_text("high", mm(high))
         })?;
         Ok(ReferencePosition { asked, becomes })
@@ -130,12 +130,12 @@ fn trimmed_number(value: f64) -> String {
 }
 
 /// Formats a number of steps as an entry, with enough decimals to distinguish steps.
-pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
-    let decimals = ruler.decimals(PositionUnit::Millimetres);
-    Some(format!("{:.decimals$}", ruler.of(steps.into(), PositionUnit::Millimetres)?))
+pub(super) fn format_steps(ruler: Ruler, steps: i32) -> Option<String> {
+    let decimals = ruler.decimal_places(PositionUnit::Millimetres);
+    Some(format!("{:.decimals$}", ruler.from_steps(steps.into(), PositionUnit::Millimetres)?))
 }
 
-fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
+fn parse_length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
     let millimetres = parse_in_range(TEXTS.text(what), text, 0.001, most)?;
     // The result is between a thousand and a thousand million.
     Ok(Length { nanometres: (millimetres * 1e6).round() as u64 })
@@ -144,7 +144,7 @@ fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
 fn position(what: &'static str, text: &str, ruler: Option<Ruler>) -> Result<i32, Text> {
     let ruler = ruler.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
     let value = parse_in_range(TEXTS.text(what), text, -1e6, 1e6)?;
-    ruler.steps(value, PositionUnit::Millimetres).map_err(|why| match why {
+    ruler.to_steps(value, PositionUnit::Millimetres).map_err(|why| match why {
         PositionRangeError::NoPitch => TEXTS.text("hd_axis.unread"),
         PositionRangeError::Bits { least, most } => TEXTS
             .text("hd_axis.beyond")

@@ -1,15 +1,16 @@
 //! Progress of the set-up through buttons, completed writes and data from the drive.
 
-use super::entries::{Entries, typed};
+use super::entries::{LengthEntries, format_steps};
 use super::standstill::PositionChange;
 use super::supply::Power;
 use super::{
-    Axis, AxisChange, AxisStep, Confirmed, DriveFacts, DriveRequest, End, Outcome, RunSummary, TestTarget, Travel,
+    Axis, AxisChange, AxisStep, ConfirmedLimits, DriveFacts, DriveRequest, JogTravel, Outcome, RunSummary, SetupEnd,
+    TestTarget,
 };
-use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, REFERENCE, UPPER};
+use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER_LIMIT, REFERENCE, UPPER_LIMIT};
 
 impl Axis {
-    pub(crate) fn edit(&mut self, entries: Entries) {
+    pub(crate) fn set_entries(&mut self, entries: LengthEntries) {
         if self.over.is_none() {
             self.entries = entries;
         }
@@ -21,7 +22,7 @@ impl Axis {
             return;
         }
         let Some((ruler, position)) = seen.ruler().zip(seen.position) else { return };
-        let Some(text) = typed(ruler, position) else { return };
+        let Some(text) = format_steps(ruler, position) else { return };
         match self.step {
             AxisStep::Lower => self.entries.lower = text,
             AxisStep::Upper => self.entries.upper = text,
@@ -30,21 +31,21 @@ impl Axis {
     }
 
     /// Goes to the next step if the current step is complete. `when` is the time as written in the report.
-    pub(crate) fn go_on(&mut self, seen: &DriveFacts, when: &str) {
+    pub(crate) fn next_step(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.check_can_continue(seen).is_ok() {
-            self.leave(seen, false, when);
+            self.leave_step(seen, false, when);
         }
     }
 
-    pub(crate) fn skip(&mut self, seen: &DriveFacts, when: &str) {
+    pub(crate) fn skip_step(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.can_skip(seen) {
-            self.leave(seen, true, when);
+            self.leave_step(seen, true, when);
         }
     }
 
-    fn leave(&mut self, seen: &DriveFacts, skipped: bool, when: &str) {
+    fn leave_step(&mut self, seen: &DriveFacts, skipped: bool, when: &str) {
         // The fact that was just confirmed may differ from the earlier one.
-        self.settle(seen);
+        self.reconcile_results(seen);
         if self.invalidated_step().is_some() {
             return;
         }
@@ -52,24 +53,24 @@ impl Axis {
             // The user has set or confirmed the reference.
             self.unexplained = None;
         }
-        let next = self.step.neighbour(1);
-        if self.chain.make(self.step, self.basis(seen), skipped)
+        let next = self.step.step_by(1);
+        if self.chain.record(self.step, self.preconditions(seen), skipped)
             && let Some(next) = next
         {
             self.undo_results_from(next, next == AxisStep::Upper);
         }
         match next {
             Some(step) => self.enter(step, seen),
-            None => self.record_end(End::Done, seen, when),
+            None => self.record_end(SetupEnd::Done, seen, when),
         }
     }
 
     /// Goes to the previous step or to a step that must be repeated. Written values are kept.
-    pub(crate) fn back(&mut self, seen: &DriveFacts) {
+    pub(crate) fn go_back(&mut self, seen: &DriveFacts) {
         if self.over.is_some() || !self.can_go_back(seen) {
             return;
         }
-        if let Some(step) = self.invalidated_step().or_else(|| self.step.neighbour(-1)) {
+        if let Some(step) = self.invalidated_step().or_else(|| self.step.step_by(-1)) {
             self.enter(step, seen);
         }
     }
@@ -77,31 +78,32 @@ impl Axis {
     fn enter(&mut self, step: AxisStep, seen: &DriveFacts) {
         self.step = step;
         if step == AxisStep::PowerCycle {
-            self.power = Some(Power::on(seen));
+            self.power = Some(Power::from_facts(seen));
         }
     }
 
     pub(crate) fn cancel(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() {
             self.going = None;
-            self.record_end(End::Cancelled, seen, when);
+            self.record_end(SetupEnd::Cancelled, seen, when);
         }
     }
 
-    fn record_end(&mut self, end: End, seen: &DriveFacts, when: &str) {
+    fn record_end(&mut self, end: SetupEnd, seen: &DriveFacts, when: &str) {
         self.over = Some(RunSummary { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
-    pub(crate) fn begin(&mut self, ask: DriveRequest, seen: &DriveFacts) {
+    pub(crate) fn begin_request(&mut self, ask: DriveRequest, seen: &DriveFacts) {
         match ask {
             DriveRequest::Try(_) | DriveRequest::SetPosition(_) | DriveRequest::Save | DriveRequest::Restore(_) => {
                 self.asked = Some(ask)
             }
             DriveRequest::ConfirmLimits => {
-                let confirmed = |limits| Confirmed { scale: seen.scale, seen: limits, agreed: limits, begun: None };
+                let confirmed =
+                    |limits| ConfirmedLimits { scale: seen.scale, seen: limits, agreed: limits, begun: None };
                 self.confirmed = seen.limits.map(confirmed);
             }
-            DriveRequest::PowerCycle => self.lose(),
+            DriveRequest::PowerCycle => self.handle_connection_loss(),
             DriveRequest::BelieveRestart => self.power = self.power.map(Power::confirmed_by_user),
             DriveRequest::Move(_) | DriveRequest::Take | DriveRequest::Give | DriveRequest::Acknowledge => {}
         }
@@ -115,10 +117,10 @@ impl Axis {
         self.going = Some((place, target, act));
     }
 
-    pub(crate) fn written(&mut self) {
+    pub(crate) fn mark_written(&mut self) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) => {
-                self.agree(&values, true);
+                self.record_agreed_limits(&values, true);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The restart mark is never saved.
                 self.saved &= self.step == AxisStep::PowerCycle;
@@ -140,12 +142,12 @@ impl Axis {
     }
 
     /// Records that the user confirmed the taught limits by approving their plan.
-    fn agree(&mut self, values: &[(u16, i64)], whole: bool) {
+    fn record_agreed_limits(&mut self, values: &[(u16, i64)], whole: bool) {
         let value = |own: u16| {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
             i32::try_from(*value).ok()
         };
-        match (&mut self.confirmed, value(LOWER).zip(value(UPPER))) {
+        match (&mut self.confirmed, value(LOWER_LIMIT).zip(value(UPPER_LIMIT))) {
             (Some(confirmed), Some(limits)) if self.step == AxisStep::Upper => match whole {
                 true => (confirmed.agreed, confirmed.begun) = (limits, None),
                 false => confirmed.begun = Some(limits),
@@ -159,7 +161,7 @@ impl Axis {
     pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
-                self.agree(&values, false);
+                self.record_agreed_limits(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The restart mark is never saved. Apart from it, everything is as saved.
                 if self.step != AxisStep::PowerCycle {
@@ -175,29 +177,29 @@ impl Axis {
         }
     }
 
-    pub(crate) fn lose(&mut self) {
+    pub(crate) fn handle_connection_loss(&mut self) {
         self.handle_write_failure(true);
         self.going = None;
         match self.power {
-            Some(_) => self.standstill.forget(),
+            Some(_) => self.standstill.discard(),
             None => self.standstill.interrupt(),
         }
-        self.power = self.power.map(Power::gone);
+        self.power = self.power.map(Power::after_power_off);
     }
 
     /// Records that all parameters were read. `switched` tells whether the virtual supply has been switched since.
-    pub(crate) fn surveyed(&mut self, seen: &DriveFacts, switched: bool) {
-        self.power = self.power.map(|power| power.back(seen, switched));
+    pub(crate) fn on_survey(&mut self, seen: &DriveFacts, switched: bool) {
+        self.power = self.power.map(|power| power.after_survey(seen, switched));
     }
 
     /// Processes the present data of the drive. Updates the travel, the end of a test move, and the validity of all
     /// results.
-    pub(crate) fn look(&mut self, seen: &DriveFacts) {
+    pub(crate) fn update(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {
             return;
         }
         if self.step == AxisStep::Jog {
-            self.travel.note(seen);
+            self.travel.add_position(seen);
         }
         self.power = self.power.map(|power| power.with_latest_values(seen));
         if let (Some((place, target, act)), Some((ended_act, ended))) = (self.going, seen.ended)
@@ -211,27 +213,27 @@ impl Axis {
             }
             self.going = None;
         }
-        self.settle(seen);
+        self.reconcile_results(seen);
     }
 
     /// Discards results that no longer match the drive and adopts those that do.
-    fn settle(&mut self, seen: &DriveFacts) {
+    fn reconcile_results(&mut self, seen: &DriveFacts) {
         if !seen.is_settled() || self.asked.is_some() {
             return;
         }
-        match self.standstill.note(seen, self.origin(seen)) {
+        match self.standstill.check_reading(seen, self.position_origin(seen)) {
             Some(PositionChange::Jump) => self.jumps += 1,
-            Some(PositionChange::Unexplained(way)) if self.chain.holds(AxisStep::Reference) => {
+            Some(PositionChange::Unexplained(way)) if self.chain.is_complete(AxisStep::Reference) => {
                 self.unexplained = Some(self.unexplained.unwrap_or_default() + way);
             }
             _ => {}
         }
-        if let Some(step) = self.chain.discard_outdated(&self.basis(seen)) {
+        if let Some(step) = self.chain.discard_outdated(&self.preconditions(seen)) {
             self.undo_results_from(step, false);
         }
         let is_set = |position: &i32| seen.values.get(&REFERENCE) == Some(&i64::from(*position));
         if let Some(position) = self.sets.filter(is_set) {
-            (self.sets, self.reference) = (None, Some((position, self.origin(seen))));
+            (self.sets, self.reference) = (None, Some((position, self.position_origin(seen))));
         }
     }
 
@@ -242,7 +244,7 @@ impl Axis {
             self.confirmed = None;
         }
         if step <= AxisStep::Jog {
-            self.travel = Travel::default();
+            self.travel = JogTravel::default();
         }
         if step <= AxisStep::Reference {
             (self.reference, self.unexplained) = (None, None);

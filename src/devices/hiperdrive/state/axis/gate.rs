@@ -2,24 +2,26 @@
 
 use std::time::Duration;
 
-use super::supply::{MARK, Power, RestartEvidence, is_marked, mark};
+use super::supply::{Power, RESTART_MARKER, RestartEvidence, is_marked, mark_value};
 use super::{Axis, AxisButton, AxisStep, DriveFacts, DriveRequest, TestTarget, differences, words};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::MotionLock;
 use crate::devices::hiperdrive::protocol::State;
-use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, REQUESTED, UPPER};
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER_LIMIT, NUMERATOR, REQUESTED_BY_BUS, UPPER_LIMIT,
+};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
 /// Minimum time for which a step is shown before the user can leave it.
-const SETTLES: Duration = Duration::from_millis(600);
+const MIN_STEP_TIME: Duration = Duration::from_millis(600);
 
 impl Axis {
     /// Returns the request that a button triggers.
     ///
     /// # Errors
     /// Returns the reason if the button cannot be pressed now.
-    pub fn ask(&self, button: AxisButton, seen: &DriveFacts) -> Result<DriveRequest, Text> {
+    pub fn request(&self, button: AxisButton, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
         }
@@ -57,7 +59,9 @@ impl Axis {
             },
             AxisButton::Widen => {
                 let preview = self.entries.preview(seen)?;
-                stands().map(|()| DriveRequest::Try(vec![(LOWER, preview.lower.into()), (UPPER, preview.upper.into())]))
+                stands().map(|()| {
+                    DriveRequest::Try(vec![(LOWER_LIMIT, preview.lower.into()), (UPPER_LIMIT, preview.upper.into())])
+                })
             }
             AxisButton::Go(place) => {
                 self.may_move(seen)?;
@@ -80,7 +84,7 @@ impl Axis {
     fn step_request(&self, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         match self.step {
             AxisStep::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
-            AxisStep::Request => Ok(DriveRequest::Try(vec![(REQUESTED, 1)])),
+            AxisStep::Request => Ok(DriveRequest::Try(vec![(REQUESTED_BY_BUS, 1)])),
             AxisStep::Scale => {
                 let preview = self.entries.preview(seen)?;
                 if seen.scale == Some(preview.scale) {
@@ -91,13 +95,13 @@ impl Axis {
                 let all = [
                     (NUMERATOR, numerator.into()),
                     (DENOMINATOR, denominator.into()),
-                    (LOWER, low.into()),
-                    (UPPER, high.into()),
+                    (LOWER_LIMIT, low.into()),
+                    (UPPER_LIMIT, high.into()),
                 ];
                 Ok(DriveRequest::Try(all.to_vec()))
             }
             AxisStep::Reference => {
-                let reference = self.entries.reference(seen.ruler(), seen.limits)?;
+                let reference = self.entries.parse_reference(seen.ruler(), seen.limits)?;
                 Ok(DriveRequest::SetPosition(reference.becomes))
             }
             AxisStep::Upper => {
@@ -105,15 +109,15 @@ impl Axis {
                 if seen.limits == Some((low, high)) {
                     return Err(TEXTS.text("hd_axis.already"));
                 }
-                Ok(DriveRequest::Try(vec![(LOWER, low.into()), (UPPER, high.into())]))
+                Ok(DriveRequest::Try(vec![(LOWER_LIMIT, low.into()), (UPPER_LIMIT, high.into())]))
             }
             AxisStep::Save => Ok(DriveRequest::Save),
-            AxisStep::PowerCycle => match (self.power, is_marked(seen), mark()) {
+            AxisStep::PowerCycle => match (self.power, is_marked(seen), mark_value()) {
                 (
                     Some(Power::On(_) | Power::Back { restart: RestartEvidence::Unproven, .. }),
                     Some(false),
                     Some(mark),
-                ) => Ok(DriveRequest::Try(vec![(MARK, mark)])),
+                ) => Ok(DriveRequest::Try(vec![(RESTART_MARKER, mark)])),
                 _ => Err(TEXTS.text("hd_axis.already")),
             },
             AxisStep::Confirm | AxisStep::Jog | AxisStep::Lower | AxisStep::Test => Err(TEXTS.text("hd_axis.already")),
@@ -124,7 +128,7 @@ impl Axis {
     fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper_limit(ruler)?);
-        let mm = |steps: i32| words::millimetres(ruler, steps.into());
+        let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
         if low >= high {
             return Err(TEXTS.text("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
         }
@@ -187,7 +191,7 @@ impl Axis {
     /// # Errors
     /// Returns the remaining time if the step is too new.
     pub fn check_step_settled(looked_at: Duration) -> Result<(), Duration> {
-        match SETTLES.saturating_sub(looked_at) {
+        match MIN_STEP_TIME.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
             left => Err(left),
         }
@@ -231,8 +235,8 @@ impl Axis {
                 lacks(self.travel.down > 0, "hd_axis.needs_down")
             }
             AxisStep::Reference => {
-                let is_set = self.reference.is_some_and(|(_, origin)| origin == self.origin(seen));
-                lacks(is_set || self.chain.holds(AxisStep::Reference), "hd_axis.needs_reference")
+                let is_set = self.reference.is_some_and(|(_, origin)| origin == self.position_origin(seen));
+                lacks(is_set || self.chain.is_complete(AxisStep::Reference), "hd_axis.needs_reference")
             }
             AxisStep::Lower => self.entries.lower_limit(seen.ruler()).map(|_| ()),
             AxisStep::Upper => {
@@ -240,7 +244,7 @@ impl Axis {
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
             }
             AxisStep::Test => {
-                let reached = |place| self.outcome(place).is_some_and(|own| own.is_good());
+                let reached = |place| self.outcome_of(place).is_some_and(|own| own.is_good());
                 lacks(TestTarget::ALL.into_iter().all(reached), "hd_axis.needs_test")
             }
             AxisStep::Save => lacks(self.saved, "hd_axis.needs_save"),
@@ -268,6 +272,6 @@ impl Axis {
     /// Returns an error if the limits are not known.
     pub fn target(&self, place: TestTarget, seen: &DriveFacts) -> Result<i32, Text> {
         let (low, high) = seen.limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
-        Ok(place.between(low, high))
+        Ok(place.position_between(low, high))
     }
 }

@@ -1,6 +1,6 @@
 //! Report of a finished run for saving and printing: plain text that fits a page, lengths in millimetres.
 
-use super::{Axis, AxisStep, DriveFacts, End, StepStatus, TestTarget, words};
+use super::{Axis, AxisStep, DriveFacts, SetupEnd, StepStatus, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -17,41 +17,41 @@ const INDENT: &str = "   ";
 
 /// Returns the report of a completed set-up, or `None` while it is running. Values written back since then are reported
 /// as in `now`.
-pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
-    let over = axis.over()?;
+pub fn write_report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
+    let over = axis.run_summary()?;
     let seen = &over.seen;
     let mut page = Page { text: String::new(), language };
-    page.line("", &TEXTS.text("hd_axis.report_title").with("when", &over.when));
+    page.write_text("", &TEXTS.text("hd_axis.report_title").with("when", &over.when));
     let drive = TEXTS.text("hd_axis.report_drive").with("device", &device.name).with("drive", axis.drive().get());
     let variant = device.variant.clone().unwrap_or_else(|| TEXTS.text("hd_op.unknown"));
-    page.line("", &drive.with_text("variant", variant).with("serial", &device.serial_number));
-    page.line("", &TEXTS.text(if over.end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" }));
+    page.write_text("", &drive.with_text("variant", variant).with("serial", &device.serial_number));
+    page.write_text("", &TEXTS.text(if over.end == SetupEnd::Done { "hd_axis.ended" } else { "hd_axis.cancelled" }));
     if let Some(pitch) = seen.pitch {
         let pitch = TEXTS.text("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3);
-        page.line("", &pitch);
+        page.write_text("", &pitch);
     }
     page.push_blank_line();
     AxisStep::ALL.into_iter().for_each(|step| report_step(&mut page, axis, step, seen));
     page.push_blank_line();
-    write_outcome_lines(axis, now).iter().for_each(|line| page.line("", line));
+    write_outcome_lines(axis, now).iter().for_each(|line| page.write_text("", line));
     Some(page.text)
 }
 
 fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
     let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
-    page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::step_status(reached)));
+    page.write_text("", &line.with_text("step", words::title(step)).with_text("reached", words::step_status(reached)));
     if matches!(reached, StepStatus::Done | StepStatus::Failed)
-        && let Some(found) = words::found(axis, step, seen)
+        && let Some(found) = words::finding_text(axis, step, seen)
     {
-        page.line(INDENT, &found);
+        page.write_text(INDENT, &found);
     }
-    if step == AxisStep::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome(place).is_some()) {
-        page.line(INDENT, &words::effort("hd_axis.report_effort"));
+    if step == AxisStep::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome_of(place).is_some()) {
+        page.write_text(INDENT, &words::speed_torque_text("hd_axis.report_effort"));
         for place in TestTarget::ALL {
-            let Some(outcome) = axis.outcome(place) else { continue };
-            let line = TEXTS.text("hd_axis.report_place").with_text("place", words::place(place));
-            page.line(INDENT, &line.with_text("outcome", words::outcome(&outcome, seen)));
+            let Some(outcome) = axis.outcome_of(place) else { continue };
+            let line = TEXTS.text("hd_axis.report_place").with_text("place", words::target_text(place));
+            page.write_text(INDENT, &line.with_text("outcome", words::outcome_text(&outcome, seen)));
         }
     }
 }
@@ -63,7 +63,7 @@ pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
         (true, None) => lines.push(TEXTS.text("hd_axis.nothing_written")),
         (true, Some(returned)) => lines.push(returned),
         (false, returned) => {
-            lines.push(words::changes(axis));
+            lines.push(words::changes_text(axis));
             lines.extend(returned);
             lines.push(TEXTS.text(if axis.is_saved() { "hd_axis.all_saved" } else { "hd_axis.not_saved" }));
         }
@@ -88,12 +88,12 @@ impl Page {
     }
 
     /// Writes a text, wrapped to as many lines as required.
-    fn line(&mut self, indent: &str, text: &Text) {
+    fn write_text(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
         for word in text.to_string_in(self.language).split_whitespace() {
             let width = indent.chars().count() + line.chars().count() + word.chars().count();
             if !line.is_empty() && width >= COLUMNS {
-                self.end(indent, &line);
+                self.write_line(indent, &line);
                 line.clear();
             }
             if !line.is_empty() {
@@ -101,10 +101,10 @@ impl Page {
             }
             line.push_str(word);
         }
-        self.end(indent, &line);
+        self.write_line(indent, &line);
     }
 
-    fn end(&mut self, indent: &str, line: &str) {
+    fn write_line(&mut self, indent: &str, line: &str) {
         self.text.push_str(indent);
         self.text.push_str(line);
         self.text.push('\n');

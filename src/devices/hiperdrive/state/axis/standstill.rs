@@ -5,8 +5,8 @@
 use std::time::Duration;
 
 use super::DriveFacts;
-use super::step_outcomes::Origin;
-use super::supply::READJUSTS;
+use super::step_outcomes::PositionOrigin;
+use super::supply::READJUSTMENT_DEG;
 use crate::devices::hiperdrive::procedures::dead_man::MAX_REPORT_DELAY;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
 use crate::units::Moment;
@@ -14,7 +14,7 @@ use crate::units::Moment;
 /// Maximum speed of a shaft in rpm, the largest value of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
 /// Time without a reading in which an axis may have moved and come to rest again.
-const UNREAD: Duration = Duration::from_secs(1);
+const MAX_READING_GAP: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct StandstillMonitor {
@@ -29,7 +29,7 @@ struct StandstillReading {
     at: Option<Moment>,
     position: i32,
     scale: PositionScale,
-    origin: Origin,
+    origin: PositionOrigin,
     /// Last action of the user that had ended at the time of the reading.
     act: Option<u64>,
 }
@@ -51,12 +51,12 @@ impl StandstillMonitor {
 
     /// Discards the last standstill because the drive was off and may have been turned by hand. The power-cycle check
     /// compares the position itself.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn discard(&mut self) {
         *self = StandstillMonitor::default();
     }
 
     /// Processes a reading. Returns the change since the previous reading if it cannot be explained by motion.
-    pub(super) fn note(&mut self, seen: &DriveFacts, origin: Origin) -> Option<PositionChange> {
+    pub(super) fn check_reading(&mut self, seen: &DriveFacts, origin: PositionOrigin) -> Option<PositionChange> {
         let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
         if at.is_none() && !self.interrupted {
             return None;
@@ -79,9 +79,9 @@ fn shift(before: &StandstillReading, now: &StandstillReading, is_interrupted: bo
     let elapsed = now.at.zip(before.at).filter(|_| !is_interrupted).map(|(now, before)| now.duration_since(before));
     let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + MAX_REPORT_DELAY).as_secs_f64();
     match elapsed {
-        _ if allowed(READJUSTS) => None,
-        Some(elapsed) if !allowed(READJUSTS + turned(elapsed)) => Some(PositionChange::Jump),
-        Some(elapsed) if elapsed <= UNREAD => None,
+        _ if allowed(READJUSTMENT_DEG) => None,
+        Some(elapsed) if !allowed(READJUSTMENT_DEG + turned(elapsed)) => Some(PositionChange::Jump),
+        Some(elapsed) if elapsed <= MAX_READING_GAP => None,
         _ => Some(PositionChange::Unexplained(way)),
     }
 }

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 /// Origin of positions. It is given by the position set last (198), the number of times this program set a position,
 /// and the number of jumps at standstill. Only a jump reveals a reference that was set again to the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Origin {
+pub(super) struct PositionOrigin {
     set: Option<i64>,
     times: u32,
     jumps: u32,
@@ -21,7 +21,7 @@ pub(super) struct Preconditions {
     pub(super) pitch: Option<Length>,
     /// Whether the limits of the drive are confirmed under the present scale.
     pub(super) confirmed: bool,
-    pub(super) origin: Origin,
+    pub(super) origin: PositionOrigin,
     pub(super) limits: Option<(i32, i32)>,
     pub(super) lower: Option<i32>,
 }
@@ -36,19 +36,19 @@ struct StepOutcome {
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepOutcomes(Vec<StepOutcome>);
 
-impl Origin {
-    pub(super) fn of(seen: &DriveFacts, jumps: u32) -> Self {
-        Origin { set: seen.values.get(&REFERENCE).copied(), times: seen.times_set, jumps }
+impl PositionOrigin {
+    pub(super) fn from_facts(seen: &DriveFacts, jumps: u32) -> Self {
+        PositionOrigin { set: seen.values.get(&REFERENCE).copied(), times: seen.times_set, jumps }
     }
 }
 
 impl StepOutcomes {
     /// Returns the first step without a result, or `None` if all steps have a result.
-    pub(super) fn end(&self) -> Option<AxisStep> {
+    pub(super) fn first_open_step(&self) -> Option<AxisStep> {
         AxisStep::ALL.get(self.0.len()).copied()
     }
 
-    pub(super) fn holds(&self, step: AxisStep) -> bool {
+    pub(super) fn is_complete(&self, step: AxisStep) -> bool {
         step.index() < self.0.len()
     }
 
@@ -58,7 +58,7 @@ impl StepOutcomes {
 
     /// Records the result of a step. Returns whether it differs from the previous result. If it does, the results of
     /// later steps are void.
-    pub(super) fn make(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
+    pub(super) fn record(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
         let made = StepOutcome { on, skipped };
         let before = self.0.get(step.index()).copied();
         if before.is_some_and(|before| before.skipped == skipped && is_same(step, &before.on, &on)) {

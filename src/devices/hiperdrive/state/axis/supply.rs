@@ -7,10 +7,10 @@ use crate::devices::hiperdrive::protocol::{FactoryValue, PARAMETERS, PositionSca
 
 /// Parameter that reveals a restart of the drive. It is never saved, so only a restart restores its factory setting
 /// (manual, 182), and it moves nothing.
-pub(super) const MARK: u16 = HAND_DRIVE_WAIT;
+pub(super) const RESTART_MARKER: u16 = HAND_DRIVE_WAIT;
 
 /// Angle in degrees by which a drive may readjust its position at power-up and after a stop (manual, 8.3).
-pub(super) const READJUSTS: f64 = 5.0;
+pub(super) const READJUSTMENT_DEG: f64 = 5.0;
 
 /// Facts of the drive before the supply is switched off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,7 +18,7 @@ pub struct StateBeforePowerOff {
     scale: Option<PositionScale>,
     limits: Option<(i32, i32)>,
     position: Option<i32>,
-    /// Whether [`MARK`] differed from its factory setting.
+    /// Whether [`RESTART_MARKER`] differed from its factory setting.
     marked: bool,
 }
 
@@ -54,7 +54,7 @@ pub enum Power {
 }
 
 impl Power {
-    pub(super) fn on(seen: &DriveFacts) -> Self {
+    pub(super) fn from_facts(seen: &DriveFacts) -> Self {
         Power::On(StateBeforePowerOff::default()).with_latest_values(seen)
     }
 
@@ -78,7 +78,7 @@ impl Power {
         }
     }
 
-    pub(super) const fn gone(self) -> Self {
+    pub(super) const fn after_power_off(self) -> Self {
         match self {
             Power::On(before) | Power::Gone(before) | Power::Back { before, .. } => Power::Gone(before),
         }
@@ -86,7 +86,7 @@ impl Power {
 
     /// Records that the parameters were read again. This reading may be the first one after the power cycle, unless an
     /// earlier one has shown that the supply was off.
-    pub(super) fn back(self, seen: &DriveFacts, switched: bool) -> Self {
+    pub(super) fn after_survey(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before)
             | Power::Back { before, restart: RestartEvidence::Unproven | RestartEvidence::Disproved, .. } => before,
@@ -106,7 +106,7 @@ impl Power {
             before,
             kept: before.scale == seen.scale && before.limits == seen.limits && seen.requested == Some(true),
             moved: position.zip(before.position).map(|(now, own)| i64::from(now) - i64::from(own)),
-            allowed: scale.steps_of_degrees(READJUSTS).into(),
+            allowed: scale.steps_of_degrees(READJUSTMENT_DEG).into(),
             restart,
         }
     }
@@ -128,18 +128,18 @@ impl Power {
     }
 }
 
-/// Returns whether [`MARK`] differs from its factory setting, or `None` if it was not read.
+/// Returns whether [`RESTART_MARKER`] differs from its factory setting, or `None` if it was not read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
-    Some(*seen.values.get(&MARK)? != factory_mark()?)
+    Some(*seen.values.get(&RESTART_MARKER)? != factory_mark()?)
 }
 
 /// Returns a value that marks a drive: the factory setting plus 1.
-pub(super) fn mark() -> Option<i64> {
+pub(super) fn mark_value() -> Option<i64> {
     factory_mark().map(|value| value + 1)
 }
 
 fn factory_mark() -> Option<i64> {
-    let row = PARAMETERS.iter().find(|row| row.number == MARK)?;
+    let row = PARAMETERS.iter().find(|row| row.number == RESTART_MARKER)?;
     match row.factory {
         FactoryValue::Number(value) => Some(value),
         FactoryValue::None | FactoryValue::Topology { .. } | FactoryValue::Turns(_) | FactoryValue::Automatic => None,

@@ -23,7 +23,7 @@ pub struct Outcome {
 
 /// Distance in steps by which an axis was jogged. Only motion while a button is held counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Travel {
+pub struct JogTravel {
     /// Farthest upward distance of a single jog, or 0 until the distance is significant.
     pub up: i64,
     pub down: i64,
@@ -38,7 +38,7 @@ impl TestTarget {
     pub const ALL: [TestTarget; 3] = [TestTarget::Middle, TestTarget::Lower, TestTarget::Upper];
 
     /// Returns the target as a step position between two limits.
-    pub const fn between(self, low: i32, high: i32) -> i32 {
+    pub const fn position_between(self, low: i32, high: i32) -> i32 {
         match self {
             TestTarget::Middle => low.midpoint(high),
             TestTarget::Lower => low,
@@ -58,9 +58,9 @@ impl Outcome {
     }
 }
 
-impl Travel {
+impl JogTravel {
     /// Processes the position of the drive. Travel of less than a 64th of a turn is not significant.
-    pub(super) fn note(&mut self, seen: &DriveFacts) {
+    pub(super) fn add_position(&mut self, seen: &DriveFacts) {
         let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
             self.from = None;
             return;

@@ -43,7 +43,7 @@ fn at(seen: &mut DriveFacts, position: i32) {
 /// Makes the drive do what is requested.
 #[track_caller]
 fn apply_command(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
-    axis.begin(ask.clone(), seen);
+    axis.begin_request(ask.clone(), seen);
     match ask {
         DriveRequest::Try(values) | DriveRequest::Restore(values) => {
             seen.values.extend(values.iter().copied());
@@ -59,27 +59,27 @@ fn apply_command(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
             if let (Some(low), Some(high)) = (number(158), number(160)) {
                 seen.limits = Some((low.try_into().unwrap(), high.try_into().unwrap()));
             }
-            axis.written();
+            axis.mark_written();
         }
         DriveRequest::SetPosition(position) => {
             at(seen, position);
             seen.values.insert(198, position.into());
             seen.times_set += 1;
-            axis.written();
+            axis.mark_written();
         }
         DriveRequest::ConfirmLimits => seen.locks.clear(),
         DriveRequest::Take => seen.controlled = true,
         DriveRequest::Give => seen.controlled = false,
-        DriveRequest::Save => axis.written(),
+        DriveRequest::Save => axis.mark_written(),
         DriveRequest::Move(_) | DriveRequest::PowerCycle | DriveRequest::Acknowledge | DriveRequest::BelieveRestart => {
         }
     }
-    axis.look(seen);
+    axis.update(seen);
 }
 
 #[track_caller]
 fn press(axis: &mut Axis, seen: &mut DriveFacts, button: AxisButton) -> DriveRequest {
-    let ask = axis.ask(button, seen).unwrap();
+    let ask = axis.request(button, seen).unwrap();
     apply_command(axis, seen, ask.clone());
     ask
 }
@@ -93,21 +93,21 @@ fn next(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
 
 fn go_on(axis: &mut Axis, seen: &DriveFacts) {
     // This also confirms the entered pitch.
-    let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= AxisStep::Scale);
-    axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
+    let pitch = axis.entries().parse_pitch().ok().filter(|_| axis.step() >= AxisStep::Scale);
+    axis.next_step(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
 }
 
 /// Enters the spindle: 4 mm per turn, a step of 0.01 mm.
 fn enter_spindle(axis: &mut Axis) {
-    axis.edit(Entries { pitch: "4".to_owned(), ..axis.entries().clone() });
+    axis.set_entries(LengthEntries { pitch: "4".to_owned(), ..axis.entries().clone() });
 }
 
 /// Goes past the step with the spindle: the confirmed pitch applies from then on.
 #[track_caller]
 fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
     next(axis, seen, AxisStep::Confirm);
-    seen.pitch = axis.entries().pitch().ok();
-    axis.look(seen);
+    seen.pitch = axis.entries().parse_pitch().ok();
+    axis.update(seen);
 }
 
 #[test]
@@ -127,9 +127,9 @@ fn a_step_is_shown_for_a_minimum_time() {
 #[test]
 fn proposed_values_use_the_decimal_sign_of_the_language() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
-        let shown = run().entries().shown(language);
+        let shown = run().entries().localized(language);
         assert_eq!(shown.resolution, step);
-        let preview = Entries { pitch: "4".to_owned(), ..shown }.preview(&fresh()).unwrap();
+        let preview = LengthEntries { pitch: "4".to_owned(), ..shown }.preview(&fresh()).unwrap();
         assert_eq!((preview.scale.numerator(), preview.scale.denominator()), (400, 256));
     }
 }
@@ -140,7 +140,7 @@ fn rewritten_parameters_are_reported_once() {
     let mut axis = run();
     axis.changes =
         vec![AxisChange::Parameter(158, 9), AxisChange::Parameter(160, 10_050), AxisChange::Parameter(160, 250)];
-    let said = words::changes(&axis).to_string_in(Language::English);
+    let said = words::changes_text(&axis).to_string_in(Language::English);
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
@@ -165,10 +165,10 @@ fn jog(axis: &mut Axis, seen: &mut DriveFacts, to: i32, turns: Direction) {
     (seen.moves, seen.held) = (true, Some((from.unsigned_abs().into(), turns)));
     for part in 0..=4 {
         at(seen, from + (to - from) * part / 4);
-        axis.look(seen);
+        axis.update(seen);
     }
     (seen.moves, seen.held) = (false, None);
-    axis.look(seen);
+    axis.update(seen);
 }
 
 fn at_test_step() -> (Axis, DriveFacts) {
@@ -180,7 +180,7 @@ fn at_test_step() -> (Axis, DriveFacts) {
     assert_eq!((axis.travel().up, axis.travel().down), (500, 400));
     assert_eq!(axis.travel().clockwise_is_up, Some(true));
     next(&mut axis, &seen, AxisStep::Reference);
-    axis.edit(Entries { reference: "1,00".to_owned(), ..axis.entries().clone() });
+    axis.set_entries(LengthEntries { reference: "1,00".to_owned(), ..axis.entries().clone() });
     // 100 steps become 128: the nearest multiple of 64.
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::SetPosition(128));
     next(&mut axis, &seen, AxisStep::Lower);
@@ -198,15 +198,15 @@ fn at_test_step() -> (Axis, DriveFacts) {
 }
 
 fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
-    let DriveRequest::Move(target) = axis.ask(AxisButton::Go(place), seen).unwrap() else { panic!("no move") };
+    let DriveRequest::Move(target) = axis.request(AxisButton::Go(place), seen).unwrap() else { panic!("no move") };
     let act = seen.ended.map_or(1, |(act, _)| act + 1);
     axis.record_test_move_start(place, target, act);
     seen.moves = true;
-    axis.look(seen);
+    axis.update(seen);
     assert_eq!(axis.running_test_target(), Some(place));
     (seen.moves, seen.ended) = (false, Some((act, ActionEnd::Arrived)));
     at(seen, ends);
-    axis.look(seen);
+    axis.update(seen);
 }
 
 fn at_power_cycle_step() -> (Axis, DriveFacts) {
@@ -228,22 +228,22 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_power");
     // Reading without switching off proves nothing.
-    axis.surveyed(&seen, false);
+    axis.on_survey(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
     // Worked out by hand: the factory setting of 182 is 1000.
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(182, 1001)]));
-    axis.lose();
+    axis.handle_connection_loss();
     seen.connected = false;
-    axis.look(&seen);
+    axis.update(&seen);
     seen.connected = true;
     seen.values.insert(182, 1000);
     // 5° of 400 steps are 5.6: six.
     at(&mut seen, 2002 - 6);
-    axis.surveyed(&seen, false);
+    axis.on_survey(&seen, false);
     let Some(Power::Back { kept, moved, allowed, restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
     assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, RestartEvidence::Read));
     go_on(&mut axis, &seen);
-    assert_eq!(axis.end(), Some(End::Done));
+    assert_eq!(axis.setup_end(), Some(SetupEnd::Done));
     assert!(AxisStep::ALL.into_iter().all(|step| axis.step_status(step) == StepStatus::Done));
     // Worked out by hand, in the order in which they were written.
     let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
@@ -259,13 +259,13 @@ fn values_lost_in_a_power_cycle_are_reported() {
     let survive = |change: fn(&mut DriveFacts)| {
         let (mut axis, mut seen) = at_power_cycle_step();
         press(&mut axis, &mut seen, AxisButton::Do);
-        axis.lose();
+        axis.handle_connection_loss();
         seen.values.insert(182, 1000);
         change(&mut seen);
-        axis.surveyed(&seen, false);
+        axis.on_survey(&seen, false);
         assert!(!axis.has_survived() && axis.step_status(AxisStep::PowerCycle) == StepStatus::Failed);
         assert!(axis.check_can_continue(&seen).is_err());
-        words::found(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
+        words::finding_text(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
     };
     assert_eq!(survive(|seen| at(seen, 2002 + 7)), "hd_axis.power_moved");
     assert_eq!(survive(|seen| seen.limits = Some((-1000, 1000))), "hd_axis.power_lost");
@@ -275,7 +275,7 @@ fn values_lost_in_a_power_cycle_are_reported() {
 
 #[test]
 fn impossible_steps_are_refused_with_a_reason() {
-    let why = |axis: &Axis, seen: &DriveFacts, button| axis.ask(button, seen).unwrap_err().id();
+    let why = |axis: &Axis, seen: &DriveFacts, button| axis.request(button, seen).unwrap_err().id();
     let (axis, seen) = at_jog_step();
     for (label, changed, id) in [
         ("gone", DriveFacts { connected: false, ..seen.clone() }, "hd_axis.not_connected"),
@@ -298,18 +298,18 @@ fn impossible_steps_are_refused_with_a_reason() {
     seen.is_virtual = true;
     assert_eq!(why(&axis, &seen, AxisButton::PowerCycle), "hd_axis.give_first");
     // During a write nothing else is done.
-    axis.begin(DriveRequest::Save, &seen);
+    axis.begin_request(DriveRequest::Save, &seen);
     assert_eq!(why(&axis, &seen, AxisButton::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
-    axis.back(&seen);
+    axis.go_back(&seen);
     assert_eq!(axis.step(), AxisStep::Test);
 }
 
 #[test]
 fn taught_limits_must_contain_the_position() {
     let (mut axis, mut seen) = at_test_step();
-    axis.back(&seen);
-    let typed = |lower: &str, upper: &str, axis: &Axis| Entries {
+    axis.go_back(&seen);
+    let typed = |lower: &str, upper: &str, axis: &Axis| LengthEntries {
         lower: lower.to_owned(),
         upper: upper.to_owned(),
         ..axis.entries().clone()
@@ -323,11 +323,11 @@ fn taught_limits_must_contain_the_position() {
         ("", "20", "entry.missing"),
         ("-10", "1e99", "entry.number"),
     ] {
-        axis.edit(typed(lower, upper, &axis));
-        assert_eq!(axis.ask(AxisButton::Do, &seen).unwrap_err().id(), id, "{lower} {upper}");
+        axis.set_entries(typed(lower, upper, &axis));
+        assert_eq!(axis.request(AxisButton::Do, &seen).unwrap_err().id(), id, "{lower} {upper}");
     }
-    axis.edit(typed("-10,00", "20.01", &axis));
-    assert_eq!(axis.ask(AxisButton::Do, &seen), Ok(DriveRequest::Try(vec![(158, -1000), (160, 2001)])));
+    axis.set_entries(typed("-10,00", "20.01", &axis));
+    assert_eq!(axis.request(AxisButton::Do, &seen), Ok(DriveRequest::Try(vec![(158, -1000), (160, 2001)])));
 }
 
 #[test]
@@ -335,20 +335,20 @@ fn a_test_that_misses_its_target_does_not_count() {
     let (mut axis, mut seen) = at_test_step();
     // 1° of 400 steps are 1.1: two.
     go(&mut axis, &mut seen, TestTarget::Middle, 503);
-    assert!(!axis.outcome(TestTarget::Middle).unwrap().is_good());
+    assert!(!axis.outcome_of(TestTarget::Middle).unwrap().is_good());
     go(&mut axis, &mut seen, TestTarget::Middle, 498);
-    assert!(axis.outcome(TestTarget::Middle).unwrap().is_good());
-    let DriveRequest::Move(target) = axis.ask(AxisButton::Go(TestTarget::Upper), &seen).unwrap() else {
+    assert!(axis.outcome_of(TestTarget::Middle).unwrap().is_good());
+    let DriveRequest::Move(target) = axis.request(AxisButton::Go(TestTarget::Upper), &seen).unwrap() else {
         panic!("no move")
     };
     axis.record_test_move_start(TestTarget::Upper, target, 9);
     // An earlier act does not count for this one.
-    axis.look(&seen);
-    assert_eq!((axis.running_test_target(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
+    axis.update(&seen);
+    assert_eq!((axis.running_test_target(), axis.outcome_of(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, ActionEnd::Stopped));
-    axis.look(&seen);
+    axis.update(&seen);
     assert!(
-        axis.outcome(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.check_can_continue(&seen).is_err()
+        axis.outcome_of(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.check_can_continue(&seen).is_err()
     );
 }
 
@@ -356,9 +356,9 @@ fn a_test_that_misses_its_target_does_not_count() {
 fn cancelling_reports_written_and_unsaved_values() {
     let (mut axis, mut seen) = at_test_step();
     axis.cancel(&seen, "");
-    assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
+    assert_eq!((axis.setup_end(), axis.is_saved()), (Some(SetupEnd::Cancelled), false));
     assert!(axis.changes().len() == 8 && axis.step_status(AxisStep::Test) == StepStatus::Ahead);
-    assert_eq!(axis.ask(AxisButton::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
+    assert_eq!(axis.request(AxisButton::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Recall), DriveRequest::Restore(vec![(152, 0)]));
     // The place has the position that was set.
@@ -372,7 +372,7 @@ fn cancelling_reports_written_and_unsaved_values() {
     // A write that did not begin has changed nothing; an interrupted one may have.
     for (begun, changes) in [(false, 0), (true, 1)] {
         let mut axis = run();
-        axis.begin(DriveRequest::Try(vec![(152, 1)]), &fresh());
+        axis.begin_request(DriveRequest::Try(vec![(152, 1)]), &fresh());
         axis.handle_write_failure(begun);
         assert_eq!((axis.changes().len(), axis.is_partly_written()), (changes, begun));
     }
@@ -381,23 +381,24 @@ fn cancelling_reports_written_and_unsaved_values() {
 #[test]
 fn a_correct_position_is_not_written() {
     let (mut axis, mut seen) = at_jog_step();
-    axis.skip(&seen, "");
+    axis.skip_step(&seen, "");
     assert_eq!(axis.step(), AxisStep::Jog, "this one cannot be left out");
     press(&mut axis, &mut seen, AxisButton::Take);
     jog(&mut axis, &mut seen, 500, Direction::Counterclockwise);
     jog(&mut axis, &mut seen, 0, Direction::Clockwise);
     assert_eq!(axis.travel().clockwise_is_up, Some(false));
     next(&mut axis, &seen, AxisStep::Reference);
-    axis.skip(&seen, "");
+    axis.skip_step(&seen, "");
     assert_eq!((axis.step(), axis.step_status(AxisStep::Reference)), (AxisStep::Lower, StepStatus::Skipped));
-    axis.back(&seen);
+    axis.go_back(&seen);
     assert_eq!(axis.step_status(AxisStep::Reference), StepStatus::Now);
 }
 
 #[test]
 fn pitch_and_step_are_previewed_before_writing() {
     let preview = |pitch: &str, resolution: &str, family| {
-        let entries = Entries { pitch: pitch.to_owned(), resolution: resolution.to_owned(), ..Entries::default() };
+        let entries =
+            LengthEntries { pitch: pitch.to_owned(), resolution: resolution.to_owned(), ..LengthEntries::default() };
         entries.preview(&DriveFacts { family: Some(family), ..fresh() }).map_err(|text| text.id())
     };
     let own = preview("4", "0,01", Family::Short).unwrap();
@@ -424,8 +425,8 @@ fn pitch_and_step_are_previewed_before_writing() {
 fn every_step_has_instructions_and_a_result() {
     let (axis, seen) = at_power_cycle_step();
     for step in AxisStep::ALL {
-        let texts = [words::title(step), words::step_instructions(step, &seen), words::button(step)];
-        let found = words::found(&axis, step, &seen).unwrap();
+        let texts = [words::title(step), words::step_instructions(step, &seen), words::button_label(step)];
+        let found = words::finding_text(&axis, step, &seen).unwrap();
         for text in texts.iter().chain([&found]) {
             for language in [Language::English, Language::German] {
                 let said = text.to_string_in(language);
@@ -433,7 +434,7 @@ fn every_step_has_instructions_and_a_result() {
             }
         }
     }
-    let found = |step| words::found(&axis, step, &seen).unwrap().to_string_in(Language::English);
+    let found = |step| words::finding_text(&axis, step, &seen).unwrap().to_string_in(Language::English);
     assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256 (400 steps per turn).");
     assert_eq!(
         found(AxisStep::Confirm),

@@ -50,7 +50,7 @@ pub fn step_status(own: StepStatus) -> Text {
     })
 }
 
-pub fn button(step: AxisStep) -> Text {
+pub fn button_label(step: AxisStep) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.request",
         AxisStep::Reference => "hd_axis.set",
@@ -60,9 +60,9 @@ pub fn button(step: AxisStep) -> Text {
     })
 }
 
-pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
+pub fn finding_text(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
     let ruler = seen.ruler();
-    let mm = |steps: i32| millimetres(ruler, steps.into());
+    let mm = |steps: i32| millimetres_text(ruler, steps.into());
     match step {
         AxisStep::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
             (true, Some(true)) => Some(TEXTS.text("hd_axis.found_drive")),
@@ -90,32 +90,34 @@ pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
             let way = TEXTS.text(match travel.clockwise_is_up {
                 Some(true) => "hd_axis.clockwise_up",
                 Some(false) => "hd_axis.clockwise_down",
-                None => return (travel.up + travel.down > 0).then(|| moved(ruler, travel.up, travel.down)),
+                None => return (travel.up + travel.down > 0).then(|| travel_text(ruler, travel.up, travel.down)),
             });
-            let moved = moved(ruler, travel.up, travel.down);
+            let moved = travel_text(ruler, travel.up, travel.down);
             Some(TEXTS.text("hd_axis.found_jog").with_text("moved", moved).with_text("way", way))
         }
-        AxisStep::Reference => Some(TEXTS.text("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
+        AxisStep::Reference => {
+            Some(TEXTS.text("hd_axis.found_reference").with_text("position", mm(axis.reference_position()?)))
+        }
         AxisStep::Lower => {
             Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower_limit(ruler).ok()?)))
         }
         AxisStep::Test => {
-            let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
+            let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome_of(place)).filter(Outcome::is_good);
             let worst = good.clone().map(|own| own.position_deviation().abs()).max()?;
             let text = TEXTS.text("hd_axis.found_test").with("count", good.count());
-            Some(text.with_text("missed", millimetres(ruler, worst)))
+            Some(text.with_text("missed", millimetres_text(ruler, worst)))
         }
         AxisStep::Save => axis.is_saved().then(|| TEXTS.text("hd_axis.found_saved")),
-        AxisStep::PowerCycle => power(axis, ruler),
+        AxisStep::PowerCycle => power_text(axis, ruler),
     }
 }
 
-fn moved(ruler: Option<Ruler>, up: i64, down: i64) -> Text {
-    let text = TEXTS.text("hd_axis.found_moved").with_text("up", millimetres(ruler, up));
-    text.with_text("down", millimetres(ruler, down))
+fn travel_text(ruler: Option<Ruler>, up: i64, down: i64) -> Text {
+    let text = TEXTS.text("hd_axis.found_moved").with_text("up", millimetres_text(ruler, up));
+    text.with_text("down", millimetres_text(ruler, down))
 }
 
-fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
+fn power_text(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     let (kept, moved, allowed, restart) = match axis.power()? {
         Power::On(_) => return Some(TEXTS.text("hd_axis.power_on")),
         Power::Gone(_) => return Some(TEXTS.text("hd_axis.power_gone")),
@@ -134,8 +136,8 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
         (true, false) => "hd_axis.power_moved",
         (true, true) => "hd_axis.power_kept",
     };
-    let text = TEXTS.text(id).with_text("moved", millimetres(ruler, moved));
-    Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
+    let text = TEXTS.text(id).with_text("moved", millimetres_text(ruler, moved));
+    Some(text.with_text("allowed", millimetres_text(ruler, allowed)).with_text("restart", proof))
 }
 
 pub fn invalidated_step(step: AxisStep) -> Text {
@@ -154,7 +156,7 @@ pub fn invalidated_step(step: AxisStep) -> Text {
 }
 
 /// Describes the fault of the drive, with its code if known, or returns `None` without a fault.
-pub fn fault(seen: &DriveFacts) -> Option<Text> {
+pub fn fault_text(seen: &DriveFacts) -> Option<Text> {
     if !seen.has_failed() {
         return None;
     }
@@ -167,18 +169,18 @@ pub fn fault(seen: &DriveFacts) -> Option<Text> {
 }
 
 /// Describes the speed and torque sent for the jog buttons and the test.
-pub fn effort(id: &'static str) -> Text {
+pub fn speed_torque_text(id: &'static str) -> Text {
     let SpeedTorque { speed, torque } = SpeedTorque::DEFAULT_JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
-pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
-    let mm = |steps: i64| millimetres(seen.ruler(), steps);
+pub fn outcome_text(outcome: &Outcome, seen: &DriveFacts) -> Text {
+    let mm = |steps: i64| millimetres_text(seen.ruler(), steps);
     if outcome.ended == ActionEnd::Arrived {
         let text = TEXTS.text("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
         return text.with_text("missed", mm(outcome.position_deviation()));
     }
-    let why = words::ended(outcome.ended, |steps| mm(steps.into()));
+    let why = words::end_text(outcome.ended, |steps| mm(steps.into()));
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 
@@ -213,10 +215,10 @@ pub fn unrestored_position_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> 
 /// Returns a message if the position has changed since the reference while it was not read.
 pub fn unexplained_change_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let way = axis.unexplained?;
-    Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
+    Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres_text(seen.ruler(), way)))
 }
 
-pub fn place(place: TestTarget) -> Text {
+pub fn target_text(place: TestTarget) -> Text {
     TEXTS.text(match place {
         TestTarget::Middle => "hd_axis.middle",
         TestTarget::Lower => "hd_axis.to_lower",
@@ -225,7 +227,7 @@ pub fn place(place: TestTarget) -> Text {
 }
 
 /// Lists all changes, if any. A parameter that was written more than once is listed with its present value.
-pub fn changes(axis: &Axis) -> Text {
+pub fn changes_text(axis: &Axis) -> Text {
     let number = |own: &AxisChange| match own {
         AxisChange::Parameter(number, _) => *number,
         AxisChange::Position(_) => REFERENCE,
@@ -233,10 +235,10 @@ pub fn changes(axis: &Axis) -> Text {
     let all = axis.changes();
     let is_last = |(at, own): &(usize, &AxisChange)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
     let last = all.iter().enumerate().filter(is_last);
-    TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
+    TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change_text(own)))
 }
 
-fn change(own: &AxisChange) -> Text {
+fn change_text(own: &AxisChange) -> Text {
     let text = TEXTS.text("hd_axis.changed");
     match own {
         AxisChange::Parameter(number, value) => text.with("number", number).with("value", value),
@@ -245,10 +247,10 @@ fn change(own: &AxisChange) -> Text {
 }
 
 /// Formats steps in millimetres, with enough decimals to distinguish steps, or as steps if the spindle is unknown.
-pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
-    match ruler.and_then(|ruler| Some((ruler.of(steps, PositionUnit::Millimetres)?, ruler))) {
+pub fn millimetres_text(ruler: Option<Ruler>, steps: i64) -> Text {
+    match ruler.and_then(|ruler| Some((ruler.from_steps(steps, PositionUnit::Millimetres)?, ruler))) {
         Some((value, ruler)) => {
-            let decimals = ruler.decimals(PositionUnit::Millimetres).min(4);
+            let decimals = ruler.decimal_places(PositionUnit::Millimetres).min(4);
             TEXTS.text("hd_axis.millimetres").with_number("value", value, decimals)
         }
         None => TEXTS.text("hd_axis.steps").with("value", steps),

@@ -1,6 +1,6 @@
 //! Texts for the device check.
 
-use super::names::{error, state, variant};
+use super::names::{error, state, variant_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::literal_text;
@@ -9,11 +9,11 @@ use crate::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Hip
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
-pub fn check(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
+pub fn check_lines(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
-pub(super) fn step(step: CheckStep) -> Text {
+pub(super) fn check_step_text(step: CheckStep) -> Text {
     let of = |id: &'static str, drive: DriveNumber| TEXTS.text(id).with("drive", drive.get());
     match step {
         CheckStep::Messages => TEXTS.text("check.messages"),
@@ -41,7 +41,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
         CheckFinding::Supply(tenths) => TEXTS.text("hd_check.supply").with_number("volts", *tenths as f64 / 10.0, 1),
         CheckFinding::Temperature(celsius) => TEXTS.text("hd_check.celsius").with("celsius", celsius),
-        CheckFinding::Switch(switch) => self::switch(*switch),
+        CheckFinding::Switch(switch) => self::switch_text(*switch),
         CheckFinding::UnknownSwitch(number) => TEXTS.text("hd_check.unknown_switch").with("number", number),
         CheckFinding::Source(source) => self::source(*source),
         CheckFinding::Saved => TEXTS.text("hd_check.saved"),
@@ -49,7 +49,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Drive { number, variant: own, serial_number } => TEXTS
             .text("hd_check.drive")
             .with("drive", number.get())
-            .with_text("variant", variant(*own))
+            .with_text("variant", variant_text(*own))
             .with("serial", serial_number),
         CheckFinding::NoDrives => TEXTS.text("hd_check.no_drives"),
         CheckFinding::Requested => TEXTS.text("hd_check.requested"),
@@ -98,7 +98,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
     }
 }
 
-pub fn switch(switch: AddressSwitch) -> Text {
+pub fn switch_text(switch: AddressSwitch) -> Text {
     match switch {
         AddressSwitch::Object => TEXTS.text("hd_switch.object"),
         AddressSwitch::Fixed(address) => TEXTS.text("hd_switch.fixed").with("address", address),

@@ -5,8 +5,10 @@ use super::status;
 use crate::app::Text;
 use crate::app::explain::{link_error_text, literal_text};
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
-use crate::devices::hiperdrive::procedures::{Damage, Error, LateReplyError, Refusal, RequestedItem, WrongLength};
-use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
+use crate::devices::hiperdrive::procedures::{
+    Error, ErrorReply, LateReplyError, ReplyDamage, RequestedItem, WrongLength,
+};
+use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, ParameterRange, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
 pub fn device(error: &Error) -> Text {
@@ -31,13 +33,13 @@ pub fn device(error: &Error) -> Text {
         Error::Encapsulation { requested: what, status } => TEXTS
             .text("hd_said.refused")
             .with_text("asked", item_text(*what))
-            .with_text("status", status::frame(*status))
+            .with_text("status", status::encapsulation_status_text(*status))
             .with_text("remedy", frame_remedy(*status)),
         Error::Refused { requested: what, refusal } => TEXTS
             .text("hd_said.refused")
             .with_text("asked", item_text(*what))
-            .with_text("status", status::refusal(refusal))
-            .with_text("remedy", remedy(refusal)),
+            .with_text("status", status::refusal_text(refusal))
+            .with_text("remedy", remedy_text(refusal)),
         Error::OtherMaster { extended } => TEXTS.text("hd_said.other_master").with("code", format!("0x{extended:04X}")),
         Error::TooSlow { asked_ms, got_ms } => {
             TEXTS.text("hd_said.too_slow").with("asked", asked_ms).with("got", got_ms)
@@ -60,14 +62,16 @@ pub fn device(error: &Error) -> Text {
         Error::OutOfRange(error) => out_of_range(error),
         Error::Refuses(error) => out_of_range_text("hd_said.refuses", error),
         Error::Length(error) => wrong_length(error),
-        Error::Value { number, cause } => named("hd_said.value", *number).with_text("why", status::value(cause)),
-        Error::ReadOnly { number, .. } => named("hd_said.read_only", *number),
-        Error::WriteOnly { number, .. } => named("hd_said.write_only", *number),
-        Error::Motion { number, .. } => named("hd_said.motion", *number),
+        Error::Value { number, cause } => {
+            parameter_text("hd_said.value", *number).with_text("why", status::value(cause))
+        }
+        Error::ReadOnly { number, .. } => parameter_text("hd_said.read_only", *number),
+        Error::WriteOnly { number, .. } => parameter_text("hd_said.write_only", *number),
+        Error::Motion { number, .. } => parameter_text("hd_said.motion", *number),
         Error::Moving { drive } => TEXTS.text("hd_said.moving").with("drive", drive.get()),
         Error::NotHiperdrive { product } => TEXTS.text("hd_said.other_device").with("says", product),
         Error::NotTaken { number, wanted, reads } => {
-            named("hd_said.not_taken", *number).with("wanted", wanted).with("reads", reads)
+            parameter_text("hd_said.not_taken", *number).with("wanted", wanted).with("reads", reads)
         }
         Error::NetworkNotTaken { attribute } => TEXTS.text("hd_said.network_not_taken").with("attribute", attribute),
         Error::Busy { reads, milliseconds } => {
@@ -79,41 +83,41 @@ pub fn device(error: &Error) -> Text {
 
 pub fn out_of_range(error: &OutOfRange) -> Text {
     match error.range {
-        Range::OneOf([]) => named("hd_said.a_text", error.number),
+        ParameterRange::OneOf([]) => parameter_text("hd_said.a_text", error.number),
         _ => out_of_range_text("hd_said.out_of_range", error),
     }
 }
 
 pub fn wrong_length(error: &WrongLength) -> Text {
-    named("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
+    parameter_text("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
 }
 
-pub fn range(range: Range) -> Text {
+pub fn range_text(range: ParameterRange) -> Text {
     match range {
-        Range::Any => TEXTS.text("hd_range.any"),
-        Range::Within(low, high) if low == high => TEXTS.text("hd_range.only").with("low", low),
-        Range::Within(low, high) => TEXTS.text("hd_range.within").with("low", low).with("high", high),
-        Range::WithinOr(low, high, also) => {
+        ParameterRange::Any => TEXTS.text("hd_range.any"),
+        ParameterRange::Within(low, high) if low == high => TEXTS.text("hd_range.only").with("low", low),
+        ParameterRange::Within(low, high) => TEXTS.text("hd_range.within").with("low", low).with("high", high),
+        ParameterRange::WithinOr(low, high, also) => {
             TEXTS.text("hd_range.within_or").with("low", low).with("high", high).with("also", also)
         }
-        Range::OneOf(values) => Text::new("plain.words").with_list("words", values.iter().map(literal_text)),
+        ParameterRange::OneOf(values) => Text::new("plain.words").with_list("words", values.iter().map(literal_text)),
     }
 }
 
 fn out_of_range_text(id: &'static str, error: &OutOfRange) -> Text {
-    named(id, error.number).with("value", error.value).with_text("range", range(error.range))
+    parameter_text(id, error.number).with("value", error.value).with_text("range", range_text(error.range))
 }
 
 /// Returns a message about a parameter, with its number and name.
-pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
+pub(super) fn parameter_text(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }
 
 fn item_text(requested: RequestedItem) -> Text {
     match requested {
         RequestedItem::Session => TEXTS.text("hd_asked.session"),
-        RequestedItem::Parameter(number) => named("hd_asked.parameter", number),
-        RequestedItem::Set(number) => named("hd_asked.set", number),
+        RequestedItem::Parameter(number) => parameter_text("hd_asked.parameter", number),
+        RequestedItem::Set(number) => parameter_text("hd_asked.set", number),
         RequestedItem::Identity => TEXTS.text("hd_asked.identity"),
         RequestedItem::Network { attribute } => TEXTS.text("hd_asked.network").with("attribute", attribute),
         RequestedItem::SetNetwork { attribute } => TEXTS.text("hd_asked.set_network").with("attribute", attribute),
@@ -123,13 +127,13 @@ fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-pub fn damage_text(damage: &Damage) -> Text {
+pub fn damage_text(damage: &ReplyDamage) -> Text {
     match damage {
-        Damage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet(why)),
-        Damage::Value(why) => TEXTS.text("hd_damage.value").with_text("why", status::value(why)),
-        Damage::Empty => TEXTS.text("hd_damage.empty"),
-        Damage::Service { .. } => TEXTS.text("hd_damage.service"),
-        Damage::Cut { bytes } => TEXTS.text("hd_damage.cut").with("bytes", bytes),
+        ReplyDamage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet_error_text(why)),
+        ReplyDamage::Value(why) => TEXTS.text("hd_damage.value").with_text("why", status::value(why)),
+        ReplyDamage::Empty => TEXTS.text("hd_damage.empty"),
+        ReplyDamage::Service { .. } => TEXTS.text("hd_damage.service"),
+        ReplyDamage::Cut { bytes } => TEXTS.text("hd_damage.cut").with("bytes", bytes),
     }
 }
 
@@ -142,7 +146,7 @@ fn frame_remedy(status: EncapsulationStatus) -> Text {
     })
 }
 
-fn remedy(refusal: &Refusal) -> Text {
+fn remedy_text(refusal: &ErrorReply) -> Text {
     if refusal.status == GeneralStatus::CONNECTION
         && let Some(row) = refusal.row()
     {

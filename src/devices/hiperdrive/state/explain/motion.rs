@@ -22,7 +22,7 @@ pub fn lock(lock: MotionLock) -> Text {
 }
 
 /// Explains why a request was refused, and what to do. `place` formats steps in the user's unit.
-pub fn refusal(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
+pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         MotionRefusal::Locked(own) => lock(own),
         MotionRefusal::NoEffort => TEXTS.text("hd_refused.no_effort"),
@@ -51,7 +51,7 @@ pub fn refusal(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
 }
 
 /// Describes how an action ended, and what to do if it did not end well.
-pub fn ended(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
+pub fn end_text(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
     match ended {
         ActionEnd::Done => TEXTS.text("hd_end.done"),
         ActionEnd::Arrived => TEXTS.text("hd_end.arrived"),
@@ -63,7 +63,7 @@ pub fn ended(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
         ActionEnd::Lost => TEXTS.text("hd_end.lost"),
         ActionEnd::Fault => TEXTS.text("hd_end.fault"),
         ActionEnd::Locked(own) => lock(own),
-        ActionEnd::Refused(why) => refusal(why, place),
+        ActionEnd::Refused(why) => refusal_text(why, place),
         ActionEnd::NoAnswer(own) => TEXTS.text("hd_end.no_answer").with_text("state", state(own)),
         ActionEnd::NotStarted => TEXTS.text("hd_end.not_started"),
         ActionEnd::Left(own) => TEXTS.text("hd_end.left").with_text("state", state(own)),
@@ -86,7 +86,7 @@ pub const MOTION_ENDS: [&str; 9] = [
     "hd_end.wrong_way",
 ];
 
-pub const fn weight(ended: ActionEnd) -> Severity {
+pub const fn end_severity(ended: ActionEnd) -> Severity {
     match ended {
         ActionEnd::Done | ActionEnd::Arrived | ActionEnd::Stopped | ActionEnd::Replaced => Severity::Note,
         ActionEnd::RangeEnd | ActionEnd::Refused(_) | ActionEnd::Locked(_) | ActionEnd::Short => Severity::Warning,
@@ -102,7 +102,7 @@ pub const fn weight(ended: ActionEnd) -> Severity {
     }
 }
 
-pub fn goal(goal: TargetState) -> Text {
+pub fn target_state_text(goal: TargetState) -> Text {
     state(match goal {
         TargetState::Off => State::NotReady,
         TargetState::Ready => State::Ready,
@@ -114,7 +114,7 @@ pub fn goal(goal: TargetState) -> Text {
 pub fn phase(phase: Phase) -> Text {
     match phase {
         Phase::Idle => TEXTS.text("hd_phase.idle"),
-        Phase::Leading(own) => TEXTS.text("hd_phase.leading").with_text("goal", goal(own)),
+        Phase::Leading(own) => TEXTS.text("hd_phase.leading").with_text("goal", target_state_text(own)),
         Phase::Starting(_) => TEXTS.text("hd_phase.starting"),
         Phase::Moving(_) => TEXTS.text("hd_phase.moving"),
         Phase::Paused { .. } => TEXTS.text("hd_phase.paused"),
@@ -122,12 +122,12 @@ pub fn phase(phase: Phase) -> Text {
     }
 }
 
-/// Text IDs used by [`lost`]. These notices end once control is taken again.
-pub const LOST: [&str; 6] =
+/// Text IDs used by [`cyclic_loss_text`]. These notices end once control is taken again.
+pub const CONNECTION_LOSS_IDS: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 
 /// Explains why the cyclic connection was lost and what to do.
-pub fn lost(lost: Option<&ConnectionLoss>) -> Text {
+pub fn cyclic_loss_text(lost: Option<&ConnectionLoss>) -> Text {
     match lost {
         Some(ConnectionLoss::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),
         Some(ConnectionLoss::Port(error)) => TEXTS.text("hd_lost.port").with_text("why", link_error_text(error)),

@@ -74,7 +74,7 @@ pub fn error(code: ErrorCode) -> ErrorExplanation {
         ErrorCode::OVER_TEMPERATURE => {
             ("hd_error.over_temperature", "hd_cause.over_temperature", "hd_remedy.over_temperature")
         }
-        ErrorCode::FOLLOWING => ("hd_error.following", "hd_cause.following", "hd_remedy.following"),
+        ErrorCode::FOLLOWING_ERROR => ("hd_error.following", "hd_cause.following", "hd_remedy.following"),
         ErrorCode::BLOCK_REVERSE => ("hd_error.block_reverse", "hd_cause.block_reverse", "hd_remedy.block_reverse"),
         ErrorCode::BLOCK_FORWARD => ("hd_error.block_forward", "hd_cause.block_forward", "hd_remedy.block_forward"),
         ErrorCode::LOWER_LIMIT => ("hd_error.lower_limit", "hd_cause.lower_limit", "hd_remedy.lower_limit"),
@@ -95,7 +95,7 @@ pub fn error(code: ErrorCode) -> ErrorExplanation {
 }
 
 pub fn parameter(number: ParameterNumber) -> Text {
-    match number.base() {
+    match number.drive1_number() {
         base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),
         base @ (NEWEST_ERROR..=OLDEST_ERROR) => {
             TEXTS.text("hd_parameter.error").with("number", base - NEWEST_ERROR + 1)
@@ -107,7 +107,7 @@ pub fn parameter(number: ParameterNumber) -> Text {
     }
 }
 
-pub fn variant(variant: Variant) -> Text {
+pub fn variant_text(variant: Variant) -> Text {
     match variant.row() {
         Some(row) => literal_text(row.name),
         None if variant == Variant::NONE => TEXTS.text("hd_variant.none"),

@@ -8,11 +8,11 @@ use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::devices::hiperdrive::sim::Config;
-use crate::devices::hiperdrive::state::Unit;
+use crate::devices::hiperdrive::state::HiperdriveDevice;
 use crate::link::UrlQuery;
 use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
-const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Unit::KIND], &[]);
+const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[HiperdriveDevice::KIND], &[]);
 
 #[test]
 fn link_errors_are_explained_in_both_languages() {

@@ -3,14 +3,14 @@
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus, PacketError, PacketField, Structure};
-use crate::devices::hiperdrive::procedures::Refusal;
+use crate::devices::hiperdrive::procedures::ErrorReply;
 use crate::devices::hiperdrive::protocol::ValueError;
 use crate::devices::hiperdrive::state::TEXTS;
 
 const UNKNOWN: &str = "hd_status_name.unknown";
 
 /// Returns code and name of an encapsulation status.
-pub(super) fn frame(status: EncapsulationStatus) -> Text {
+pub(super) fn encapsulation_status_text(status: EncapsulationStatus) -> Text {
     let name = match status.code() {
         0x00 => "hd_status_name.frame_00",
         0x01 => "hd_status_name.frame_01",
@@ -25,11 +25,11 @@ pub(super) fn frame(status: EncapsulationStatus) -> Text {
 }
 
 /// Returns code and name of a CIP status and of its extended status.
-pub(super) fn refusal(refusal: &Refusal) -> Text {
+pub(super) fn refusal_text(refusal: &ErrorReply) -> Text {
     let status = general_status_text(refusal.status);
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
         ([], _) => return status,
-        ([first, ..], Some(row)) => vec![code_and_name_text(format!("0x{first:04X}"), connection(row.code))],
+        ([first, ..], Some(row)) => vec![code_and_name_text(format!("0x{first:04X}"), connection_failure_id(row.code))],
         (words, None) => words.iter().map(|word| literal_text(format!("0x{word:04X}"))).collect(),
     };
     let words = Text::new("plain.words").with_list("words", words);
@@ -75,7 +75,7 @@ fn general_status_text(status: GeneralStatus) -> Text {
 }
 
 /// Describes the extended status of a connection failure.
-fn connection(code: u16) -> &'static str {
+fn connection_failure_id(code: u16) -> &'static str {
     match code {
         0x0100 => "hd_status_name.connection_0100",
         0x0103 => "hd_status_name.connection_0103",
@@ -103,23 +103,23 @@ fn code_and_name_text(code: String, name: &'static str) -> Text {
     TEXTS.text("hd_status_name.coded").with("code", code).with_text("name", TEXTS.text(name))
 }
 
-pub(super) fn packet(error: &PacketError) -> Text {
+pub(super) fn packet_error_text(error: &PacketError) -> Text {
     match *error {
         PacketError::Short { what, got } => {
-            TEXTS.text("hd_packet.short").with_text("what", structure(what)).with("got", got)
+            TEXTS.text("hd_packet.short").with_text("what", structure_text(what)).with("got", got)
         }
         PacketError::Long { what, left } => {
-            TEXTS.text("hd_packet.long").with_text("what", structure(what)).with("left", left)
+            TEXTS.text("hd_packet.long").with_text("what", structure_text(what)).with("left", left)
         }
         PacketError::Value { what, field, got } => TEXTS
             .text("hd_packet.value")
-            .with_text("what", structure(what))
+            .with_text("what", structure_text(what))
             .with_text("field", self::field(field))
             .with("got", format!("0x{got:X}")),
     }
 }
 
-fn structure(structure: Structure) -> Text {
+fn structure_text(structure: Structure) -> Text {
     TEXTS.text(match structure {
         Structure::ConfigurationControl => "hd_structure.configuration_control",
         Structure::InterfaceConfiguration => "hd_structure.interface_configuration",
@@ -181,31 +181,31 @@ mod tests {
         assert_ne!(text.to_string_in(German), text.to_string_in(English));
     }
 
-    fn refused(status: u8, extended: Vec<u16>) -> Refusal {
-        Refusal { service: Service::FORWARD_OPEN, status: GeneralStatus::new(status), extended }
+    fn refused(status: u8, extended: Vec<u16>) -> ErrorReply {
+        ErrorReply { service: Service::FORWARD_OPEN, status: GeneralStatus::new(status), extended }
     }
 
     #[test]
     fn every_status_is_named_in_both_languages() {
         for code in (0..=255).chain([0x1_0000]) {
             let status = EncapsulationStatus::new(code);
-            assert_in_both_languages(&frame(status), &status);
+            assert_in_both_languages(&encapsulation_status_text(status), &status);
         }
         for code in 0..=255 {
             for extended in [vec![], vec![0x0106], vec![0x7777, 2]] {
                 let refused = refused(code, extended);
-                assert_in_both_languages(&refusal(&refused), &refused);
+                assert_in_both_languages(&refusal_text(&refused), &refused);
             }
         }
         for row in EXTENDED_STATUS {
             let refused = refused(0x01, vec![row.code]);
-            assert_in_both_languages(&refusal(&refused), &refused);
+            assert_in_both_languages(&refusal_text(&refused), &refused);
         }
         // One name per row, and none for other rows.
         let unknown = TEXTS.text(UNKNOWN).to_string_in(German);
         let mut names: Vec<String> =
             GENERAL_STATUS.iter().map(|row| general_status_text(row.code).to_string_in(German)).collect();
-        names.extend(ENCAPSULATION_STATUS.iter().map(|row| frame(row.code).to_string_in(German)));
+        names.extend(ENCAPSULATION_STATUS.iter().map(|row| encapsulation_status_text(row.code).to_string_in(German)));
         assert!(names.iter().all(|name| !name.contains(&unknown)), "{names:?}");
     }
 
@@ -217,7 +217,7 @@ mod tests {
             PacketError::Value { what: Structure::Path, field: PacketField::Length, got: 0xFFFF },
         ];
         for error in packets {
-            assert_in_both_languages(&packet(&error), &error);
+            assert_in_both_languages(&packet_error_text(&error), &error);
         }
         let values = [
             ValueError::Length { expected: 4, got: 2 },

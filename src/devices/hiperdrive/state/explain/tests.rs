@@ -2,17 +2,17 @@
 
 use std::time::Duration;
 
-use super::{device, ended, lock, plan, warning, weight, wrong_length};
+use super::{device, end_severity, end_text, lock, plan, warning, wrong_length};
 use crate::app::explain::literal_text;
 use crate::app::{Language, Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
 use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRefusal};
 use crate::devices::hiperdrive::procedures::{
-    Damage, Error, LateReplyError, Refusal as Refused, RequestedItem, WrongLength,
+    Error, ErrorReply as Refused, LateReplyError, ReplyDamage, RequestedItem, WrongLength,
 };
 use crate::devices::hiperdrive::profile::{Item, PlanError, TypeMismatch, Warning};
 use crate::devices::hiperdrive::protocol::{
-    DriveNumber, OutOfRange, ParameterNumber, Range, State, Topology, ValueError, Variant,
+    DriveNumber, OutOfRange, ParameterNumber, ParameterRange, State, Topology, ValueError, Variant,
 };
 
 const ONE: DriveNumber = DriveNumber::FIRST;
@@ -33,7 +33,8 @@ fn assert_complete(text: &Text, sentences: usize) {
 #[test]
 fn invalid_input_names_cause_and_remedy() {
     let english = |text: &Text| text.to_string_in(Language::English);
-    let out = OutOfRange { number: number(166), name: "maximum speed", value: 351, range: Range::Within(5, 350) };
+    let out =
+        OutOfRange { number: number(166), name: "maximum speed", value: 351, range: ParameterRange::Within(5, 350) };
     assert_eq!(
         english(&device(&Error::OutOfRange(out))),
         "Parameter 166 (Maximum speed) cannot be set to 351. Allowed: 5 to 350."
@@ -46,7 +47,7 @@ fn invalid_input_names_cause_and_remedy() {
         english(&device(&Error::NotRequested { drive: ONE })),
         "Drive 1 rejected the request because its parameter 152 (Requested) is 0. Set this parameter to 1 first."
     );
-    let switch = ended(ActionEnd::NotStarted, literal_text);
+    let switch = end_text(ActionEnd::NotStarted, literal_text);
     assert!(english(&switch).contains("S3 of the hub is at 0"), "{}", english(&switch));
     let master = device(&Error::OtherMaster { extended: 0x0106 });
     assert!(
@@ -68,16 +69,16 @@ fn errors_name_cause_and_remedy() {
         Error::NeverSilent,
         Error::NoReply { requested: RequestedItem::Session, tries: 5, late: None },
         Error::NoReply { requested: RequestedItem::Session, tries: 5, late: Some(late) },
-        Error::Damaged { requested: RequestedItem::Identity, tries: 5, cause: Damage::Empty },
-        Error::Damaged { requested: RequestedItem::Mac, tries: 5, cause: Damage::Cut { bytes: 7 } },
+        Error::Damaged { requested: RequestedItem::Identity, tries: 5, cause: ReplyDamage::Empty },
+        Error::Damaged { requested: RequestedItem::Mac, tries: 5, cause: ReplyDamage::Cut { bytes: 7 } },
         Error::InControl,
         Error::NoCyclic,
         Error::Unknown(number(44)),
         Error::NoNumber(900),
         Error::NoPlace { drive: ONE, topology: Topology::Hub4 },
         Error::NoDrive { drive: ONE },
-        Error::OutOfRange(ranged(Range::WithinOr(1, 100, 255))),
-        Error::Refuses(ranged(Range::OneOf(&[9600, 19200, 38400]))),
+        Error::OutOfRange(ranged(ParameterRange::WithinOr(1, 100, 255))),
+        Error::Refuses(ranged(ParameterRange::OneOf(&[9600, 19200, 38400]))),
         Error::Value { number: number(158), cause: ValueError::TextForNumber },
         length.into(),
         Error::ReadOnly { number: number(107), name: "actual position" },
@@ -172,11 +173,11 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
     ];
     locks.iter().for_each(|own| assert_complete(&lock(*own), 2));
     for own in bad.into_iter().chain(refusals.map(ActionEnd::Refused)).chain(locks.map(ActionEnd::Locked)) {
-        assert_complete(&ended(own, literal_text), 2);
-        assert!(weight(own) >= Severity::Warning, "{own:?}");
+        assert_complete(&end_text(own, literal_text), 2);
+        assert!(end_severity(own) >= Severity::Warning, "{own:?}");
     }
     for own in [ActionEnd::Done, ActionEnd::Arrived, ActionEnd::Stopped, ActionEnd::Replaced] {
-        assert_complete(&ended(own, literal_text), 1);
-        assert_eq!(weight(own), Severity::Note, "nobody has to do anything");
+        assert_complete(&end_text(own, literal_text), 1);
+        assert_eq!(end_severity(own), Severity::Note, "nobody has to do anything");
     }
 }

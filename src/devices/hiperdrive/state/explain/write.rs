@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-use super::check::{source, switch};
+use super::check::{source, switch_text};
 use super::error::{device, out_of_range};
-use super::names::{parameter, variant};
+use super::names::{parameter, variant_text};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::review::OperationTexts;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
-use crate::devices::hiperdrive::procedures::write::{Interrupted, WrittenChanges};
+use crate::devices::hiperdrive::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, PlanError, Service, TypeMismatch, Warning};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::network::refused;
+use crate::devices::hiperdrive::state::network::address_error_text;
 
-pub fn change(change: &Change) -> Text {
+pub fn change_text(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
             "" => Text::new("ib_change.restore"),
@@ -25,12 +25,12 @@ pub fn change(change: &Change) -> Text {
         Change::SetPosition { drive, position, .. } => {
             TEXTS.text("hd_change.position").with("drive", drive.get()).with("position", position)
         }
-        Change::Do(own) => service(*own),
+        Change::Do(own) => service_text(*own),
         Change::Network(_) => TEXTS.text("hd_change.network"),
     }
 }
 
-pub fn service(service: Service) -> Text {
+pub fn service_text(service: Service) -> Text {
     match service {
         Service::Save => TEXTS.text("hd_service.save"),
         Service::Recall => TEXTS.text("hd_service.recall"),
@@ -41,11 +41,11 @@ pub fn service(service: Service) -> Text {
     }
 }
 
-pub fn op(op: &Op) -> OperationTexts {
+pub fn operation_texts(op: &Op) -> OperationTexts {
     match op {
         Op::Write { number, old, new } => {
             let old = old.map_or_else(|| TEXTS.text("hd_op.unknown"), literal_text);
-            OperationTexts::single(item(Item(*number)), old, literal_text(new))
+            OperationTexts::single(item_text(Item(*number)), old, literal_text(new))
         }
         Op::Service(own) => {
             let (before, after) = match own {
@@ -55,7 +55,7 @@ pub fn op(op: &Op) -> OperationTexts {
                 Service::Reset => ("hd_op.as_now", "hd_op.restarted"),
                 Service::Acknowledge(_) => ("hd_op.fault", "hd_op.acknowledged"),
             };
-            OperationTexts::single(service(*own), TEXTS.text(before), TEXTS.text(after))
+            OperationTexts::single(service_text(*own), TEXTS.text(before), TEXTS.text(after))
         }
         Op::Network { from, to } => OperationTexts::single(TEXTS.text("hd_op.network"), network(from), network(to)),
     }
@@ -72,7 +72,7 @@ fn network(settings: &NetworkSettings) -> Text {
 }
 
 /// Returns the name of a parameter with its number and drive.
-pub fn item(item: Item) -> Text {
+pub fn item_text(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
@@ -88,8 +88,8 @@ fn type_mismatch_text(types: &TypeMismatch, whole: &'static str, of_drive: &'sta
         TypeMismatch::Drive { drive, profile, device } => TEXTS
             .text(of_drive)
             .with("drive", drive.get())
-            .with_text("profile", variant(*profile))
-            .with_text("device", variant(*device)),
+            .with_text("profile", variant_text(*profile))
+            .with_text("device", variant_text(*device)),
     }
 }
 
@@ -104,10 +104,10 @@ pub fn plan(error: &PlanError) -> Text {
         }
         PlanError::TypeMismatch(types) => type_mismatch_text(types, "hd_plan.other_kind", "hd_plan.other_variant"),
         PlanError::OutOfRange(error) => out_of_range(error),
-        PlanError::ReadOnly { item } => about("hd_said.read_only", *item),
-        PlanError::Moves { item } => about("hd_said.motion", *item),
-        PlanError::Acts { item } => about("hd_plan.acts", *item),
-        PlanError::NotRead { item } => about("hd_plan.not_read", *item),
+        PlanError::ReadOnly { item } => text_about("hd_said.read_only", *item),
+        PlanError::Moves { item } => text_about("hd_said.motion", *item),
+        PlanError::Acts { item } => text_about("hd_plan.acts", *item),
+        PlanError::NotRead { item } => text_about("hd_plan.not_read", *item),
         PlanError::LimitsCrossed { drive, lower, upper } => {
             TEXTS.text("hd_plan.crossed").with("drive", drive.get()).with("lower", lower).with("upper", upper)
         }
@@ -127,12 +127,12 @@ pub fn plan(error: &PlanError) -> Text {
             .with("becomes", becomes)
             .with("lower", lower)
             .with("upper", upper),
-        PlanError::Address(why) => TEXTS.text("hd_plan.address").with_text("why", refused(why)),
+        PlanError::Address(why) => TEXTS.text("hd_plan.address").with_text("why", address_error_text(why)),
         PlanError::Source(method) => TEXTS.text("hd_plan.source").with("method", method),
     }
 }
 
-fn about(id: &'static str, item: Item) -> Text {
+fn text_about(id: &'static str, item: Item) -> Text {
     TEXTS.text(id).with("number", item).with_text("name", parameter(item.0))
 }
 
@@ -145,26 +145,26 @@ pub fn warning(warning: &Warning) -> Text {
             .with_number("upper_now", now.1, 2)
             .with_number("lower_then", then.0, 2)
             .with_number("upper_then", then.1, 2),
-        Warning::AfterReset(own) => TEXTS.text("hd_warning.after_reset").with_text("item", item(*own)),
+        Warning::AfterReset(own) => TEXTS.text("hd_warning.after_reset").with_text("item", item_text(*own)),
         Warning::NoTimeout(drive) => TEXTS.text("hd_warning.no_timeout").with("drive", drive.get()),
         Warning::NotRequested(drive) => TEXTS.text("hd_warning.not_requested").with("drive", drive.get()),
-        Warning::SwitchDecides(own) => TEXTS.text("hd_warning.switch").with_text("switch", switch(*own)),
+        Warning::SwitchDecides(own) => TEXTS.text("hd_warning.switch").with_text("switch", switch_text(*own)),
     }
 }
 
-pub fn written(written: &WrittenChanges) -> Text {
+pub fn written_text(written: &WrittenChanges) -> Text {
     // A service of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
 pub(super) fn interruption_text(
-    interrupted: &Interrupted,
+    interrupted: &InterruptedWrite,
     backup: &Path,
     planned: usize,
     kind: ChangeKind,
 ) -> Vec<Text> {
-    let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.uncertain_write());
+    let (InterruptedWrite { done, cause, .. }, unclear) = (interrupted, interrupted.uncertain_write());
     let mut texts = vec![if cause.is_cancelled() {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {

@@ -2,7 +2,7 @@
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
-use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, UPPER};
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER_LIMIT, NUMERATOR, UPPER_LIMIT};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
@@ -57,7 +57,7 @@ pub enum EditError {
     Crossed { lower: i64, upper: i64 },
 }
 
-pub(super) fn edited(
+pub(super) fn apply_edit(
     (base, wanted): (&Image, &Image),
     edit: &Edit,
     ground: BaseSource,
@@ -65,7 +65,7 @@ pub(super) fn edited(
 ) -> Result<Image, EditError> {
     let mut after = wanted.clone();
     match *edit {
-        Edit::Set(number, value) => set(&mut after, number, value, ground, families)?,
+        Edit::Set(number, value) => set_value(&mut after, number, value, ground, families)?,
         Edit::Revert(number) => {
             match base.get(number) {
                 Some(value) => after.values.insert(number, value),
@@ -80,24 +80,26 @@ pub(super) fn edited(
             if lower >= upper {
                 return Err(EditError::Crossed { lower, upper });
             }
-            put(&mut after, drive, [(LOWER, lower), (UPPER, upper)], ground, families)?;
+            set_drive_values(&mut after, drive, [(LOWER_LIMIT, lower), (UPPER_LIMIT, upper)], ground, families)?;
         }
         Edit::Scale { drive, scale, limits } => {
             let before = wanted.scale(drive).unwrap_or(PositionScale::FACTORY);
             let parts = [(NUMERATOR, i64::from(scale.numerator())), (DENOMINATOR, i64::from(scale.denominator()))];
-            put(&mut after, drive, parts, ground, families)?;
+            set_drive_values(&mut after, drive, parts, ground, families)?;
             if let (LimitsPolicy::InPlace, Some((lower, upper))) = (limits, wanted.limits(drive)) {
                 let ruler = Ruler { scale: before, pitch: None };
-                let moved =
-                    [(LOWER, ruler.rescale_position(lower, scale)), (UPPER, ruler.rescale_position(upper, scale))];
-                put(&mut after, drive, moved, ground, families)?;
+                let moved = [
+                    (LOWER_LIMIT, ruler.rescale_position(lower, scale)),
+                    (UPPER_LIMIT, ruler.rescale_position(upper, scale)),
+                ];
+                set_drive_values(&mut after, drive, moved, ground, families)?;
             }
         }
     }
     Ok(after)
 }
 
-fn put<const N: usize>(
+fn set_drive_values<const N: usize>(
     after: &mut Image,
     drive: DriveNumber,
     values: [(u16, i64); N],
@@ -106,13 +108,13 @@ fn put<const N: usize>(
 ) -> Result<(), EditError> {
     for (number, value) in values {
         if let Some(number) = ParameterNumber::for_drive(number, drive) {
-            set(after, number, value, ground, families)?;
+            set_value(after, number, value, ground, families)?;
         }
     }
     Ok(())
 }
 
-fn set(
+fn set_value(
     after: &mut Image,
     number: ParameterNumber,
     value: i64,
@@ -120,13 +122,13 @@ fn set(
     families: &Families,
 ) -> Result<(), EditError> {
     let row = number.row().ok_or(EditError::Unknown(number))?;
-    if !is_editable(row) || ground == BaseSource::Profile && !Image::holds(row) {
+    if !is_editable(row) || ground == BaseSource::Profile && !Image::contains_row(row) {
         return Err(EditError::NotAValue(number));
     }
     if ground == BaseSource::Device && after.get(number).is_none() {
         return Err(EditError::NotRead(number));
     }
-    let value = row.check(number, value, travel(number, after, families))?;
+    let value = row.check_value(number, value, travel(number, after, families))?;
     after.values.insert(number, value);
     Ok(())
 }

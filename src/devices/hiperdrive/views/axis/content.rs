@@ -5,30 +5,32 @@ use egui::{RichText, Ui, vec2};
 use super::AxisPanel;
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton, AxisStep, Entries, TestTarget, words};
-use crate::devices::hiperdrive::state::{Motor, TEXTS};
+use crate::devices::hiperdrive::state::axis::{
+    AxisAction as Run, AxisButton, AxisStep, LengthEntries, TestTarget, words,
+};
+use crate::devices::hiperdrive::state::{MotorCommand, TEXTS};
 use crate::devices::hiperdrive::views::jog::jog_button_ui;
-use crate::devices::hiperdrive::views::say;
+use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{button_with_reason, entry, paragraph, problem_ui, row, text_entry};
 use crate::ui::widgets::HoldButton;
 use crate::ui::{Theme, icons};
 
-const NUMBER: f32 = 112.0;
-const PAD: f32 = 64.0;
-const GO: f32 = 172.0;
+const ENTRY_WIDTH: f32 = 112.0;
+const JOG_BUTTON_HEIGHT: f32 = 64.0;
+const GO_BUTTON_WIDTH: f32 = 172.0;
 
 pub(super) fn content_ui(
     ui: &mut Ui,
     theme: &Theme,
     shown: &AxisPanel<'_>,
-    entries: &mut Entries,
+    entries: &mut LengthEntries,
     actions: &mut Vec<Action>,
 ) {
     let step = shown.axis.step();
-    if step.moves() {
+    if step.needs_cyclic() {
         control_ui(ui, theme, shown, actions);
     }
-    if step.jogs() {
+    if step.is_jogging() {
         jog_buttons_ui(ui, theme, shown, actions);
     }
     match step {
@@ -57,13 +59,13 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
         let allowed = shown.axis.check_can_adopt_position(shown.seen);
-        if button_with_reason(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
+        if button_with_reason(ui, theme, &allowed, icons::TARGET, &translate(theme, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
     }
     if step != AxisStep::Lower {
-        let word = theme.format_text(&words::button(step));
-        shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        let word = theme.format_text(&words::button_label(step));
+        shown.button_ui(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == AxisStep::Request {
         super::write_back_button_ui(ui, theme, shown, actions);
@@ -72,9 +74,9 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
 }
 
 /// Draws the messages about the entries and the results of the step so far, without clickable widgets.
-pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
+pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     let step = shown.axis.step();
-    if step.jogs() {
+    if step.is_jogging() {
         availability_ui(ui, theme, shown);
     }
     match step {
@@ -82,10 +84,10 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
         AxisStep::Reference => reference_ui(ui, theme, shown, entries),
         AxisStep::Test => {
             for own in TestTarget::ALL {
-                let Some(outcome) = shown.axis.outcome(own) else { continue };
+                let Some(outcome) = shown.axis.outcome_of(own) else { continue };
                 let ink = if outcome.is_good() { theme.palette.good } else { theme.palette.bad };
-                let place = theme.format_text(&words::place(own));
-                let words = theme.format_text(&words::outcome(&outcome, shown.seen));
+                let place = theme.format_text(&words::target_text(own));
+                let words = theme.format_text(&words::outcome_text(&outcome, shown.seen));
                 row(ui, theme, &place, RichText::new(words).color(ink));
             }
         }
@@ -96,10 +98,10 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
 /// Draws the button that takes control. Nothing moves without the cyclic connection, nor during a fault.
 fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = say(theme, "hd_axis.take");
-        shown.button(ui, theme, AxisButton::Take, (icons::PLUGS_CONNECTED, &word), actions);
-        let word = say(theme, "hd_axis.acknowledge");
-        shown.button(ui, theme, AxisButton::Acknowledge, (icons::CHECK, &word), actions);
+        let word = translate(theme, "hd_axis.take");
+        shown.button_ui(ui, theme, AxisButton::Take, (icons::PLUGS_CONNECTED, &word), actions);
+        let word = translate(theme, "hd_axis.acknowledge");
+        shown.button_ui(ui, theme, AxisButton::Acknowledge, (icons::CHECK, &word), actions);
     });
     ui.add_space(theme.space.inside);
 }
@@ -112,7 +114,7 @@ fn check_can_jog(shown: &AxisPanel<'_>, direction: Direction) -> Result<(), Text
 fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| check_can_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_limits_text(shown.axis.drive()) {
-        super::line(ui, theme, Severity::Error, &outside);
+        super::line_ui(ui, theme, Severity::Error, &outside);
     }
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
@@ -130,29 +132,29 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
 
 fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
-    let caption = theme.format_text(&words::effort("hd_axis.jog_hold"));
+    let caption = theme.format_text(&words::speed_torque_text("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
         {
-            let (label, enabled) = (say(theme, label), check_can_jog(shown, direction).is_ok());
+            let (label, enabled) = (translate(theme, label), check_can_jog(shown, direction).is_ok());
             let has_ended = shown.unit.moves.has_held_jog_ended();
             let button = HoldButton { word, caption: &caption, label: &label, enabled, has_ended };
-            let press = Motor::SlowJogPress { direction, repeated: false };
+            let press = MotorCommand::SlowJogPress { direction, repeated: false };
             let about = (shown.unit.session.id, shown.axis.drive());
-            jog_button_ui(ui, theme, about, press, (&button, vec2(width, PAD)), actions);
+            jog_button_ui(ui, theme, about, press, (&button, vec2(width, JOG_BUTTON_HEIGHT)), actions);
         }
     });
     ui.add_space(theme.space.inside);
 }
 
 fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
-    let word = say(theme, id);
-    entry(ui, theme, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
+    let word = translate(theme, id);
+    entry(ui, theme, &word, |ui| text_entry(ui, text, ENTRY_WIDTH, &word, ""));
 }
 
 /// Draws pitch and resolution, and the values that result from them before they are written.
-fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
+fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     if entries.pitch.trim().is_empty() {
         return;
     }
@@ -162,18 +164,18 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     };
     let ruler = Some(preview.ruler);
     let range = |low: Text, high: Text| TEXTS.text("hd_axis.range").with_text("low", low).with_text("high", high);
-    let mm = |steps: i32| words::millimetres(ruler, steps.into());
+    let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
     let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
-    row(ui, theme, &say(theme, "hd_axis.preview_scale"), theme.monospace(scale));
+    row(ui, theme, &translate(theme, "hd_axis.preview_scale"), theme.monospace(scale));
     row(
         ui,
         theme,
-        &say(theme, "hd_axis.preview_steps"),
+        &translate(theme, "hd_axis.preview_steps"),
         theme.monospace(theme.format_plain(preview.scale.steps_per_turn())),
     );
-    row(ui, theme, &say(theme, "hd_axis.preview_grain"), theme.monospace(theme.format_text(&mm(64))));
+    row(ui, theme, &translate(theme, "hd_axis.preview_grain"), theme.monospace(theme.format_text(&mm(64))));
     let whole = theme.format_text(&range(mm(preview.lower), mm(preview.upper)));
-    row(ui, theme, &say(theme, "hd_axis.preview_range"), theme.monospace(whole));
+    row(ui, theme, &translate(theme, "hd_axis.preview_range"), theme.monospace(whole));
     if let (Some((low, high)), true) = (preview.unchanged, shown.seen.scale != Some(preview.scale)) {
         let value = |own: f64| TEXTS.text("hd_axis.millimetres").with_number("value", own, 0);
         let text = TEXTS.text("hd_axis.preview_unchanged_value");
@@ -181,33 +183,33 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
         row(
             ui,
             theme,
-            &say(theme, "hd_axis.preview_unchanged"),
+            &translate(theme, "hd_axis.preview_unchanged"),
             RichText::new(theme.format_text(&text)).color(theme.palette.warn),
         );
     }
 }
 
 fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
-    let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
+    let mm = |steps: i32| words::millimetres_text(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
         theme.format_text(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
     };
-    ui.label(theme.value(shown.seen.limits.map_or_else(|| say(theme, "hd_axis.none"), range)));
+    ui.label(theme.value(shown.seen.limits.map_or_else(|| translate(theme, "hd_axis.none"), range)));
     ui.add_space(theme.space.inside);
     ui.horizontal_wrapped(|ui| {
-        let word = say(theme, "hd_axis.confirm");
-        shown.button(ui, theme, AxisButton::Confirm, (icons::EYE, &word), actions);
-        let word = say(theme, "hd_axis.widen");
-        shown.button(ui, theme, AxisButton::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
+        let word = translate(theme, "hd_axis.confirm");
+        shown.button_ui(ui, theme, AxisButton::Confirm, (icons::EYE, &word), actions);
+        let word = translate(theme, "hd_axis.widen");
+        shown.button_ui(ui, theme, AxisButton::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
     });
 }
 
-fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
+fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     let ruler = shown.seen.ruler();
-    match entries.reference(ruler, shown.seen.limits) {
+    match entries.parse_reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
             let text =
-                TEXTS.text("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
+                TEXTS.text("hd_axis.becomes").with_text("position", words::millimetres_text(ruler, own.becomes.into()));
             paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         }
         Ok(_) => {}
@@ -216,21 +218,21 @@ fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Ent
 }
 
 fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
-    let mm = |steps: i32| theme.format_text(&words::millimetres(shown.seen.ruler(), steps.into()));
+    let mm = |steps: i32| theme.format_text(&words::millimetres_text(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {
-        let word = theme.format_text(&words::place(own));
+        let word = theme.format_text(&words::target_text(own));
         entry(ui, theme, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
-            let go = format!("{} {}", say(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
+            let go = format!("{} {}", translate(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
             // The results of the three test moves are drawn below each other.
-            let size = vec2(GO, ui.spacing().interact_size.y);
+            let size = vec2(GO_BUTTON_WIDTH, ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.set_min_width(GO);
-                shown.button(ui, theme, AxisButton::Go(own), (icons::PLAY, &go), actions);
+                ui.set_min_width(GO_BUTTON_WIDTH);
+                shown.button_ui(ui, theme, AxisButton::Go(own), (icons::PLAY, &go), actions);
             });
             if shown.axis.running_test_target() == Some(own) {
-                ui.label(theme.label(say(theme, "hd_axis.goes")));
-            } else if let Some(outcome) = shown.axis.outcome(own) {
+                ui.label(theme.label(translate(theme, "hd_axis.goes")));
+            } else if let Some(outcome) = shown.axis.outcome_of(own) {
                 let (icon, ink) = match outcome.is_good() {
                     true => (icons::CHECK, theme.palette.good),
                     false => (icons::X, theme.palette.bad),
@@ -244,16 +246,16 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
 /// Draws the control of the supply. A virtual device is switched here, a real one by hand.
 fn supply_switch_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = theme.format_text(&words::button(AxisStep::PowerCycle));
-        shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
-        let word = say(theme, "hd_axis.give");
-        shown.button(ui, theme, AxisButton::Give, (icons::PLUGS, &word), actions);
+        let word = theme.format_text(&words::button_label(AxisStep::PowerCycle));
+        shown.button_ui(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        let word = translate(theme, "hd_axis.give");
+        shown.button_ui(ui, theme, AxisButton::Give, (icons::PLUGS, &word), actions);
         if shown.seen.is_virtual {
-            let word = say(theme, "hd_axis.power_cycle");
-            shown.button(ui, theme, AxisButton::PowerCycle, (icons::POWER, &word), actions);
+            let word = translate(theme, "hd_axis.power_cycle");
+            shown.button_ui(ui, theme, AxisButton::PowerCycle, (icons::POWER, &word), actions);
         } else {
-            let word = say(theme, "hd_axis.restarted");
-            shown.button(ui, theme, AxisButton::Restarted, (icons::POWER, &word), actions);
+            let word = translate(theme, "hd_axis.restarted");
+            shown.button_ui(ui, theme, AxisButton::Restarted, (icons::POWER, &word), actions);
         }
         super::skip_ui(ui, theme, shown, actions);
     });

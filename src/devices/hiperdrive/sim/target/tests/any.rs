@@ -7,7 +7,7 @@ use super::*;
 fn answers(host: &mut Host) {
     host.wait(100);
     let now = host.now;
-    *host = Host { target: host.target.connection(PEER), now, session: 0 };
+    *host = Host { target: host.target.connect_from(PEER), now, session: 0 };
     host.register();
     host.is_asking("0E 03 20 64 24 01 30 11", "8E 00 00 00 67 12");
 }
@@ -75,7 +75,7 @@ proptest! {
             host.wait(1);
             host.datagrams();
         }
-        let figures = host.target.figures();
+        let figures = host.target.traffic_counters();
         let counted = figures.packets + figures.stale + figures.malformed + figures.foreign;
         prop_assert_eq!(counted, packets.len() as u64);
         host.packet(7, 1, &vec![0; cut.index(100)]);

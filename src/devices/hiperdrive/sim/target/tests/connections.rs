@@ -33,7 +33,7 @@ fn published_connection_matches() {
             .replace("01 00 01 00 01 00 00 00 B1", "01 00 01 00 0E 00 00 00 B1")
             .replace("12 00 01 00", "12 00 0E 00")
     );
-    assert_eq!(host.target.figures().packets, 13);
+    assert_eq!(host.target.traffic_counters().packets, 13);
     host.is_asking(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
     host.is_asking(CLOSE, "CE 00 01 01 07 01 01 00 34 12 CD AB 00 00 00 00");
     host.datagrams();
@@ -108,7 +108,7 @@ fn a_second_master_is_refused() {
     let mut host = Host::opened("");
     assert_eq!(host.open(OPEN), "D4 00 01 01 00 01 01 00 34 12 CD AB 00 00 00 00");
     let other = OPEN.replace("34 12 CD AB", "34 12 CE AB");
-    let mut second = Host { target: host.target.connection(Ipv4Addr::new(10, 0, 0, 8)), now: host.now, session: 0 };
+    let mut second = Host { target: host.target.connect_from(Ipv4Addr::new(10, 0, 0, 8)), now: host.now, session: 0 };
     second.register();
     assert_eq!(second.open(&other), "D4 00 01 01 06 01 01 00 34 12 CE AB 00 00 00 00");
     second.is_asking(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
@@ -156,7 +156,7 @@ fn only_packets_in_sequence_count() {
     }
     host.wait(10);
     assert_eq!(host.status(), Some(0x2A31));
-    let figures = host.target.figures();
+    let figures = host.target.traffic_counters();
     assert_eq!((figures.packets, figures.stale, figures.foreign, figures.malformed), (3, 3, 1, 42));
     // A missing packet does no harm.
     host.word(next + 5, 0x0401);
@@ -201,7 +201,7 @@ fn a_silent_master_is_lost_after_its_timeout() {
 #[test]
 fn a_cyclic_connection_outlives_its_tcp_connection() {
     let mut host = Host::opened("");
-    let other = host.target.connection(PEER);
+    let other = host.target.connect_from(PEER);
     let session = host.session;
     let now = host.now;
     drop(std::mem::replace(&mut host, Host { target: other, now, session }));

@@ -134,7 +134,7 @@ const IDENTITY: &str =
 #[test]
 fn identity_is_reported_over_tcp_udp_and_cip() {
     let mut host = Host::new("");
-    host.target.listen(SocketAddrV4::new(Ipv4Addr::new(192, 168, 1, 17), 44818));
+    host.target.set_address(SocketAddrV4::new(Ipv4Addr::new(192, 168, 1, 17), 44818));
     host.is_asking("01 02 20 01 24 01", &format!("81 00 00 00 {IDENTITY}"));
     host.is_asking("0E 03 20 01 24 01 30 01", "8E 00 00 00 F2 03");
     host.is_asking("0E 03 20 01 24 01 30 08", "8E 00 14 00");

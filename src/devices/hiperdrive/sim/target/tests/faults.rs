@@ -36,7 +36,7 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
     host.target.power_cycle();
     host.register();
     host.is_asking(get, "8E 00 00 00 5E 01");
-    assert_eq!(host.target.with(|station| station.stores()), 2);
+    assert_eq!(host.target.with_station(|station| station.save_count()), 2);
 }
 
 /// Half of the values are saved when the supply returns: by number, 152 but not 186.
@@ -81,9 +81,9 @@ fn a_silent_target_also_ignores_requests() {
         host.wait(10);
     }
     assert_eq!((host.status(), get(&mut host)), (None, None));
-    let stands = host.target.with(|station| {
+    let stands = host.target.with_station(|station| {
         let drive = crate::devices::hiperdrive::protocol::DriveNumber::FIRST;
-        station.drive(drive).map(|drive| drive.actual(host.now).speed)
+        station.drive(drive).map(|drive| drive.actual_values(host.now).speed)
     });
     assert_eq!(stands, Some(0));
 }
@@ -98,7 +98,7 @@ fn replies_and_packets_can_be_lost_or_damaged() {
     let mut lossy = Host::bare("fault=drop:1");
     assert_eq!(lossy.bytes(&bytes(REGISTER)), [0; 0]);
     lossy.target.on_datagram(lossy.now, FROM, &frame(0x63, 0, &[]));
-    assert_eq!((lossy.datagrams(), lossy.target.figures().frames), (vec![], 1));
+    assert_eq!((lossy.datagrams(), lossy.target.traffic_counters().frames), (vec![], 1));
 
     for (fault, damaged) in [("flip:1", 1..2), ("garbage:1", 30..224)] {
         let mut noisy = Host::new("");
@@ -120,6 +120,6 @@ fn a_lossy_line_does_not_lose_the_master() {
     host.words(1, &[0x0400; 100]);
     let came = host.datagrams().len();
     assert!((180..300).contains(&came), "{came} of some 300");
-    let figures = host.target.figures();
+    let figures = host.target.traffic_counters();
     assert!((180..300).contains(&figures.packets), "{figures:?}");
 }

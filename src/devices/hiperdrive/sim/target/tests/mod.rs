@@ -54,7 +54,7 @@ fn unconnected(message: &[u8]) -> Vec<u8> {
 impl Host {
     /// Nothing but a connection.
     fn bare(query: &str) -> Self {
-        let target = Target::new(&config(query)).connection(PEER);
+        let target = Target::new(&config(query)).connect_from(PEER);
         Host { target, now: Moment::START, session: 0 }
     }
 

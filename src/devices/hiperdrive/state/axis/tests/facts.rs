@@ -7,12 +7,12 @@ use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 #[track_caller]
 fn go_back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
-    axis.look(seen);
+    axis.update(seen);
     assert_eq!((axis.step(), axis.invalidated_step()), (shown, Some(step)), "the page is left by a press alone");
     assert_eq!(axis.step_status(step), StepStatus::Failed);
     assert_eq!(axis.check_can_continue(seen).unwrap_err().id(), "hd_axis.fallen");
     assert_eq!(axis.may_move(seen).unwrap_err().id(), "hd_axis.fallen");
-    axis.back(seen);
+    axis.go_back(seen);
     assert_eq!((axis.step(), axis.invalidated_step()), (step, None));
 }
 
@@ -47,7 +47,7 @@ fn setup_restarts_at_the_first_step_with_lost_values() {
     let (mut axis, mut seen) = at_test_step();
     seen.connected = false;
     seen.scale = None;
-    axis.look(&seen);
+    axis.update(&seen);
     assert_eq!((axis.step(), axis.invalidated_step()), (AxisStep::Test, None));
 }
 
@@ -57,7 +57,7 @@ fn steps_after_a_changed_value_are_undone() {
     let tested = || {
         let (mut axis, mut seen) = at_test_step();
         go(&mut axis, &mut seen, TestTarget::Middle, 500);
-        assert!(axis.outcome(TestTarget::Middle).is_some());
+        assert!(axis.outcome_of(TestTarget::Middle).is_some());
         (axis, seen)
     };
     let done =
@@ -75,17 +75,17 @@ fn steps_after_a_changed_value_are_undone() {
     for (label, change, falls) in cases {
         let (mut axis, mut seen) = tested();
         change(&mut seen);
-        axis.look(&seen);
+        axis.update(&seen);
         assert_eq!((axis.invalidated_step(), done(&axis)), (Some(falls), falls.index()), "{label}");
-        assert!(axis.outcome(TestTarget::Middle).is_none(), "{label}");
+        assert!(axis.outcome_of(TestTarget::Middle).is_none(), "{label}");
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
-        assert!(axis.ask(AxisButton::Go(TestTarget::Upper), &seen).is_err(), "{label}");
+        assert!(axis.request(AxisButton::Go(TestTarget::Upper), &seen).is_err(), "{label}");
     }
     // The same by the run itself: back to the reference, 13.44 mm from the one before. 1500 steps become 1472.
     let (mut axis, mut seen) = tested();
-    (0..3).for_each(|_| axis.back(&seen));
+    (0..3).for_each(|_| axis.go_back(&seen));
     assert_eq!((axis.step(), done(&axis)), (AxisStep::Reference, 6));
-    axis.edit(Entries { reference: "15".to_owned(), ..axis.entries().clone() });
+    axis.set_entries(LengthEntries { reference: "15".to_owned(), ..axis.entries().clone() });
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::SetPosition(1472));
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(done(&axis), 5);
@@ -93,20 +93,20 @@ fn steps_after_a_changed_value_are_undone() {
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
     // Another lower limit: the test was between other limits.
     let (mut axis, mut seen) = tested();
-    (0..2).for_each(|_| axis.back(&seen));
-    axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
+    (0..2).for_each(|_| axis.go_back(&seen));
+    axis.set_entries(LengthEntries { lower: "-9".to_owned(), ..axis.entries().clone() });
     next(&mut axis, &seen, AxisStep::Upper);
-    assert!(axis.outcome(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
+    assert!(axis.outcome_of(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.invalidated_step(), None, "the review of their plan confirms them");
     // Going back to look, and forward again, loses nothing.
     let (mut axis, seen) = tested();
-    (0..4).for_each(|_| axis.back(&seen));
+    (0..4).for_each(|_| axis.go_back(&seen));
     for step in [AxisStep::Reference, AxisStep::Lower, AxisStep::Upper, AxisStep::Test] {
         next(&mut axis, &seen, step);
     }
-    assert!(axis.outcome(TestTarget::Middle).is_some());
+    assert!(axis.outcome_of(TestTarget::Middle).is_some());
 }
 
 /// Issue 21.6 (b): a jump of the position, and motion without a held button, are not a jog.
@@ -116,28 +116,28 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
     press(&mut axis, &mut seen, AxisButton::Take);
     for position in [0, 5000, -5000, 0] {
         at(&mut seen, position);
-        axis.look(&seen);
+        axis.update(&seen);
     }
     assert_eq!(
         (axis.travel(), axis.check_can_continue(&seen).unwrap_err().id()),
-        (Travel::default(), "hd_axis.needs_up")
+        (JogTravel::default(), "hd_axis.needs_up")
     );
     // The first packets while a button is held: none of them contains a position yet.
     seen.held = Some((7, Direction::Clockwise));
     seen.position = None;
-    axis.look(&seen);
+    axis.update(&seen);
     at(&mut seen, 5000);
-    axis.look(&seen);
+    axis.update(&seen);
     assert_eq!(axis.travel().up, 0, "it is where the motion begins");
     at(&mut seen, 5100);
-    axis.look(&seen);
+    axis.update(&seen);
     assert_eq!((axis.travel().up, axis.travel().clockwise_is_up), (100, Some(true)));
     // Released, moved by something else, and pressed again.
     seen.held = None;
     at(&mut seen, -9000);
-    axis.look(&seen);
+    axis.update(&seen);
     seen.held = Some((8, Direction::Counterclockwise));
-    axis.look(&seen);
+    axis.update(&seen);
     assert_eq!((axis.travel().up, axis.travel().down), (100, 0));
 }
 
@@ -145,15 +145,15 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
 #[test]
 fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let found = |axis: &Axis, seen: &DriveFacts| {
-        words::found(axis, AxisStep::PowerCycle, seen).unwrap().to_string_in(Language::English)
+        words::finding_text(axis, AxisStep::PowerCycle, seen).unwrap().to_string_in(Language::English)
     };
     let again = |axis: &mut Axis, seen: &DriveFacts| {
-        axis.lose();
-        axis.surveyed(seen, false);
+        axis.handle_connection_loss();
+        axis.on_survey(seen, false);
     };
     // Nothing was marked: the user has to state it, and the result says so.
     let (mut axis, mut seen) = at_power_cycle_step();
-    assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
+    assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
     assert!(!axis.has_survived() && axis.step_status(AxisStep::PowerCycle) == StepStatus::Failed);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
@@ -170,20 +170,20 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     press(&mut axis, &mut seen, AxisButton::Do);
     again(&mut axis, &seen);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.not_restarted");
-    assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     // Then it really is off.
-    axis.lose();
+    axis.handle_connection_loss();
     seen.values.insert(182, 1000);
-    axis.surveyed(&seen, false);
+    axis.on_survey(&seen, false);
     assert!(axis.has_survived() && found(&axis, &seen).contains("The drive has restarted"));
     // Another master has changed it before: that proves it as well.
     let (mut axis, mut seen) = at_power_cycle_step();
     seen.values.insert(182, 500);
-    axis.look(&seen);
-    assert_eq!(axis.ask(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
-    axis.lose();
+    axis.update(&seen);
+    assert_eq!(axis.request(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
+    axis.handle_connection_loss();
     seen.values.insert(182, 1000);
-    axis.surveyed(&seen, false);
+    axis.on_survey(&seen, false);
     assert!(axis.has_survived());
 }
 
@@ -191,17 +191,17 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
 #[test]
 fn a_fault_is_shown_and_can_be_acknowledged() {
     let (axis, mut seen) = at_test_step();
-    assert_eq!(axis.ask(AxisButton::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
+    assert_eq!(axis.request(AxisButton::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
     // Reference 9: 2AB8 is a fault, 2A70 the lock; 8300 is a block in reverse.
     for (word, why) in [(0x2AB8, "hd_refused.fault"), (0x2A70, "hd_refused.lock")] {
         seen.actual = seen.actual.map(|actual| ActualValues { status: StatusWord::new(word), ..actual });
         seen.error = None;
-        assert_eq!(words::fault(&seen).unwrap().id(), "hd_axis.fault_unread");
+        assert_eq!(words::fault_text(&seen).unwrap().id(), "hd_axis.fault_unread");
         seen.error = Some(ErrorCode::BLOCK_REVERSE);
-        assert!(words::fault(&seen).unwrap().to_string_in(Language::English).starts_with("Fault 8300: "));
+        assert!(words::fault_text(&seen).unwrap().to_string_in(Language::English).starts_with("Fault 8300: "));
         assert_eq!(axis.may_move(&seen).unwrap_err().id(), why);
-        assert_eq!(axis.ask(AxisButton::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
-        assert_eq!(axis.ask(AxisButton::Acknowledge, &seen), Ok(DriveRequest::Acknowledge));
+        assert_eq!(axis.request(AxisButton::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
+        assert_eq!(axis.request(AxisButton::Acknowledge, &seen), Ok(DriveRequest::Acknowledge));
     }
 }
 
@@ -210,7 +210,7 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
 #[test]
 fn differences_from_saved_values_are_shown_and_restored() {
     let (mut axis, mut seen) = (run(), fresh());
-    assert_eq!(axis.ask(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
+    assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
     seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
     seen.unsaved = BTreeMap::from([(154, 256), (156, 1), (158, -1000), (198, 0)]);
     let told = words::differences(&seen).unwrap().to_string_in(Language::English);
@@ -223,9 +223,9 @@ fn differences_from_saved_values_are_shown_and_restored() {
         "{told}"
     );
     let back = vec![(154, 256), (156, 1)];
-    assert_eq!(axis.ask(AxisButton::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
-    axis.begin(DriveRequest::Restore(back), &seen);
-    axis.written();
+    assert_eq!(axis.request(AxisButton::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
+    axis.begin_request(DriveRequest::Restore(back), &seen);
+    axis.mark_written();
     let returned = |seen: &DriveFacts| words::write_back_text(&axis, seen).unwrap().to_string_in(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
@@ -239,24 +239,24 @@ fn differences_from_saved_values_are_shown_and_restored() {
         "{told}"
     );
     assert_eq!(
-        axis.ask(AxisButton::Recall, &seen).unwrap_err().id(),
+        axis.request(AxisButton::Recall, &seen).unwrap_err().id(),
         "hd_axis.place_left",
         "and not that nothing differs"
     );
     axis.cancel(&seen, "");
     let device = Device { name: String::new(), variant: None, serial_number: String::new() };
-    let text = report(&axis, &seen, &device, Language::German).unwrap();
+    let text = write_report(&axis, &seen, &device, Language::German).unwrap();
     assert!(text.contains("Die vorherige Position (Parameter 198) wird nicht wiederhergestellt"), "{text}");
     seen.values.insert(198, 0);
     assert_eq!(words::unrestored_position_text(&axis, &seen), None);
-    assert_eq!(axis.ask(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
+    assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
 /// Issue 21.6 (f): an unconfirmed pitch is no spindle: 65536 steps per turn stay steps until there is one.
 #[test]
 fn millimetres_need_a_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
-    let position = |seen: &DriveFacts| words::millimetres(seen.ruler(), 400).to_string_in(Language::English);
+    let position = |seen: &DriveFacts| words::millimetres_text(seen.ruler(), 400).to_string_in(Language::English);
     press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Scale);
     // A drive with 400 steps per turn of an unknown spindle: no pitch is proposed that would fit it by accident.
@@ -277,18 +277,18 @@ fn millimetres_need_a_confirmed_pitch() {
 fn a_run_ends_with_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
     let (mut axis, mut seen) = at_power_cycle_step();
-    assert_eq!(report(&axis, &seen, &device, Language::English), None, "it goes on");
-    axis.lose();
-    axis.surveyed(&seen, true);
+    assert_eq!(write_report(&axis, &seen, &device, Language::English), None, "it goes on");
+    axis.handle_connection_loss();
+    axis.on_survey(&seen, true);
     go_on(&mut axis, &seen);
     // Later changes are not part of this run.
     at(&mut seen, 0);
     seen.limits = Some((-5, 5));
     for language in [Language::English, Language::German] {
-        let text = report(&axis, &seen, &device, language).unwrap();
+        let text = write_report(&axis, &seen, &device, language).unwrap();
         assert!(text.lines().all(|line| line.chars().count() < 80) && !text.contains('{'), "{text}");
     }
-    let text = report(&axis, &seen, &device, Language::English).unwrap();
+    let text = write_report(&axis, &seen, &device, Language::English).unwrap();
     for part in [
         "Axis set-up, 2026-11-23 06:00",
         "HIPERDRIVE HUB-4 · 16, drive 1",

@@ -20,7 +20,7 @@ fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
 fn at_standstill() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = at_test_step();
     read(&mut seen, 10_000, 2000, STANDS);
-    axis.look(&seen);
+    axis.update(&seen);
     (axis, seen)
 }
 
@@ -31,7 +31,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     let case = |ms: u64, position: i32, word: u16| {
         let (mut axis, mut seen) = at_standstill();
         read(&mut seen, 10_000 + ms, position, word);
-        axis.look(&seen);
+        axis.update(&seen);
         (axis.invalidated_step(), words::unexplained_change_text(&axis, &seen).is_some())
     };
     let jump = (Some(AxisStep::Reference), false);
@@ -53,7 +53,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     }
     let (mut axis, mut seen) = at_standstill();
     read(&mut seen, 10_020, 128, STANDS);
-    axis.look(&seen);
+    axis.update(&seen);
     let why = words::invalidated_step(axis.invalidated_step().unwrap()).to_string_in(Language::English);
     assert!(why.contains("changed while the axis was at rest"), "{why}");
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
@@ -72,20 +72,20 @@ fn a_known_position_change_is_not_a_jump() {
         let (mut axis, mut seen) = at_standstill();
         change(&mut seen);
         read(&mut seen, 10_020, -900, STANDS);
-        axis.look(&seen);
+        axis.update(&seen);
         assert_eq!((axis.invalidated_step(), words::unexplained_change_text(&axis, &seen)), (None, None), "{label}");
     }
     // Set by this program: the run is at the step after it, and counts by the new numbers.
     let (mut axis, mut seen) = at_standstill();
-    (0..3).for_each(|_| axis.back(&seen));
-    axis.edit(Entries { reference: "1".to_owned(), ..axis.entries().clone() });
+    (0..3).for_each(|_| axis.go_back(&seen));
+    axis.set_entries(LengthEntries { reference: "1".to_owned(), ..axis.entries().clone() });
     press(&mut axis, &mut seen, AxisButton::Do);
     read(&mut seen, 10_020, 128, STANDS);
-    axis.look(&seen);
+    axis.update(&seen);
     next(&mut axis, &seen, AxisStep::Lower);
     read(&mut seen, 10_040, 128, STANDS);
-    axis.look(&seen);
-    assert_eq!((axis.invalidated_step(), axis.reference()), (None, Some(128)));
+    axis.update(&seen);
+    assert_eq!((axis.invalidated_step(), axis.reference_position()), (None, Some(128)));
 }
 
 /// Issue 21.6 (c): after a lost connection a motion cannot be distinguished from a new reference; this is reported,
@@ -94,10 +94,10 @@ fn a_known_position_change_is_not_a_jump() {
 fn an_unobserved_position_change_is_reported_as_unexplained() {
     let again = |position: i32| {
         let (mut axis, mut seen) = at_standstill();
-        axis.lose();
+        axis.handle_connection_loss();
         // The clock of the next session starts again.
         read(&mut seen, 0, position, STANDS);
-        axis.look(&seen);
+        axis.update(&seen);
         (axis, seen)
     };
     let (axis, seen) = again(2000 - 6);
@@ -115,21 +115,21 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
     // No reference was set or confirmed yet: nothing counts by it.
     let (mut early, mut fresh) = at_jog_step();
     read(&mut fresh, 0, 0, STANDS);
-    early.look(&fresh);
-    early.lose();
+    early.update(&fresh);
+    early.handle_connection_loss();
     read(&mut fresh, 0, 348, STANDS);
-    early.look(&fresh);
+    early.update(&fresh);
     assert_eq!(told(&early, &fresh), None);
     // At the reference, and from there on.
-    (0..3).for_each(|_| axis.back(&seen));
+    (0..3).for_each(|_| axis.go_back(&seen));
     assert!(told(&axis, &seen).is_some());
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(told(&axis, &seen), None);
-    axis.lose();
+    axis.handle_connection_loss();
     read(&mut seen, 0, 2000, STANDS);
-    axis.look(&seen);
+    axis.update(&seen);
     axis.cancel(&seen, "2026-11-23 06:00");
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
-    let text = report(&axis, &seen, &device, Language::English).unwrap();
+    let text = write_report(&axis, &seen, &device, Language::English).unwrap();
     assert!(text.contains("The position changed by 3.48 mm while"), "{text}");
 }

@@ -7,11 +7,11 @@ use super::*;
 fn a_failed_mark_keeps_saved_values() {
     for begun in [false, true] {
         let (mut axis, seen) = at_power_cycle_step();
-        let ask = axis.ask(AxisButton::Do, &seen).unwrap();
-        axis.begin(ask, &seen);
+        let ask = axis.request(AxisButton::Do, &seen).unwrap();
+        axis.begin_request(ask, &seen);
         axis.handle_write_failure(begun);
         assert_eq!((axis.is_saved(), axis.is_partly_written()), (true, false), "{begun}");
-        assert_eq!(axis.ask(AxisButton::Do, &seen), Ok(DriveRequest::Try(vec![(182, 1001)])), "{begun}: once more");
+        assert_eq!(axis.request(AxisButton::Do, &seen), Ok(DriveRequest::Try(vec![(182, 1001)])), "{begun}: once more");
     }
 }
 
@@ -20,31 +20,31 @@ fn a_failed_mark_keeps_saved_values() {
 fn an_interrupted_write_of_the_mark_is_read_back() {
     let cut_off = |value: i64| {
         let (mut axis, mut seen) = at_power_cycle_step();
-        let ask = axis.ask(AxisButton::Do, &seen).unwrap();
-        axis.begin(ask, &seen);
-        axis.lose();
+        let ask = axis.request(AxisButton::Do, &seen).unwrap();
+        axis.begin_request(ask, &seen);
+        axis.handle_connection_loss();
         seen.values.insert(182, value);
-        axis.surveyed(&seen, false);
-        axis.look(&seen);
+        axis.on_survey(&seen, false);
+        axis.update(&seen);
         (axis, seen)
     };
     let off_and_on = |axis: &mut Axis, seen: &mut DriveFacts| {
-        axis.lose();
+        axis.handle_connection_loss();
         seen.values.insert(182, 1000);
-        axis.surveyed(seen, false);
-        axis.look(seen);
+        axis.on_survey(seen, false);
+        axis.update(seen);
         let Some(Power::Back { restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
         (restart, axis.has_survived(), axis.is_saved())
     };
     // It has arrived: the drive was not off, whatever the user states, and a restart can be read.
     let (mut axis, mut seen) = cut_off(1001);
-    assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
-    assert_eq!(axis.ask(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
+    assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.request(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
     assert_eq!(off_and_on(&mut axis, &mut seen), (RestartEvidence::Read, true, true));
     // It has not arrived: the check can be prepared once more, without leaving the step.
     let (mut axis, mut seen) = cut_off(1000);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(182, 1001)]));
-    assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(off_and_on(&mut axis, &mut seen), (RestartEvidence::Read, true, true));
 }
