@@ -38,7 +38,7 @@ fn median(mut cycles: Vec<f64>) -> f64 {
 fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let mut station = Station::new(Duration::from_millis(20));
-    station.format = LineSettings::from_byte(settings).format().unwrap();
+    station.format = LineSettings::from_byte(settings).character_format().unwrap();
     let mut link = SimLink::connect(bus(settings), clock.clone());
     link.set_format(station.format).unwrap();
     let types = EncoderTypes::built_in();
@@ -55,7 +55,7 @@ fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
 /// Polls by sending, waiting for a fixed time, and reading the received bytes.
 fn naive(settings: u8, clock: &dyn Clock, owned: Arc<dyn Clock>, wait_ms: f64, count: usize) -> f64 {
     let mut link = SimLink::connect(bus(settings), owned);
-    link.set_format(LineSettings::from_byte(settings).format().unwrap()).unwrap();
+    link.set_format(LineSettings::from_byte(settings).character_format().unwrap()).unwrap();
     let cycle = |_| {
         let before = clock.now();
         link.send(&[0x40, 0x42, 0x02]).unwrap();

@@ -29,9 +29,9 @@ fn prepare(session: &mut Session<Interbus>) -> Result<Prepared, JobError> {
         InterbusOutput::Saved(profile) => profile,
         other => panic!("{other:?}"),
     };
-    let mut wanted = Image::of(profile.image.parameters);
+    let mut wanted = Image::from_parameters(profile.image.parameters);
     wanted.parameters.zero_shift = 99;
-    assert!(wanted.put(Item::CamMask(program), ItemValue::Mask(0x41)));
+    assert!(wanted.set_value(Item::CamMask(program), ItemValue::Mask(0x41)));
     match session.run_inline(InterbusJob::Prepare(Change::Write(Box::new(wanted))))? {
         InterbusOutput::Prepared(prepared) => Ok(*prepared),
         other => panic!("{other:?}"),
@@ -123,15 +123,15 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
         InterbusOutput::Surveyed(survey) => survey.parameters,
         other => panic!("{other:?}"),
     };
-    let mut wanted = Image::of(parameters);
+    let mut wanted = Image::from_parameters(parameters);
     let wanted_ones = ProgramNumber::all().take(programs);
     for (program, cam) in wanted_ones.flat_map(|program| CamNumber::all().map(move |cam| (program, cam))) {
         let (start, stop) = (u32::from(program.get()) * 10 + u32::from(cam.get()), 2000 + u32::from(cam.get()));
         let edges = Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() };
-        assert!(wanted.put(Item::Cam(program, cam), ItemValue::Cam(edges)));
+        assert!(wanted.set_value(Item::Cam(program, cam), ItemValue::Cam(edges)));
     }
     for program in ProgramNumber::all().take(programs) {
-        assert!(wanted.put(Item::CamMask(program), ItemValue::Mask(0xFF)));
+        assert!(wanted.set_value(Item::CamMask(program), ItemValue::Mask(0xFF)));
     }
     match session.run_inline(InterbusJob::Prepare(Change::Write(Box::new(wanted)))).unwrap() {
         InterbusOutput::Prepared(prepared) => (session, *prepared),

@@ -44,7 +44,7 @@ fn virtual_devices() {
         let target = hiperdrive::sim::Target::new(&hiperdrive::sim::Config::from_pairs(&[]).unwrap());
         let mut connection = target.connect_from(std::net::Ipv4Addr::LOCALHOST);
         let devices: [&mut dyn ByteDevice; 5] =
-            [&mut bus, &mut port, &mut adapter, &mut gateway.connection(), &mut connection];
+            [&mut bus, &mut port, &mut adapter, &mut gateway.new_connection(), &mut connection];
         for device in devices {
             let sent = receive(device, bytes);
             assert!(sent <= MOST, "{sent} bytes");

@@ -37,7 +37,7 @@ fn one_encoder_with_unusual_settings_is_found() {
         let mut desk = Desk::new(&format!("settings={byte}&address={address}"));
         let found = searched(&mut desk, FindOptions::default());
         assert_eq!(found.len(), 1, "{settings}");
-        assert_eq!((found[0].address, Some(found[0].format)), (address, settings.format()));
+        assert_eq!((found[0].address, Some(found[0].format)), (address, settings.character_format()));
         assert_eq!(found[0].label.settings, settings);
         assert!(desk.tap().sent.iter().all(|frame| frame[0] != 0xFF), "no broadcast without consent");
         assert_eq!(desk.session.station().address, 0x40, "our side is as before");

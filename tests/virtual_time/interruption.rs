@@ -3,7 +3,7 @@
 
 use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
 use encoder_studio::devices::hiperface::procedures::Error;
-use encoder_studio::devices::hiperface::procedures::write::Interrupted;
+use encoder_studio::devices::hiperface::procedures::write::InterruptedWrite;
 use encoder_studio::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile, Op};
 use encoder_studio::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
 use encoder_studio::link::CancelToken;
@@ -70,7 +70,7 @@ fn fields_of(profile: &HiperfaceProfile) -> Fields {
 fn the_plan_is_the_shortest_possible() {
     let (mut desk, wanted) = scene();
     let prepared = desk.prepare(restore_of(&wanted)).unwrap();
-    let items: Vec<String> = prepared.plan.ops.iter().map(|op| op.item().to_string()).collect();
+    let items: Vec<String> = prepared.plan.ops.iter().map(|op| op.plan_item().to_string()).collect();
     let expected = [
         "field:0@2+2",
         "field:0@9+1",
@@ -101,7 +101,7 @@ struct Ending<'a> {
 impl Ending<'_> {
     /// Checks after a cancellation: exactly the counted operations were carried out, and the protected fields are
     /// locked.
-    fn assert_cancelled_cleanly(&self, interrupted: &Interrupted) {
+    fn assert_cancelled_cleanly(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
         assert_eq!(interrupted.cause, Error::Cancelled, "{context}");
         assert_eq!(interrupted.end_state.unlocked, Vec::<u8>::new(), "{context}");
@@ -112,7 +112,7 @@ impl Ending<'_> {
 
     /// Checks after a lost connection: the counted operations were carried out, the one in progress was or was not, and
     /// a field that remains unlocked is named.
-    fn assert_cut_off_and_reported(&self, interrupted: &Interrupted) {
+    fn assert_cut_off_and_reported(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
         let count = interrupted.done.ops;
@@ -125,7 +125,7 @@ impl Ending<'_> {
         for field in [1, 4] {
             let open = memory.get(usize::from(field)).is_some_and(|(status, _)| status & 0x40 != 0);
             let told = interrupted.end_state.unlocked.contains(&field);
-            let changes_it = |op: &Op| op.field() == Some(field) && (op.removes_protection() || op.locks(field));
+            let changes_it = |op: &Op| op.field() == Some(field) && (op.removes_protection() || op.locks_field(field));
             let unclear = in_flight.is_some_and(changes_it);
             assert!(open == told || told && unclear, "{context}: field {field} open {open}, told {told}");
         }
@@ -159,7 +159,7 @@ fn disturbed(
     scene: &(Desk, HiperfaceProfile),
     context: String,
     disturb: impl FnOnce(&mut Desk),
-    judge: impl FnOnce(&Ending<'_>, &Interrupted),
+    judge: impl FnOnce(&Ending<'_>, &InterruptedWrite),
 ) -> bool {
     let (original, wanted) = scene;
     let mut desk = original.copied();
@@ -218,7 +218,7 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
             let warn = |desk: &mut Desk| {
                 desk.session.set_cancel(CancelToken::after_transactions(steps));
                 for _ in 0..4 {
-                    desk.bus().encoder_mut(0).unwrap().report(code);
+                    desk.bus().encoder_mut(0).unwrap().queue_code(code);
                 }
             };
             let context = format!("warning, cancelled after {steps}");
@@ -247,7 +247,7 @@ fn a_warning_during_a_write_hides_no_operation() {
                 stores += usize::from(entry.bytes.to_string().starts_with("40 4B"));
                 if stores == store && !raised {
                     raised = true;
-                    bus.lock().unwrap().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
+                    bus.lock().unwrap().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
                 }
             });
             if let Err(JobError::Interrupted { interrupted, .. }) = desk.commit(&prepared) {
@@ -309,8 +309,9 @@ fn power_lost_in_any_store_is_reported() {
         desk.remember_code(2, 0x66);
         let before = desk.memory();
         let prepared = desk.prepare(restore_of(&wanted)).unwrap();
-        let stores =
-            desk.bus().encoders()[0].wear().writes(encoder_studio::devices::hiperface::protocol::Command::StoreData);
+        let stores = desk.bus().encoders()[0]
+            .wear()
+            .write_count(encoder_studio::devices::hiperface::protocol::Command::StoreData);
         desk.bus().set_faults(&format!("die-in-store:{}", stores + store).parse().unwrap());
         let error = desk.commit(&prepared).unwrap_err();
         let JobError::Interrupted { interrupted, backup: path, planned: 12, .. } = error else { panic!("{error:?}") };
@@ -328,7 +329,7 @@ fn power_lost_in_any_store_is_reported() {
     let mut desk = original.copied();
     desk.remember_code(2, 0x66);
     let stores =
-        desk.bus().encoders()[0].wear().writes(encoder_studio::devices::hiperface::protocol::Command::StoreData);
+        desk.bus().encoders()[0].wear().write_count(encoder_studio::devices::hiperface::protocol::Command::StoreData);
     desk.bus().set_faults(&format!("die-in-store:{}", stores + 9).parse().unwrap());
     desk.restore(&wanted).unwrap();
 }

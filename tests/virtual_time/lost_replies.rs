@@ -112,7 +112,7 @@ fn synchronising_in_place_is_not_assumed_done() {
         let mut desk = desk.copied();
         desk.tap().swallow_request = Some(at);
         let done = desk.commit(&prepared);
-        let carried_out = desk.bus().encoders()[0].wear().writes(Command::Synchronise);
+        let carried_out = desk.bus().encoders()[0].wear().write_count(Command::Synchronise);
         assert!(carried_out <= 1);
         assert!(done.is_err() || carried_out == 1, "frame {at} lost: {done:?}");
     }
@@ -139,7 +139,7 @@ fn a_silent_encoder_times_out_within_ten_seconds() {
             u8::from_str_radix(settings, 16).unwrap(),
         );
         let mut station = encoder_studio::devices::hiperface::procedures::Station::new(crate::support::MARGIN);
-        station.format = format.format().unwrap();
+        station.format = format.character_format().unwrap();
         for job in [HiperfaceJob::Position(None), HiperfaceJob::Status, HiperfaceJob::Save(Default::default())] {
             let mut desk = Desk::with_station(&format!("settings=0x{settings}&fault=silent-after:0"), station.clone());
             desk.run(job).unwrap_err();
@@ -158,7 +158,7 @@ fn lost_status_codes_are_reported() {
     for lost in 0..8 {
         let mut desk = Desk::new("");
         desk.run(HiperfaceJob::Identify).unwrap();
-        queue.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().report(*code));
+        queue.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().queue_code(*code));
         let already = desk.tap().sent.len();
         desk.tap().swallow_reply = Some(already + lost);
         let (mut codes, mut unheard) = (Vec::new(), 0);

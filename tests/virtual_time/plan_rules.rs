@@ -186,7 +186,7 @@ fn several_edits_are_written_in_one_plan() {
     let reads = desk.tap().count(Command::ReadData);
     let prepared = desk.prepare(Change::Store(edits)).unwrap();
     assert_eq!(desk.tap().count(Command::ReadData) - reads, 2, "each field once");
-    let ops: Vec<String> = prepared.plan.ops.iter().map(|op| op.item().to_string()).collect();
+    let ops: Vec<String> = prepared.plan.ops.iter().map(|op| op.plan_item().to_string()).collect();
     assert_eq!(ops, ["field:0@2+1", "field:0@20+2", "field:1@3+1"]);
     assert_eq!(prepared.plan.base.fields.iter().map(|field| field.number).collect::<Vec<_>>(), [0, 1]);
     desk.commit(&prepared).unwrap();

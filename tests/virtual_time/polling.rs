@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use encoder_studio::devices::hiperface::jobs::{Hiperface, HiperfaceJob, JobError};
-use encoder_studio::devices::hiperface::procedures::{Error, Sample};
+use encoder_studio::devices::hiperface::procedures::{Error, PolledSample};
 use encoder_studio::devices::hiperface::protocol::StatusCode;
 use encoder_studio::link::Clock;
 use encoder_studio::worker::{Event, Worker};
@@ -17,7 +17,7 @@ pub(crate) const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
 pub(crate) const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
 
 /// Returns at least `count` samples.
-pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
+pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSample> {
     let started = Instant::now();
     let mut samples = Vec::new();
     while samples.len() < count {
@@ -40,10 +40,10 @@ pub(crate) fn nothing_comes(bench: &Bench) {
     }
 }
 
-fn position(sample: &Sample) -> Option<Option<u64>> {
+fn position(sample: &PolledSample) -> Option<Option<u64>> {
     match sample {
-        Sample::Position(reading) => Some(reading.position.and_then(|position| position.turns())),
-        Sample::NoPosition { .. } | Sample::Watched(_) => None,
+        PolledSample::Position(reading) => Some(reading.position.and_then(|position| position.turns())),
+        PolledSample::NoPosition { .. } | PolledSample::Watched(_) => None,
     }
 }
 
@@ -137,12 +137,12 @@ fn a_job_interrupts_the_retries_of_a_sample() {
 fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");
     for _ in 0..3 {
-        let Sample::NoPosition { codes, .. } = desk.session.take_sample().unwrap() else { panic!("too fast") };
+        let PolledSample::NoPosition { codes, .. } = desk.session.take_sample().unwrap() else { panic!("too fast") };
         assert!(codes.contains(&StatusCode::TOO_FAST), "{codes:?}");
         assert!(desk.session.station().codes_met.is_empty(), "they are told with the sample");
     }
     let now = desk.clock.now();
     desk.bus().encoder_mut(0).unwrap().set_rpm(now, 0.0);
     let sample = desk.session.take_sample().unwrap();
-    assert!(matches!(&sample, Sample::Position(reading) if reading.valid), "{sample:?}");
+    assert!(matches!(&sample, PolledSample::Position(reading) if reading.valid), "{sample:?}");
 }

@@ -85,7 +85,7 @@ fn only_a_kit_encoder_is_synchronised() {
     assert!(Desk::new("model=sel37").prepare(synchronise(false)).is_err());
     let mut desk = Desk::new("model=sel37");
     desk.change(synchronise(true)).unwrap();
-    assert_eq!(desk.bus().encoders()[0].wear().writes(Command::Synchronise), 1);
+    assert_eq!(desk.bus().encoders()[0].wear().write_count(Command::Synchronise), 1);
     assert_eq!(desk.bus().encoders()[0].position(desk.clock.now()), 0x40);
 }
 
@@ -113,7 +113,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
     for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
         let settings = LineSettings::from_byte(byte);
         let mut station = Station::new(MARGIN);
-        station.format = settings.format().unwrap();
+        station.format = settings.character_format().unwrap();
         station.long_timeout = settings.has_long_timeout();
         let mut desk = Desk::with_station(&format!("settings={byte}&pace=worst"), station);
         desk.run(HiperfaceJob::Position(None)).unwrap();

@@ -20,7 +20,7 @@ fn position(desk: &mut Desk) {
 
 fn station_for(settings: LineSettings) -> Station {
     let mut station = Station::new(MARGIN);
-    station.format = settings.format().unwrap();
+    station.format = settings.character_format().unwrap();
     station.long_timeout = settings.has_long_timeout();
     station
 }
@@ -31,12 +31,12 @@ fn a_restart_with_any_stored_settings_is_followed() {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::with_station(&format!("settings={byte}"), station_for(settings));
         assert_eq!(reset(&mut desk), []);
-        assert_eq!(desk.session.station().format, settings.format().unwrap(), "{settings}");
+        assert_eq!(desk.session.station().format, settings.character_format().unwrap(), "{settings}");
         position(&mut desk);
         // No request kept the encoder at factory settings.
         let now = encoder_studio::link::Clock::now(&*desk.clock);
         let in_force = desk.bus().encoders()[0].active_settings_at(now).unwrap();
-        assert_eq!(in_force.format(), settings.format(), "{settings}");
+        assert_eq!(in_force.character_format(), settings.character_format(), "{settings}");
         assert_eq!(in_force.has_long_timeout(), settings.has_long_timeout(), "{settings}");
         assert_eq!(desk.tap().count(Command::Reset), 1);
     }
@@ -51,7 +51,7 @@ fn stored_settings_apply_after_the_restart_and_not_before() {
         position(&mut desk);
         assert_eq!(desk.session.station().format, CharacterFormat::FACTORY);
         reset(&mut desk);
-        assert_eq!(desk.session.station().format, settings.format().unwrap());
+        assert_eq!(desk.session.station().format, settings.character_format().unwrap());
         position(&mut desk);
         assert_eq!(desk.wear(), 1);
     }
@@ -63,7 +63,7 @@ fn temporary_settings_apply_immediately_until_the_restart() {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::new("");
         desk.run(HiperfaceJob::ConfigureForNow(settings)).unwrap();
-        assert_eq!(desk.session.station().format, settings.format().unwrap());
+        assert_eq!(desk.session.station().format, settings.character_format().unwrap());
         position(&mut desk);
         reset(&mut desk);
         assert_eq!(desk.session.station().format, CharacterFormat::FACTORY);
@@ -75,7 +75,7 @@ fn temporary_settings_apply_immediately_until_the_restart() {
 /// If a code waits, the replies to 55h and 67h announce it, and the encoder already has the new settings.
 #[test]
 fn an_encoder_that_warns_while_changing_settings_is_followed() {
-    let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
+    let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
     for at in 0..12 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(Change::SetAddress(DeviceAddress::new(0x45).unwrap())).unwrap();
@@ -101,7 +101,7 @@ fn warn_at(desk: &mut Desk, frame: usize) {
     desk.session.add_watcher(move |entry| {
         if entry.direction == encoder_studio::link::Direction::Sent {
             if frames == frame {
-                bus.lock().unwrap().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
+                bus.lock().unwrap().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
             }
             frames += 1;
         }
@@ -114,7 +114,7 @@ fn all_codes_of_the_start_are_read() {
     // One from before the restart, one from the start itself: none is lost.
     assert_eq!(reset(&mut desk), [StatusCode::TEMPERATURE; 2]);
     for code in [0x01, 0x1C, 0x1D, 0x20] {
-        desk.bus().encoder_mut(0).unwrap().report(StatusCode::new(code));
+        desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::new(code));
     }
     let HiperfaceOutput::Status(codes) = desk.run(HiperfaceJob::Status).unwrap() else { panic!() };
     assert_eq!(codes, [0x01, 0x1C, 0x1D, 0x20].map(StatusCode::new));

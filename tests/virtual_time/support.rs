@@ -232,7 +232,7 @@ impl Desk {
     }
 
     pub(crate) fn remember_code(&mut self, number: u8, code: u8) {
-        self.session.access_codes_mut().set(AccessCodeNumber::new(number).unwrap(), AccessCode::new(code));
+        self.session.access_codes_mut().set_code(AccessCodeNumber::new(number).unwrap(), AccessCode::new(code));
     }
 
     pub(crate) fn run(&mut self, job: HiperfaceJob) -> Result<HiperfaceOutput, JobError> {
@@ -286,7 +286,7 @@ impl Desk {
         let bus = self.bus();
         let memory = bus.encoders()[0].memory();
         let field = |number| (memory.status(number).unwrap().byte(), memory.field_bytes(number).unwrap().to_vec());
-        (0..memory.free().fields).map(field).collect()
+        (0..memory.free_memory().fields).map(field).collect()
     }
 
     /// Returns the number of writes of the encoder's EEPROM.

@@ -3,7 +3,7 @@
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
-use encoder_studio::devices::hiperface::procedures::{Error, Sample, Survey};
+use encoder_studio::devices::hiperface::procedures::{Error, PolledSample, Survey};
 use encoder_studio::devices::hiperface::protocol::{
     AccessCode, AccessCodeNumber, Command, DataFieldStatus, StatusCode,
 };
@@ -26,14 +26,14 @@ fn a_survey_is_complete_and_reads_each_byte_once() {
     let memory: Vec<_> = seen.fields.iter().map(|field| (field.status.byte(), field.bytes.clone().unwrap())).collect();
     assert_eq!(memory, desk.memory());
     assert_eq!(seen.counter, Some(0));
-    let Some(Sample::Position(reading)) = &seen.position else { panic!("{:?}", seen.position) };
+    let Some(PolledSample::Position(reading)) = &seen.position else { panic!("{:?}", seen.position) };
     assert_eq!(reading.raw, 0x000E_0531);
     assert!(reading.position.is_some());
     assert_eq!(desk.tap().count(Command::ReadData), memory.len());
     assert_eq!(desk.wear(), 0);
     // The geometry is still known: a sample contains it.
     let sample = desk.session.take_sample().unwrap();
-    assert!(matches!(&sample, Sample::Position(reading) if reading.position.is_some()), "{sample:?}");
+    assert!(matches!(&sample, PolledSample::Position(reading) if reading.position.is_some()), "{sample:?}");
     assert!(desk.session.station().codes_met.is_empty());
 }
 
@@ -41,7 +41,9 @@ fn a_survey_is_complete_and_reads_each_byte_once() {
 fn a_temporarily_unavailable_value_is_no_error() {
     let mut desk = Desk::new("rpm=9000");
     let seen = survey(&mut desk);
-    assert!(matches!(&seen.position, Some(Sample::NoPosition { codes, .. }) if codes.contains(&StatusCode::TOO_FAST)));
+    assert!(
+        matches!(&seen.position, Some(PolledSample::NoPosition { codes, .. }) if codes.contains(&StatusCode::TOO_FAST))
+    );
     assert!(!seen.fields.is_empty());
 }
 
@@ -152,7 +154,7 @@ fn noted(desk: &Desk) -> Vec<String> {
 fn a_status_code_that_was_read_is_logged() {
     let mut desk = Desk::new("");
     let report = |desk: &Desk, codes: &[StatusCode]| {
-        codes.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().report(*code))
+        codes.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().queue_code(*code))
     };
     report(&desk, &[StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW]);
     assert!(matches!(desk.run(HiperfaceJob::Status), Ok(HiperfaceOutput::Status(codes)) if codes.len() == 2));

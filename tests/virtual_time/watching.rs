@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use encoder_studio::devices::hiperface::jobs::{Hiperface, JobError};
-use encoder_studio::devices::hiperface::procedures::{Error, Sample, Watch, WatchedReading};
+use encoder_studio::devices::hiperface::procedures::{Error, PolledSample, WatchedQuantity, WatchedReading};
 use encoder_studio::devices::hiperface::protocol::{Command, StatusCode};
 use encoder_studio::units::Moment;
 use encoder_studio::worker::{Event, WatchReply, Worker};
@@ -13,29 +13,33 @@ use crate::polling::{BACK_TO_BACK, SELDOM, nothing_comes, samples};
 use crate::support::Desk;
 use crate::threads::{LONG, identify, in_virtual_time, until_end};
 
-const TEMPERATURE: Watch = Watch::Analogue(0x48);
-const SINE: Watch = Watch::Analogue(0x00);
+const TEMPERATURE: WatchedQuantity = WatchedQuantity::Analogue(0x48);
+const SINE: WatchedQuantity = WatchedQuantity::Analogue(0x00);
 /// No encoder of these tests has it.
-const MISSING: Watch = Watch::Analogue(0x33);
+const MISSING: WatchedQuantity = WatchedQuantity::Analogue(0x33);
 const ALWAYS: Duration = Duration::ZERO;
 
-fn watched(sample: &Sample) -> Option<(Watch, Option<i64>)> {
+fn watched(sample: &PolledSample) -> Option<(WatchedQuantity, Option<i64>)> {
     match sample {
-        Sample::Watched(WatchedReading { watch: what, value, .. }) => Some((*what, value.as_ref().ok().copied())),
+        PolledSample::Watched(WatchedReading { watch: what, value, .. }) => Some((*what, value.as_ref().ok().copied())),
         _ => None,
     }
 }
 
-fn at(sample: &Sample) -> Moment {
+fn at(sample: &PolledSample) -> Moment {
     match sample {
-        Sample::Position(reading) => reading.at,
-        Sample::NoPosition { at, .. } => *at,
-        Sample::Watched(reading) => reading.at,
+        PolledSample::Position(reading) => reading.at,
+        PolledSample::NoPosition { at, .. } => *at,
+        PolledSample::Watched(reading) => reading.at,
     }
 }
 
 /// Returns the samples of a polled worker after a new list takes effect: `count` of them, beginning with a position.
-fn course(worker: &Worker<Hiperface>, wished: &[Watch], count: usize) -> Vec<Option<(Watch, Option<i64>)>> {
+fn course(
+    worker: &Worker<Hiperface>,
+    wished: &[WatchedQuantity],
+    count: usize,
+) -> Vec<Option<(WatchedQuantity, Option<i64>)>> {
     worker.poll(None);
     worker.watch_values(wished.iter().map(|what| (*what, ALWAYS)).collect());
     // The requests in progress have ended.
@@ -56,9 +60,9 @@ fn watched_values_alternate_with_positions() {
         "no two in a row, the position first"
     );
     // Three quarters of a period: 2.0 V are 409 counts (sincos.md: 10 bits for 5 V).
-    let (sine, counter) = (Some((SINE, Some(409))), Some((Watch::Counter, Some(0))));
+    let (sine, counter) = (Some((SINE, Some(409))), Some((WatchedQuantity::Counter, Some(0))));
     assert_eq!(
-        course(&bench.worker, &[TEMPERATURE, SINE, Watch::Counter], 8),
+        course(&bench.worker, &[TEMPERATURE, SINE, WatchedQuantity::Counter], 8),
         [None, temperature, None, sine, None, counter, None, temperature]
     );
     // The reference's request for channel 48h.
@@ -105,10 +109,14 @@ fn a_missing_channel_is_reported_once_and_polling_continues() {
 #[test]
 fn a_watched_reading_includes_its_status_codes() {
     let mut desk = Desk::new("");
-    let WatchReply::Refused(Sample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else { panic!() };
+    let WatchReply::Refused(PolledSample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else {
+        panic!()
+    };
     assert!(matches!(&refusal.value, Err(Error::Rejected { codes, .. }) if codes == &[StatusCode::ARGUMENT]));
     desk.bus().encoder_mut(0).unwrap().set_temperature(130);
-    let WatchReply::Sample(Sample::Watched(hot)) = desk.session.watch_value(&TEMPERATURE).unwrap() else { panic!() };
+    let WatchReply::Sample(PolledSample::Watched(hot)) = desk.session.watch_value(&TEMPERATURE).unwrap() else {
+        panic!()
+    };
     assert_eq!((hot.value, hot.codes), (Ok(130), vec![StatusCode::TEMPERATURE]));
     assert!(desk.session.station().codes_met.is_empty(), "they are told with the reading");
     let now = |code| WatchedReading {

@@ -214,7 +214,7 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
     without_polling(|| wire.count(0x42) > 10_500);
     desk.studio.poll();
-    let (dropped, positions) = (desk.encoder().recording().dropped_count(), desk.encoder().record.positions());
+    let (dropped, positions) = (desk.encoder().recording().dropped_count(), desk.encoder().record.position_count());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
     assert!(desk.encoder().session.trace.dropped_count() > 0);
     // In between, a job is accepted at once.

@@ -8,7 +8,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, PendingEdits, Severity};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, Form, Kind, Slot, Source, Storage, Vector,
+    CommutationAction as Assistant, EnergisedVector, Form, PositionKind, Source, Storage, VectorSlot,
 };
 use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState, commutation};
 
@@ -39,15 +39,15 @@ impl Desk {
         });
     }
 
-    fn read(&mut self, slot: Slot) {
+    fn read(&mut self, slot: VectorSlot) {
         self.assist(Assistant::Read(slot));
         self.until("it is read", |studio| studio.hiperface().unwrap().commutation.pending_slot().is_none());
         self.until_ready();
     }
 
-    fn type_in(&mut self, slot: Slot, text: &str) {
+    fn type_in(&mut self, slot: VectorSlot, text: &str) {
         self.edit(|form| {
-            let at = Slot::ALL.iter().position(|own| *own == slot).unwrap();
+            let at = VectorSlot::ALL.iter().position(|own| *own == slot).unwrap();
             form.typed[at] = text.to_owned();
         });
         self.assist(Assistant::Use(slot));
@@ -85,18 +85,18 @@ fn nothing_is_read_before_the_checklist_is_complete() {
         (|form| form.current_a = "NaN".to_owned(), "entry.number"),
         (|form| form.current_a = "0".to_owned(), "entry.number"),
         (|form| form.current_a = "2,5".to_owned(), "entry.missing"),
-        (|form| (form.time_s, form.vector) = ("30".to_owned(), Vector::Other), "entry.missing"),
+        (|form| (form.time_s, form.vector) = ("30".to_owned(), EnergisedVector::Other), "entry.missing"),
         (|form| form.vector_deg = "1e9".to_owned(), "entry.number"),
         (|form| (form.vector_deg, form.source) = ("15".to_owned(), Source::Typed), "entry.missing"),
         (|form| form.phase = "1".to_owned(), "entry.number"),
     ] {
         desk.edit(change);
-        desk.assist(Assistant::Read(Slot::OneSide));
+        desk.assist(Assistant::Read(VectorSlot::OneSide));
         assert_eq!(desk.why_not(), Some(why));
     }
     assert_eq!(desk.wire().sent(), before, "the encoder was not asked");
     desk.edit(|form| form.phase = "0.75".to_owned());
-    desk.read(Slot::OneSide);
+    desk.read(VectorSlot::OneSide);
     assert_eq!(desk.why_not(), None);
 }
 
@@ -106,35 +106,35 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     desk.prepare();
     // Polled meanwhile: the readings take place in between.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
-    desk.read(Slot::OneSide);
-    let reading = *desk.encoder().commutation.reading(Slot::OneSide).unwrap();
+    desk.read(VectorSlot::OneSide);
+    let reading = *desk.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap();
     // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V: φ = 0.749 223 64, and the middle of step 24 is 0.525 steps
     // further.
     assert!((reading.fine_periods - 100.749_223_64).abs() < 1e-8, "{reading:?}");
-    let Kind::Fine { residual_periods, verdict: Verdict::Ok, .. } = reading.kind else { panic!("{reading:?}") };
+    let PositionKind::Fine { residual_periods, verdict: Verdict::Ok, .. } = reading.kind else { panic!("{reading:?}") };
     assert!((residual_periods * 32.0 - 0.524_844).abs() < 1e-6);
     assert_eq!(desk.offset(), Err("commutation.one_side_only"));
-    desk.read(Slot::OtherSide);
+    desk.read(VectorSlot::OtherSide);
     assert!(desk.studio.is_live(), "polling goes on");
     desk.command(DeviceCommand::Poll(None));
     // frac(4 · 100.749 223 64 / 128) = 53.428 766° = 25FE 68F7h.
     assert_eq!(desk.offset(), Ok(0x25FE_68F7));
     // A quarter of an electrical turn is eight periods.
-    desk.type_in(Slot::Second, "108,75");
+    desk.type_in(VectorSlot::Second, "108,75");
     assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
 
     desk.edit(|form| form.address = "16".to_owned());
     desk.assist(Assistant::Store);
     // The CRC by Python's `binascii.crc_hqx`.
     let record = [0x43, 0x4F, 0x31, 0x01, 0x25, 0xFE, 0x68, 0xF7, 4, 0, 0, 0, 0, 0, 0x29, 0x44];
-    assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[16..32], record);
+    assert_eq!(desk.encoder().staged.edited_fields()[0].bytes.as_ref().unwrap()[16..32], record);
     assert_eq!(desk.notice_count("commutation.staged"), 1);
     assert_ne!(desk.wire().field(0)[16..32], record, "nothing is written before the review");
     let found = commutation::stored(&desk.encoder().staged);
     assert_eq!(found.iter().map(|own| (own.field, own.address, own.edited)).collect::<Vec<_>>(), [(0, 16, true)]);
     desk.write();
     assert_eq!(desk.wire().field(0)[16..32], record);
-    let marks = desk.encoder().mounting(0);
+    let marks = desk.encoder().mounting_ranges(0);
     assert_eq!(marks, [(16..32, "commutation offset".to_owned())], "it belongs to the mounting");
     let found = commutation::stored(&desk.encoder().staged);
     assert!(!found[0].edited && found[0].record.unwrap().confirmed);
@@ -142,7 +142,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());
     assert_eq!(desk.notice_count("commutation.same"), 1);
-    let report = desk.encoder().commutation.report("x", desk.encoder().geometry());
+    let report = desk.encoder().commutation.report_texts("x", desk.encoder().geometry());
     report.iter().for_each(texts::check);
     let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal_text).collect();
     assert!(english.iter().any(|line| line == "Current limit: 2.50 A, time limit: 30.0 s"), "{english:?}");
@@ -158,23 +158,23 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
     assert_eq!(desk.offset(), Err("entry.missing"));
     desk.edit(|form| (form.pole_pairs, form.periods) = ("4".to_owned(), "1024".to_owned()));
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
-    desk.type_in(Slot::OneSide, "339.02");
+    desk.type_in(VectorSlot::OneSide, "339.02");
     assert_eq!(desk.offset(), Ok(0x5305_1EB8));
     // Reversed: 0.675 703 125 turns, ACFA E148h. With the vector at −30°, 1/12 turn more: 0.407 630 21.
     desk.edit(|form| form.reversed = true);
     assert_eq!(desk.offset(), Ok(0xACFA_E148));
-    desk.edit(|form| (form.reversed, form.vector) = (false, Vector::UAgainstV));
+    desk.edit(|form| (form.reversed, form.vector) = (false, EnergisedVector::UAgainstV));
     assert_eq!(desk.offset(), Ok(0x685A_740D));
-    desk.edit(|form| form.vector = Vector::UAgainstBoth);
+    desk.edit(|form| form.vector = EnergisedVector::UAgainstBoth);
     for (pairs, periods) in [("0", "1024"), ("501", "1024"), ("NaN", "1024"), ("4", "0"), ("4", "65537"), ("4", "-1")] {
         desk.edit(|form| (form.pole_pairs, form.periods) = (pairs.to_owned(), periods.to_owned()));
         assert_eq!(desk.offset(), Err("entry.whole"), "{pairs} {periods}");
     }
     for text in ["NaN", "-1", "1e9", "134217729", "339.02.1"] {
-        desk.type_in(Slot::OneSide, text);
+        desk.type_in(VectorSlot::OneSide, text);
         assert_eq!(desk.why_not(), Some("entry.number"), "{text}");
     }
-    desk.assist(Assistant::Read(Slot::OneSide));
+    desk.assist(Assistant::Read(VectorSlot::OneSide));
     assert!(desk.why_not().is_some());
     desk.assist(Assistant::Store);
     desk.assist(Assistant::Set);
@@ -186,8 +186,8 @@ fn positions_too_far_apart_are_refused() {
     let mut desk = Desk::new_form("");
     desk.prepare();
     // Half a period of 128 is 1.40625°, with four pole pairs 5.625°.
-    desk.type_in(Slot::OneSide, "127.9");
-    desk.type_in(Slot::OtherSide, "0.4");
+    desk.type_in(VectorSlot::OneSide, "127.9");
+    desk.type_in(VectorSlot::OtherSide, "0.4");
     assert_eq!(desk.offset(), Err("commutation.friction"));
     desk.assist(Assistant::Store);
     desk.assist(Assistant::Set);
@@ -205,7 +205,7 @@ fn the_second_vector_reveals_wiring_faults() {
     let mut desk = Desk::new_form("");
     desk.prepare();
     desk.edit(|form| form.address = "0".to_owned());
-    desk.type_in(Slot::OneSide, "4");
+    desk.type_in(VectorSlot::OneSide, "4");
     for (second, pairs, verdict, id) in [
         ("12", "4", Verdict::Ok, "commutation.fits"),
         // Over the end of the revolution.
@@ -221,7 +221,7 @@ fn the_second_vector_reveals_wiring_faults() {
         ("60", "4", Verdict::Fault, "commutation.unclear"),
     ] {
         desk.edit(|form| form.pole_pairs = pairs.to_owned());
-        desk.type_in(Slot::Second, second);
+        desk.type_in(VectorSlot::Second, second);
         assert_eq!(desk.second(), (verdict, id), "{second} {pairs}");
         desk.assist(Assistant::Store);
         let stored = !desk.edits().is_empty();
@@ -231,7 +231,7 @@ fn the_second_vector_reveals_wiring_faults() {
     }
     // With the other counting direction, exchanged is right.
     desk.edit(|form| (form.pole_pairs, form.reversed) = ("4".to_owned(), true));
-    desk.type_in(Slot::Second, "124");
+    desk.type_in(VectorSlot::Second, "124");
     assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
     desk.edit(|form| form.second_deg = "180".to_owned());
     let second = desk.encoder().commutation.second_vector_result(desk.encoder().geometry()).unwrap();
@@ -242,8 +242,8 @@ fn the_second_vector_reveals_wiring_faults() {
 fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
-    desk.read(Slot::OneSide);
-    desk.read(Slot::OtherSide);
+    desk.read(VectorSlot::OneSide);
+    desk.read(VectorSlot::OtherSide);
     desk.edit(|form| form.period = "3".to_owned());
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry()).unwrap();
     // 3 · 32 + ⌊32 · 0.7492⌋; the rest is 4 · 3.749 224 / 128 of a turn: 42.178 766°.
@@ -259,7 +259,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.encoder().position_set, Some((3224, 120)));
-    assert_eq!(desk.encoder().commutation.reading(Slot::OneSide), None, "that was another zero");
+    assert_eq!(desk.encoder().commutation.reading_of(VectorSlot::OneSide), None, "that was another zero");
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
 }
 
@@ -268,7 +268,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
 fn method_2_is_refused_if_its_step_is_too_large() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
-    desk.type_in(Slot::OneSide, "3.47");
+    desk.type_in(VectorSlot::OneSide, "3.47");
     for (periods, pairs, result) in [
         ("16", "5", Err("commutation.unusable")),
         ("16", "4", Err("commutation.unusable")),
@@ -293,7 +293,7 @@ fn method_2_is_refused_if_its_step_is_too_large() {
     assert_eq!(setting.unwrap_err().id(), "entry.whole");
     // In the second vector the shaft is not at the position that was read.
     desk.edit(|form| form.period = "0".to_owned());
-    desk.type_in(Slot::Second, "11.47");
+    desk.type_in(VectorSlot::Second, "11.47");
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
     assert_eq!(setting.unwrap_err().id(), "commutation.not_there");
 }
@@ -302,9 +302,9 @@ fn method_2_is_refused_if_its_step_is_too_large() {
 fn a_moving_shaft_is_refused_at_its_entry() {
     let mut desk = Desk::new_form("rpm=60");
     desk.prepare();
-    desk.read(Slot::OneSide);
+    desk.read(VectorSlot::OneSide);
     assert_eq!(desk.why_not(), Some("encoder.moving"));
-    assert!(desk.encoder().commutation.reading(Slot::OneSide).is_none());
+    assert!(desk.encoder().commutation.reading_of(VectorSlot::OneSide).is_none());
     assert!(desk.notice_ids(Severity::Error).contains(&"encoder.moving"), "and stands in the log");
     desk.edit(|_| {});
     assert_eq!(desk.why_not(), None);
@@ -321,7 +321,7 @@ fn a_position_out_of_phase_is_reported() {
         desk.write_as_shown();
         desk.until_written();
         desk.ask(Hiperface::CloseReview);
-        desk.read(Slot::OneSide);
+        desk.read(VectorSlot::OneSide);
         assert_eq!(desk.why_not(), expected, "{shift}");
         desk.assist(Assistant::Clear);
     }
@@ -331,31 +331,31 @@ fn a_position_out_of_phase_is_reported() {
     desk.write_as_shown();
     desk.until_written();
     desk.ask(Hiperface::CloseReview);
-    desk.read(Slot::OneSide);
-    let kind = desk.encoder().commutation.reading(Slot::OneSide).unwrap().kind;
-    assert!(matches!(kind, Kind::Fine { verdict: Verdict::Warn, .. }), "{kind:?}");
+    desk.read(VectorSlot::OneSide);
+    let kind = desk.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap().kind;
+    assert!(matches!(kind, PositionKind::Fine { verdict: Verdict::Warn, .. }), "{kind:?}");
     desk.edit(|form| form.source = Source::Absolute);
-    desk.read(Slot::OtherSide);
-    let reading = desk.encoder().commutation.reading(Slot::OtherSide).unwrap();
-    assert_eq!((reading.fine_periods, reading.kind), (20.5 / 32.0, Kind::Absolute));
+    desk.read(VectorSlot::OtherSide);
+    let reading = desk.encoder().commutation.reading_of(VectorSlot::OtherSide).unwrap();
+    assert_eq!((reading.fine_periods, reading.kind), (20.5 / 32.0, PositionKind::Absolute));
 }
 
 #[test]
 fn readings_survive_a_lost_cable_but_not_another_encoder() {
     let mut desk = Desk::at_port(AT_REST);
     desk.prepare();
-    desk.read(Slot::OneSide);
+    desk.read(VectorSlot::OneSide);
     desk.wire().unplug();
-    desk.assist(Assistant::Read(Slot::OtherSide));
+    desk.assist(Assistant::Read(VectorSlot::OtherSide));
     desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     assert_eq!(desk.encoder().commutation.pending_slot(), None);
-    assert!(desk.encoder().commutation.reading(Slot::OneSide).is_some());
-    desk.assist(Assistant::Read(Slot::OtherSide));
+    assert!(desk.encoder().commutation.reading_of(VectorSlot::OneSide).is_some());
+    desk.assist(Assistant::Read(VectorSlot::OtherSide));
     assert_eq!(desk.why_not(), Some("commutation.not_ready"));
     desk.wire().plug();
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();
-    desk.read(Slot::OtherSide);
+    desk.read(VectorSlot::OtherSide);
     assert_eq!(desk.offset(), Ok(0x25FE_68F7));
     desk.wire().unplug();
     desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
@@ -364,7 +364,7 @@ fn readings_survive_a_lost_cable_but_not_another_encoder() {
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(desk.encoder().commutation.form, Form::default(), "nothing of it is for this one");
-    assert!(desk.encoder().commutation.reading(Slot::OneSide).is_none());
+    assert!(desk.encoder().commutation.reading_of(VectorSlot::OneSide).is_none());
 }
 
 #[test]
@@ -378,7 +378,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     desk.until("it is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
     desk.prepare();
     desk.edit(|form| form.without_second = true);
-    desk.type_in(Slot::OneSide, "339.02");
+    desk.type_in(VectorSlot::OneSide, "339.02");
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("commutation.no_room"), "the motor's data stay");
     assert!(desk.edits().is_empty());
@@ -387,7 +387,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     assert_eq!(desk.why_not(), Some("commutation.block"));
     desk.edit(|form| form.storage = Storage::Number);
     desk.assist(Assistant::Store);
-    assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[8..12], [0x53, 0x05, 0x1E, 0xB8]);
+    assert_eq!(desk.encoder().staged.edited_fields()[0].bytes.as_ref().unwrap()[8..12], [0x53, 0x05, 0x1E, 0xB8]);
     desk.command(DeviceCommand::RevertAll);
     desk.edit(|form| (form.storage, form.address, form.pole_pairs) = (Storage::Record, "0".into(), "256".into()));
     desk.assist(Assistant::Store);
@@ -395,10 +395,10 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     desk.edit(|form| form.pole_pairs = "4".to_owned());
     desk.assist(Assistant::Store);
     let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
-    assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[..16], record);
+    assert_eq!(desk.encoder().staged.edited_fields()[0].bytes.as_ref().unwrap()[..16], record);
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is kept", |studio| !studio.hiperface().unwrap().staged.is_dirty());
-    assert_eq!(desk.encoder().mounting(0), [(0..16, "commutation offset".to_owned())]);
+    assert_eq!(desk.encoder().mounting_ranges(0), [(0..16, "commutation offset".to_owned())]);
     desk.edit(|form| form.address = "128".to_owned());
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("entry.whole"));
@@ -412,6 +412,6 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
 fn a_linear_encoder_has_no_pole_pairs() {
     let mut desk = Desk::new_form("type=0x90");
     desk.prepare();
-    desk.type_in(Slot::OneSide, "3.5");
+    desk.type_in(VectorSlot::OneSide, "3.5");
     assert_eq!(desk.offset(), Err("commutation.linear"));
 }

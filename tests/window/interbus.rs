@@ -99,7 +99,7 @@ fn write(desk: &mut Desk) -> String {
 fn a_virtual_encoder_is_read_automatically() {
     let mut desk = read(CAMS);
     // Issue 22.3: each of the eight programs may have been stored when it was left.
-    desk.until("stores are counted", |studio| studio.interbus().unwrap().stores() == Some(8));
+    desk.until("stores are counted", |studio| studio.interbus().unwrap().store_count() == Some(8));
     let own = encoder(&desk);
     let parameters = own.staged.device().unwrap().parameters;
     assert_eq!((parameters.steps, parameters.revolutions), (3600, 1));
@@ -124,7 +124,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();
     assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
     // Read for the window, the plan, the write and after it: 8 + 1 + 1 + 1; written: 2.
-    desk.until("stores are counted", |studio| studio.interbus().unwrap().stores() == Some(13));
+    desk.until("stores are counted", |studio| studio.interbus().unwrap().store_count() == Some(13));
     // Refused in its entry, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
@@ -198,19 +198,19 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
 fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     let mut desk = read(CAMS);
     // A machine of 360 degrees over 3600 steps: a tenth of a degree is a step.
-    act(&mut desk, Interbus::SetScale(Scale::degrees(3600.0, 0).unwrap()));
+    act(&mut desk, Interbus::SetScale(Scale::in_degrees(3600.0, 0).unwrap()));
     let table = "program;cam;name;start;stop\n3;0;glue;10,05;20\n3;1;glue;30;40\n3;2;knife;350;400\n9;0;x;1;2\n";
     act(&mut desk, Interbus::PasteTable(program(1), table.to_owned()));
     let import = encoder(&desk).import.as_ref().unwrap();
     assert_eq!((import.table.rows.len(), import.table.problems.len()), (3, 1), "{:?}", import.table.problems);
-    assert!(import.table.rounded().next().is_some());
+    assert!(import.table.rounded_rows().next().is_some());
     act(&mut desk, Interbus::TakeTable(true));
     assert!(!encoder(&desk).is_dirty(), "the line that is left out would switch its cam off");
     act(&mut desk, Interbus::PasteTable(program(1), table.replace("9;0;x;1;2\n", "")));
     act(&mut desk, Interbus::TakeTable(true));
     let own = encoder(&desk);
     assert!(own.import.is_none() && own.has_cam_edits());
-    let wanted = own.staged.wanted().unwrap();
+    let wanted = own.staged.edited_values().unwrap();
     let edges = |number| wanted.cam(program(3), cam(number)).map(|own| (own.start.get(), own.stop.get()));
     // 350 to 400 degrees pass the end: 400 is 40.
     assert_eq!((edges(1), edges(2)), (Some((300, 400)), Some((3500, 400))));
@@ -220,10 +220,10 @@ fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     act(&mut desk, Interbus::SaveTable { path: path.clone(), decimal_comma: true });
     desk.until("it is written", |_| path.exists());
     desk.settle();
-    let before = encoder(&desk).staged.wanted().unwrap().clone();
+    let before = encoder(&desk).staged.edited_values().unwrap().clone();
     act(&mut desk, Interbus::OpenTable(path));
     desk.until("it is read", |studio| studio.interbus().unwrap().import.is_some());
     assert!(encoder(&desk).import.as_ref().unwrap().table.problems.is_empty());
     act(&mut desk, Interbus::TakeTable(true));
-    assert_eq!(encoder(&desk).staged.wanted().unwrap().image, before.image);
+    assert_eq!(encoder(&desk).staged.edited_values().unwrap().image, before.image);
 }

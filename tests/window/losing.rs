@@ -337,7 +337,7 @@ fn a_silent_encoder_is_not_shown_as_connected() {
     assert_eq!((desk.phase(), desk.edits()), (&Phase::Connected, vec![(0, 0, b'X')]));
 
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
-    desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
+    desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 3);
     desk.wire().exchange("fault=silent-after:0");
     desk.until("it is silent", silent);
     assert!(!desk.studio.is_live());
@@ -395,13 +395,13 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
     let mut desk = Desk::at_port("rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
-    desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 10);
+    desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 10);
     let position = desk.encoder().record.last().unwrap();
     assert!(position.valid && position.position.is_some());
     desk.put(0, 0, b"X");
     desk.write();
-    let points = desk.encoder().record.positions();
-    desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 10);
+    let points = desk.encoder().record.position_count();
+    desk.until("samples go on", |studio| studio.hiperface().unwrap().record.position_count() > points + 10);
     assert_eq!(desk.bad_positions(), 0);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
 
@@ -421,7 +421,7 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
 fn a_late_failure_does_not_affect_newer_live_values() {
     let mut desk = Desk::at_port("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
-    desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
+    desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 3);
     desk.wire().exchange("fault=silent-after:0");
     let began = std::time::Instant::now();
     while desk.encoder().session.live_session().unwrap().polling_interval().is_some() {
@@ -432,8 +432,8 @@ fn a_late_failure_does_not_affect_newer_live_values() {
     std::thread::sleep(Duration::from_millis(50));
     desk.wire().exchange("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
-    let points = desk.encoder().record.positions();
-    desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 3);
+    let points = desk.encoder().record.position_count();
+    desk.until("samples go on", |studio| studio.hiperface().unwrap().record.position_count() > points + 3);
     assert!(desk.studio.is_live());
     assert_eq!(desk.notice_count("session.poll_failed"), 0);
 }
@@ -443,7 +443,7 @@ fn stop_and_escape_end_live_values() {
     for stop in [|| Action::Stop, || Action::Escape] {
         let mut desk = Desk::new_form("");
         desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
-        desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
+        desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 3);
         desk.act(stop());
         assert!(!desk.studio.is_live());
         desk.settle();
@@ -452,6 +452,6 @@ fn stop_and_escape_end_live_values() {
         assert_eq!(desk.wire().sent(), sent);
         let id = desk.encoder().session.id;
         desk.act(Action::Recorder(Of::Device(id), recorder::RecorderAction::Clear));
-        assert!(desk.encoder().record.positions() == 0 && desk.encoder().record.last().is_some());
+        assert!(desk.encoder().record.position_count() == 0 && desk.encoder().record.last().is_some());
     }
 }

@@ -185,7 +185,7 @@ fn an_open_profile_ignores_its_own_write_protection() {
     fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
     desk.studio.start_with(None, Some(path.clone()));
     desk.until("it is open", |studio| studio.hiperface().is_some());
-    assert_eq!(desk.encoder().mounting(1), [(0..16, "commutation offset".to_owned())]);
+    assert_eq!(desk.encoder().mounting_ranges(1), [(0..16, "commutation offset".to_owned())]);
     desk.put(0, 0, b"X");
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 }

@@ -12,12 +12,12 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::losing::lost;
 use crate::support::Desk;
-use encoder_studio::devices::hiperface::procedures::Watch;
+use encoder_studio::devices::hiperface::procedures::WatchedQuantity;
 
 const FAST: DeviceCommand = DeviceCommand::Poll(Some(Duration::from_millis(2)));
 
 fn recorded(studio: &Studio) -> u64 {
-    studio.hiperface().unwrap().record.positions()
+    studio.hiperface().unwrap().record.position_count()
 }
 
 fn own(desk: &Desk) -> Of {
@@ -158,7 +158,7 @@ fn a_snapshot_is_saved() {
 #[test]
 fn watched_values_are_recorded_with_the_position() {
     let mut desk = Desk::new_form("rpm=60&temperature=37");
-    for what in [Watch::Analogue(0x48), Watch::Analogue(0x07), Watch::Counter] {
+    for what in [WatchedQuantity::Analogue(0x48), WatchedQuantity::Analogue(0x07), WatchedQuantity::Counter] {
         desk.ask(Hiperface::Watch(what, true));
     }
     desk.command(FAST);
@@ -171,10 +171,13 @@ fn watched_values_are_recorded_with_the_position() {
     let absent = line(recording, "analogue 07h");
     assert_eq!(absent.remark.as_ref().unwrap().id(), "recorder.absent", "said where it would stand");
     assert!(line(recording, "temperature").remark.is_none());
-    desk.ask(Hiperface::Watch(Watch::Counter, false));
+    desk.ask(Hiperface::Watch(WatchedQuantity::Counter, false));
     assert!(recorder(&desk).series().iter().all(|line| line.heading != "counter"));
     // Watched values remain after the cable is pulled.
-    assert_eq!(desk.encoder().record.watched(), [Watch::Analogue(0x48), Watch::Analogue(0x07)]);
+    assert_eq!(
+        desk.encoder().record.watched_values(),
+        [WatchedQuantity::Analogue(0x48), WatchedQuantity::Analogue(0x07)]
+    );
 }
 
 #[test]

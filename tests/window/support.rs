@@ -338,7 +338,7 @@ impl Desk {
     pub(crate) fn until_kept(&mut self) {
         let folder = self.outside.path("data/drafts");
         self.until("the edits are kept", |studio| {
-            let edits: Vec<(u8, usize, u8)> = studio.hiperface().unwrap().staged.edits().collect();
+            let edits: Vec<(u8, usize, u8)> = studio.hiperface().unwrap().staged.edited_bytes().collect();
             let kinds = std::fs::read_dir(&folder).into_iter().flatten();
             let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
             // The file that is to replace it is next to it.
@@ -367,7 +367,7 @@ impl Desk {
 
     /// Returns the edits, as field, address and byte.
     pub(crate) fn edits(&self) -> Vec<(u8, usize, u8)> {
-        self.encoder().staged.edits().collect()
+        self.encoder().staged.edited_bytes().collect()
     }
 
     /// Polls until the plan is there.

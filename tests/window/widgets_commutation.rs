@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, Language};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
-use encoder_studio::devices::hiperface::state::commutation::{CommutationAction as Assistant, Slot};
+use encoder_studio::devices::hiperface::state::commutation::{CommutationAction as Assistant, VectorSlot};
 
 use crate::screen::Screen;
 
@@ -49,15 +49,15 @@ fn the_page_works_by_clicks_and_keys() {
     let read = |slot| {
         move |studio: &encoder_studio::app::Studio| {
             let encoder = studio.hiperface().unwrap();
-            encoder.session.is_ready() && encoder.commutation.reading(slot).is_some()
+            encoder.session.is_ready() && encoder.commutation.reading_of(slot).is_some()
         }
     };
-    screen.until("one side is read", read(Slot::OneSide));
+    screen.until("one side is read", read(VectorSlot::OneSide));
     assert!(!screen.is_enabled("commutation.store"), "one side is not enough");
     screen.click("commutation.read_other");
-    screen.until("the other side is read", read(Slot::OtherSide));
+    screen.until("the other side is read", read(VectorSlot::OtherSide));
     let second = format!("{} · {}", screen.say("commutation.in_second"), screen.say("commutation.fine"));
-    let there = screen.encoder().commutation.reading(Slot::OneSide).unwrap().fine_periods + 8.0;
+    let there = screen.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap().fine_periods + 8.0;
     screen.fill_in(&second, &format!("{there:.5}"));
     screen.click("commutation.use_second");
     assert!(screen.encoder().commutation.is_confirmed(screen.encoder().geometry()));
@@ -93,7 +93,7 @@ fn entry_errors_are_shown_next_to_the_entry() {
         assert!(screen.shows(words), "{words}");
     }
     assert!(!screen.shows("from one side only"));
-    screen.ask(Hiperface::Commutation(Assistant::Use(Slot::OneSide)));
+    screen.ask(Hiperface::Commutation(Assistant::Use(VectorSlot::OneSide)));
     assert!(screen.shows("from one side only"));
     screen.check_language();
 }

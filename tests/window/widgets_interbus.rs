@@ -34,7 +34,7 @@ fn page() -> Screen {
 
 impl Screen {
     fn cam(&self, number: u8) -> (u32, u32) {
-        let wanted = self.studio().interbus().unwrap().staged.wanted().unwrap();
+        let wanted = self.studio().interbus().unwrap().staged.edited_values().unwrap();
         let own = wanted.cam(program(), cam(number)).unwrap();
         (own.start.get(), own.stop.get())
     }
@@ -123,7 +123,7 @@ fn a_pasted_table_is_previewed_before_it_is_accepted() {
     assert_eq!((screen.cam(0), screen.cam(1), screen.cam(2)), ((100, 200), (300, 350), (700, 750)));
     let own = screen.studio().interbus().unwrap();
     assert_eq!(own.staged.program(program()).unwrap().mask, 0b111);
-    assert_eq!(own.staged.wanted().unwrap().name(program(), cam(2)), Some("glue"));
+    assert_eq!(own.staged.edited_values().unwrap().name(program(), cam(2)), Some("glue"));
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn the_ring_edits_the_same_cams() {
     screen.key(Key::ArrowLeft);
     assert_eq!(screen.cam(3), (start, stop - 1));
     screen.key(Key::Delete);
-    let own = screen.studio().interbus().unwrap().staged.wanted().unwrap();
+    let own = screen.studio().interbus().unwrap().staged.edited_values().unwrap();
     assert!(!own.is_on(program(), cam(3)));
     screen.check_language();
 }

@@ -101,7 +101,8 @@ fn unsaved_registers_are_reported_with_a_remedy() {
 #[test]
 fn a_refused_position_keeps_the_panel_within_the_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
-    screen.until("the encoder is read", |studio| studio.hiperface().is_some_and(|own| own.record.refused()));
+    screen
+        .until("the encoder is read", |studio| studio.hiperface().is_some_and(|own| own.record.is_position_refused()));
     screen.act(Action::SetLanguage(Language::German));
     let large = screen.button("recorder.large").rect();
     let window = Rect::from_min_size(egui::Pos2::ZERO, Vec2::from(SMALL));
@@ -209,7 +210,7 @@ fn every_page_is_drawn_with_all_values_of_an_encoder() {
     }
     screen.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     check_every_page(&mut screen, LARGE);
-    assert!(screen.encoder().record.positions() > 2);
+    assert!(screen.encoder().record.position_count() > 2);
     screen.click("shell.stop");
     assert!(!screen.studio().is_live());
 }

@@ -20,7 +20,7 @@ fn recorded() -> Screen {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
     });
     screen.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
-    screen.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 300);
+    screen.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 300);
     screen.act(Action::Stop);
     screen.steps();
     screen

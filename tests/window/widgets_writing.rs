@@ -31,7 +31,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
     screen.click("page.memory");
     assert!(!screen.is_enabled("memory.review"), "nothing is edited");
     type_bytes(&mut screen, "58");
-    assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 0, 0x58)]);
+    assert_eq!(screen.encoder().staged.edited_bytes().collect::<Vec<_>>(), [(0, 0, 0x58)]);
     assert_eq!(screen.outside.wire(PORT).field(0)[0], b'E');
 
     screen.click("memory.review");
@@ -170,7 +170,7 @@ fn a_restore_can_be_stopped_by_click() {
     let words = crate::texts::text("write.cancelled").with("done", 2).with("planned", 3);
     assert!(screen.shows(&screen.words(&words)));
     screen.click("review.close");
-    assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 4, 0)]);
+    assert_eq!(screen.encoder().staged.edited_bytes().collect::<Vec<_>>(), [(0, 4, 0)]);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn a_pulled_cable_offers_to_reconnect_and_keeps_the_edits() {
     screen.click("shell.reconnect");
     screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
     assert!(screen.is_enabled("memory.review"));
-    assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 0, 0x58)]);
+    assert_eq!(screen.encoder().staged.edited_bytes().collect::<Vec<_>>(), [(0, 0, 0x58)]);
 }
 
 #[test]

@@ -36,7 +36,7 @@ struct State {
 impl fmt::Debug for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let State { memory, address, settings, counter, position } = self;
-        for number in 0..memory.free().fields {
+        for number in 0..memory.free_memory().fields {
             let content = memory.field_bytes(number).map(<[u8]>::to_vec);
             write!(f, "{number}: {:?} {content:02X?}; ", memory.status(number))?;
         }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError};
 use encoder_studio::devices::interbus::procedures::Error;
-use encoder_studio::devices::interbus::procedures::write::Interrupted;
+use encoder_studio::devices::interbus::procedures::write::InterruptedWrite;
 use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, StartupMode};
 use encoder_studio::devices::interbus::sim::{Gateway, Memory};
@@ -84,10 +84,10 @@ fn session(
             encoder.connect(now);
         });
     };
-    let device = Arc::new(Mutex::new(gateway.connection()));
+    let device = Arc::new(Mutex::new(gateway.new_connection()));
     let link = FaultyLink::new(device, clock.clone(), schedule.clone(), cut_power);
     let store = Store::at_root(folder.path());
-    Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft()))
+    Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft_motor()))
 }
 
 /// A change, with the states that it passes through and the number of its requests.
@@ -108,10 +108,10 @@ fn changes() -> Vec<(&'static str, Change)> {
         InterbusOutput::Programs(mut read, _) => read.remove(0).1,
         other => panic!("{other:?}"),
     };
-    let mut wanted = Image::of(survey.parameters);
+    let mut wanted = Image::from_parameters(survey.parameters);
     *wanted.program_mut(program(6)).unwrap() = Some(own);
     (wanted.parameters.preset, wanted.parameters.zero_shift) = (17, 3);
-    assert!(wanted.put(Item::CamMask(program(6)), ItemValue::Mask(!own.mask)));
+    assert!(wanted.set_value(Item::CamMask(program(6)), ItemValue::Mask(!own.mask)));
     let third = Item::Cam(program(3), CamNumber::new(2).unwrap());
     vec![
         ("parameters and a mask", Change::Write(Box::new(wanted))),
@@ -152,7 +152,7 @@ fn case(name: &'static str, change: Change) -> Case {
 /// Asserts that the encoder stored a state of the plan. With the power, it may also have lost some of the values that
 /// were set but not stored, and stored the others; then each value is an old or a new one, and the error names a value
 /// that is not the wanted one.
-fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &Interrupted, context: &str) {
+fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &InterruptedWrite, context: &str) {
     if case.course.iter().any(|(state, ..)| state == stored) {
         return;
     }
@@ -166,7 +166,8 @@ fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &Interrupted,
 /// Returns all values of a memory.
 fn values(memory: &Memory) -> Vec<u32> {
     let (gear, shift) = (memory.gear(), u32::from(memory.shift().get()));
-    let mut values = vec![gear.steps(), gear.turns(), memory.direction(), memory.preset(), memory.zero_shift(), shift];
+    let mut values =
+        vec![gear.total_steps(), gear.turns(), memory.direction(), memory.preset(), memory.zero_shift(), shift];
     for number in ProgramNumber::all() {
         let program = memory.program(number);
         values.push(program.mask.into());

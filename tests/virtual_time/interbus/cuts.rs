@@ -42,11 +42,11 @@ fn write(stand: &mut Stand) -> InterbusJob {
         InterbusOutput::Surveyed(survey) => *survey,
         other => panic!("{other:?}"),
     };
-    let mut wanted = encoder_studio::devices::interbus::profile::Image::of(survey.parameters);
+    let mut wanted = encoder_studio::devices::interbus::profile::Image::from_parameters(survey.parameters);
     let (_, own) = stand.programs(&[6]).remove(0);
     *wanted.program_mut(program(6)).unwrap() = Some(own);
     (wanted.parameters.preset, wanted.parameters.zero_shift) = (17, 3);
-    assert!(wanted.put(Item::CamMask(program(6)), ItemValue::Mask(!own.mask)));
+    assert!(wanted.set_value(Item::CamMask(program(6)), ItemValue::Mask(!own.mask)));
     let prepared = stand.prepare(Change::Write(Box::new(wanted)));
     let consent = Consent::to(prepared.plan.id());
     InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }))

@@ -88,7 +88,7 @@ fn an_error_at_any_step_is_reported_and_led_back() {
             assert!(interrupted.cause.to_string().contains(meaning), "{interrupted}");
             assert_eq!(interrupted.end_state, EndState::AsFound, "{interrupted}");
             assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "a store may have been spent");
-            assert_eq!(interrupted.unfinished.unwrap().items().len(), 4);
+            assert_eq!(interrupted.unfinished.unwrap().affected_items().len(), 4);
             // The words up to that one, then the return.
             assert_eq!(sent[..=at], words[..=at], "{sent:08X?}");
             assert!(sent[1 + at..].contains(&0) && sent.contains(&RUN), "{sent:08X?}");
@@ -151,7 +151,7 @@ fn a_stale_echo_is_skipped() {
         assert_eq!(ended.unwrap().verified, 2, "{stale:08X}");
         // While a value is requested.
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xA000_0003]).collect();
-        let identity = identify(&mut Master::over(Script::new().on(0x2021_0000, &old), &mut station("")));
+        let identity = identify(&mut Master::for_job(Script::new().on(0x2021_0000, &old), &mut station("")));
         assert_eq!(identity.unwrap().serial_number, "3", "{stale:08X}");
     }
 }
@@ -243,7 +243,7 @@ fn a_word_the_gateway_may_have_written_is_led_back() {
     // The very first word: the encoder may show a value from then on.
     let script = Script { refuses: Some((0x2021_0009, 0x0B, true)), ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
-    assert!(matches!(identify(&mut Master::over(script, &mut station)), Err(Error::Exception { .. })));
+    assert!(matches!(identify(&mut Master::for_job(script, &mut station)), Err(Error::Exception { .. })));
     assert_eq!(*sent.lock().unwrap(), [0x2021_0009, 0]);
 }
 
@@ -252,7 +252,7 @@ fn a_word_the_gateway_may_have_written_is_led_back() {
 fn leading_back_creates_a_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
-    assert_eq!(Master::over(script, &mut station).end_foreign_operation(), Ok(StartupMode::K3));
+    assert_eq!(Master::for_job(script, &mut station).end_foreign_operation(), Ok(StartupMode::K3));
     assert_eq!(sent.lock().unwrap()[..2], [0, RUN]);
 }
 
@@ -316,7 +316,7 @@ fn a_missing_echo_position_or_value_is_reported_with_its_words() {
     }
     let mut station = station("handshake=500");
     let script = Script::new().on(0x2021_0000, &[POSITION]);
-    let error = identify(&mut Master::over(script, &mut station)).unwrap_err();
+    let error = identify(&mut Master::for_job(script, &mut station)).unwrap_err();
     assert_eq!(error.to_string(), "no value after OUT 20210000 within 500 ms; IN is 000004D2");
 }
 
@@ -325,7 +325,7 @@ fn swapped_words_are_suspected() {
     let mut station = station("");
     // 1234h in the first register, 0 in the second.
     let script = Script::new().on(0x2021_0009, &[0x1234_0000]);
-    let error = identify(&mut Master::over(script, &mut station)).unwrap_err();
+    let error = identify(&mut Master::for_job(script, &mut station)).unwrap_err();
     assert_eq!(error.to_string(), "IN 12340000 makes sense as 00001234 only: the word order may be swapped");
 }
 
@@ -337,7 +337,7 @@ fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
         let script = Script { normal_ends_modes: true, ..Script::in_mode(mode) };
         let sent = script.sent.clone();
         let mut station = station("");
-        let mut master = Master::over(script, &mut station);
+        let mut master = Master::for_job(script, &mut station);
         let identity = identify(&mut master).unwrap();
         assert_eq!(identity.mode.emit(), mode);
         assert_eq!(sent.lock().unwrap().last(), Some(&holds), "mode {mode}: {:08X?}", sent.lock().unwrap());
@@ -346,7 +346,7 @@ fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
     let mut station: Station = station("");
     let script = Script { normal_ends_modes: true, ..Script::new() };
     let sent = script.sent.clone();
-    let mut master = Master::over(script, &mut station);
+    let mut master = Master::for_job(script, &mut station);
     let wanted = StartupMode::Cams(program(4));
     assert_eq!(select(&mut master, wanted).unwrap(), wanted);
     assert_eq!(sent.lock().unwrap().last(), Some(&RUN));
@@ -362,7 +362,7 @@ fn cam_read_outs_are_ended_with_run_if_needed() {
         .on(0x2020_0023, &[0xA000_0015, 0xA000_0015, 0xA000_0213]);
     let sent = script.sent.clone();
     let mut station = station("");
-    let mut master = Master::over(script, &mut station);
+    let mut master = Master::for_job(script, &mut station);
     let (read, _) = read_programs(&mut master, &[program(1)], &mut |_, _, _| {}).unwrap();
     let cam = read[0].1.cams[3].unwrap();
     assert_eq!(cam.start.get(), 0x15);
@@ -376,7 +376,7 @@ fn words_with_another_meaning_in_the_current_mode_are_not_sent() {
     let script = Script::in_mode(0x55);
     let sent = script.sent.clone();
     let mut station = station("");
-    let mut master = Master::over(script, &mut station);
+    let mut master = Master::for_job(script, &mut station);
     assert_eq!(identify(&mut master).unwrap().mode.emit(), 0x55);
     assert_eq!(sent.lock().unwrap().last(), Some(&0));
     // Nor after that: the effect of 20800000 there is not known.

@@ -48,7 +48,7 @@ fn identify_reads_out_and_returns_to_the_position() {
     assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
     let reading = stand.session.take_sample().unwrap();
     assert_eq!((reading.mode, reading.position()), (Some(K3), Some(1024)));
-    assert!(reading.place().is_some_and(|place| (place.turns, place.degrees) == (0, 90.0)));
+    assert!(reading.turn_position().is_some_and(|place| (place.turns, place.degrees) == (0, 90.0)));
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn a_saved_profile_matches_the_encoder() {
             other => panic!("{other:?}"),
         };
         assert_eq!((profile.identity.serial_number.as_str(), profile.image.parameters.steps), ("31", 36_000));
-        assert_eq!(profile.image.known().count(), if programs { 8 } else { 0 });
+        assert_eq!(profile.image.known_programs().count(), if programs { 8 } else { 0 });
         assert_eq!(profile.image.shift.is_some(), programs);
         assert!(profile.depends_on_mounting(Item::Preset));
     }
@@ -183,7 +183,7 @@ fn several_encoders_on_one_gateway_are_selected_by_registers() {
     for (query, serial) in
         [("unit=5&input=100&output=200&order=low-first", "40"), ("unit=5&input=104&output=204&order=low-first", "42")]
     {
-        let mut stand = Stand::with(gateway.connection(), station(query));
+        let mut stand = Stand::with(gateway.new_connection(), station(query));
         match stand.run(InterbusJob::Identify).unwrap() {
             InterbusOutput::Identity(identity) => assert_eq!(identity.serial_number, serial),
             other => panic!("{other:?}"),

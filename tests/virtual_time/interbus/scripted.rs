@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{ChangeKind, Commit, Committed, JobError, Prepared};
-use encoder_studio::devices::interbus::procedures::write::{EncoderWriter, Interrupted, WrittenChanges};
+use encoder_studio::devices::interbus::procedures::write::{EncoderWriter, InterruptedWrite, WrittenChanges};
 use encoder_studio::devices::interbus::procedures::{
     Error, Exception, Handshake, Identity, Master, ProcessData, RequestedItem,
 };
@@ -101,7 +101,7 @@ impl Script {
 }
 
 impl ProcessData for Script {
-    fn cycle(&mut self, out: u32) -> Result<u32, Error> {
+    fn run_cycle(&mut self, out: u32) -> Result<u32, Error> {
         let refused = self.refuses.take_if(|(word, ..)| *word == out);
         if out != self.out && !matches!(refused, Some((.., false))) {
             self.take(out);
@@ -156,7 +156,7 @@ pub(crate) fn identity() -> Identity {
 pub(crate) fn carry_out(
     script: Script,
     ops: Vec<Op>,
-) -> (Result<WrittenChanges, Box<Interrupted>>, Vec<Handshake>, Vec<u32>) {
+) -> (Result<WrittenChanges, Box<InterruptedWrite>>, Vec<Handshake>, Vec<u32>) {
     let plan = InterbusPlan { base: Base::default(), ops };
     let (folder, consent) = (tempfile::tempdir().unwrap(), Consent::to(plan.id()));
     let parameters =
@@ -177,7 +177,7 @@ pub(crate) fn carry_out(
     let (mut station, sent) = (station(""), script.sent.clone());
     let mut steps = Vec::new();
     let ended: Result<Committed, JobError> = {
-        let master = Master::over(script, &mut station).with_reporter(|step| steps.push(step));
+        let master = Master::for_job(script, &mut station).with_reporter(|step| steps.push(step));
         let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
         // Without the words that read again.
         let begins = &mut |at: Progress<&Op>| {

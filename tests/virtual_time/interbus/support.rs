@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Committed, DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, Prepared,
 };
-use encoder_studio::devices::interbus::procedures::{Carried, Handshake, Station, word_in_frame};
+use encoder_studio::devices::interbus::procedures::{FrameWord, Handshake, Station, word_in_frame};
 use encoder_studio::devices::interbus::protocol::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
 use encoder_studio::devices::interbus::sim::{Config, Gateway};
 use encoder_studio::link::{Direction, TraceEntry, VirtualClock};
@@ -45,10 +45,10 @@ impl Stand {
     pub(crate) fn with(gateway: Gateway, station: Station) -> Self {
         let clock = Arc::new(VirtualClock::default());
         let tap = Arc::<Mutex<Tap>>::default();
-        let link = TestLink::new(Arc::new(Mutex::new(gateway.connection())), clock.clone(), tap.clone());
+        let link = TestLink::new(Arc::new(Mutex::new(gateway.new_connection())), clock.clone(), tap.clone());
         let folder = folder();
         let store = Store::at_root(folder.path());
-        let motor = Some(gateway.shaft());
+        let motor = Some(gateway.shaft_motor());
         let mut session = Session::for_gateway(Box::new(link), clock.clone(), station, store, motor);
         let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let watched = trace.clone();
@@ -59,8 +59,9 @@ impl Stand {
     /// Starts another run of the program on the same gateway, with the files of the one before.
     pub(crate) fn run_again(&mut self) {
         self.tap = Arc::default();
-        let link = TestLink::new(Arc::new(Mutex::new(self.gateway.connection())), self.clock.clone(), self.tap.clone());
-        let (store, motor) = (Store::at_root(self.folder.path()), Some(self.gateway.shaft()));
+        let link =
+            TestLink::new(Arc::new(Mutex::new(self.gateway.new_connection())), self.clock.clone(), self.tap.clone());
+        let (store, motor) = (Store::at_root(self.folder.path()), Some(self.gateway.shaft_motor()));
         self.session = Session::for_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
     }
 
@@ -131,19 +132,19 @@ impl Stand {
         let words = sent.filter_map(|entry| word_in_frame(true, &entry.bytes.to_bytes()?, WordOrder::HighFirst));
         words
             .map(|word| match word {
-                Carried::Out(word) => word,
-                Carried::In(word) => panic!("{word:08X} was not sent"),
+                FrameWord::Out(word) => word,
+                FrameWord::In(word) => panic!("{word:08X} was not sent"),
             })
             .collect()
     }
 
     /// Returns OUT as the encoder has it, and the mode that it would start with.
     pub(crate) fn left(&self) -> (u32, StartupMode) {
-        self.gateway.with_encoder(|encoder| (encoder.out(), encoder.startup_mode()))
+        self.gateway.with_encoder(|encoder| (encoder.out_word(), encoder.startup_mode()))
     }
 
     pub(crate) fn stores(&self) -> u32 {
-        self.gateway.with_encoder(|encoder| encoder.stores())
+        self.gateway.with_encoder(|encoder| encoder.store_count())
     }
 
     pub(crate) fn elapsed(&self) -> Duration {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::procedures::{
-    Carried, Damage, Error, Exception, Master, RequestedItem, Station, WordReading, identify, word_in_frame,
+    Error, Exception, FrameWord, Master, ReplyDamage, RequestedItem, Station, WordReading, identify, word_in_frame,
 };
 use encoder_studio::devices::interbus::protocol::WordOrder;
 use encoder_studio::link::{ByteLink, CancelToken, Clock, Ctx, LinkError, Trace, VirtualClock};
@@ -90,7 +90,7 @@ fn with<T>(
 }
 
 fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static) -> Seen<WordReading> {
-    with(&mut station(query), answer, |master| master.reading())
+    with(&mut station(query), answer, |master| master.read_in_word())
 }
 
 #[test]
@@ -120,10 +120,10 @@ fn an_out_word_is_two_holding_registers_written_together() {
     assert_eq!(writes[0][4..], [0, 11, 1, 16, 0, 8, 0, 2, 4, 0x20, 0x21, 0, 9]);
     assert_eq!(writes[1][4..], [0, 11, 1, 16, 0, 8, 0, 2, 4, 0, 0, 0, 0], "and normal running at the end");
     assert_eq!(writes.len(), 2, "a word that stands is not written again");
-    assert_eq!(word_in_frame(true, writes[0], WordOrder::HighFirst), Some(Carried::Out(0x2021_0009)));
-    assert_eq!(word_in_frame(true, writes[0], WordOrder::LowFirst), Some(Carried::Out(0x0009_2021)));
+    assert_eq!(word_in_frame(true, writes[0], WordOrder::HighFirst), Some(FrameWord::Out(0x2021_0009)));
+    assert_eq!(word_in_frame(true, writes[0], WordOrder::LowFirst), Some(FrameWord::Out(0x0009_2021)));
     let input = registers(&requests[0], 0xC200_00FF);
-    assert_eq!(word_in_frame(false, &input, WordOrder::HighFirst), Some(Carried::In(0xC200_00FF)));
+    assert_eq!(word_in_frame(false, &input, WordOrder::HighFirst), Some(FrameWord::In(0xC200_00FF)));
     assert_eq!(word_in_frame(true, &requests[0], WordOrder::HighFirst), None);
 }
 
@@ -190,13 +190,13 @@ fn a_refusal_is_reported_with_its_cause() {
 
 #[test]
 fn invalid_replies_are_retried() {
-    let wrong: [(&str, Vec<u8>, Damage); 6] = [
-        ("text", b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec(), Damage::NoFrame { bytes: 28 }),
-        ("another unit", vec![2, 4, 4, 0, 0, 0, 1], Damage::Unit { requested: 1, got: 2 }),
-        ("another function", vec![1, 3, 4, 0, 0, 0, 1], Damage::Function { requested: 4, got: 3 }),
-        ("one register", vec![1, 4, 2, 0, 1], Damage::Registers),
-        ("three registers", vec![1, 4, 6, 0, 1, 0, 2, 0, 3], Damage::Registers),
-        ("a wrong count", vec![1, 4, 6, 0, 1, 0, 2], Damage::Registers),
+    let wrong: [(&str, Vec<u8>, ReplyDamage); 6] = [
+        ("text", b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec(), ReplyDamage::NoFrame { bytes: 28 }),
+        ("another unit", vec![2, 4, 4, 0, 0, 0, 1], ReplyDamage::Unit { requested: 1, got: 2 }),
+        ("another function", vec![1, 3, 4, 0, 0, 0, 1], ReplyDamage::Function { requested: 4, got: 3 }),
+        ("one register", vec![1, 4, 2, 0, 1], ReplyDamage::Registers),
+        ("three registers", vec![1, 4, 6, 0, 1, 0, 2, 0, 3], ReplyDamage::Registers),
+        ("a wrong count", vec![1, 4, 6, 0, 1, 0, 2], ReplyDamage::Registers),
     ];
     for (label, bytes, damage) in wrong {
         let is_frame = label != "text";
@@ -246,5 +246,5 @@ fn a_recording_answers_any_transaction_number() {
         other[..2].copy_from_slice(&[0x77, 0x77]);
         vec![(1, other)]
     };
-    assert_eq!(with(&mut station, answer, |master| master.reading()).0.unwrap().word, 42);
+    assert_eq!(with(&mut station, answer, |master| master.read_in_word()).0.unwrap().word, 42);
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{
-    Change, ChangeKind, Commit, InterbusJob, InterbusOutput, JobError, JobStep, WEAR_LIMIT, Wear,
+    Change, ChangeKind, Commit, InterbusJob, InterbusOutput, JobError, JobStep, WEAR_LIMIT, WearAfterPlan,
 };
 use encoder_studio::devices::interbus::procedures::Error;
 use encoder_studio::devices::interbus::procedures::write::EndState;
@@ -26,7 +26,7 @@ fn image(stand: &mut Stand, programs: &[u8]) -> Image {
         InterbusOutput::Surveyed(survey) => *survey,
         other => panic!("{other:?}"),
     };
-    let mut image = Image::of(survey.parameters);
+    let mut image = Image::from_parameters(survey.parameters);
     for (number, own) in stand.programs(programs) {
         *image.program_mut(program(number)).unwrap() = Some(own);
     }
@@ -65,9 +65,9 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
         assert_eq!(setting(&stand), [0x0400_0004, 0x0200_4E20, 0x0800_4E1F, 0x8000_0000]);
         assert_eq!(stand.left(), (0, StartupMode::K3));
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
-        assert_eq!((kept.gear().steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
+        assert_eq!((kept.gear().total_steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
         // The session knows the gear from then on.
-        assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
+        assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(20_000));
         let backup = done.backup.unwrap();
         let document =
             ProfileDocument::parse(&read_text(&backup).unwrap(), encoder_studio::kinds::program().studio.formats)
@@ -86,9 +86,9 @@ fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
         let change = edited(&mut stand, &all, |wanted| {
             for (number, own) in [(2, 1), (2, 6), (7, 0), (7, 7)] {
                 let item = Item::Cam(program(number), CamNumber::new(own).unwrap());
-                assert!(wanted.put(item, ItemValue::Cam(cam(3000 + u32::from(own), 7))));
+                assert!(wanted.set_value(item, ItemValue::Cam(cam(3000 + u32::from(own), 7))));
             }
-            assert!(wanted.put(Item::CamMask(program(7)), ItemValue::Mask(0x3C)));
+            assert!(wanted.set_value(Item::CamMask(program(7)), ItemValue::Mask(0x3C)));
         });
         let prepared = stand.prepare(change);
         assert_eq!((prepared.plan.ops.len(), prepared.plan.write_cycles()), (2, 2));
@@ -103,7 +103,7 @@ fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
         assert_eq!(kept.program(program(7)).cams[0], Some(cam(3000, 7)), "{faults}");
         assert_eq!((kept.program(program(7)).mask, kept.program(program(2)).cams[6]), (0x3C, Some(cam(3006, 7))));
-        assert_eq!(kept.gear().steps(), 3600, "{faults}");
+        assert_eq!(kept.gear().total_steps(), 3600, "{faults}");
     }
 }
 
@@ -113,9 +113,9 @@ fn the_shift_is_set_with_a_program_or_alone() {
         let mut stand = Stand::new(SCALED);
         let before = stand.stores();
         let change = edited(&mut stand, programs, |wanted| {
-            assert!(wanted.put(Item::Shift, ItemValue::Number(8)));
+            assert!(wanted.set_value(Item::Shift, ItemValue::Number(8)));
             if edges > 0 {
-                assert!(wanted.put(Item::CamMask(program(3)), ItemValue::Mask(0x11)));
+                assert!(wanted.set_value(Item::CamMask(program(3)), ItemValue::Mask(0x11)));
             }
         });
         let prepared = stand.prepare(change);
@@ -161,8 +161,8 @@ fn the_default_is_set_and_then_read_back() {
     let done = stand.commit(prepared).unwrap();
     assert_eq!((done.written.ops, done.written.write_cycles, stand.stores()), (1, 1, before + 1));
     assert!(setting(&stand).contains(&0x0E00_0000));
-    let delivered = stand.gateway.with_encoder(|encoder| encoder.memory().gear().steps());
-    assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.steps()), Some(delivered));
+    let delivered = stand.gateway.with_encoder(|encoder| encoder.memory().gear().total_steps());
+    assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(delivered));
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
     assert_eq!(prepared.mounting_left, [Item::Preset]);
     other.commit(prepared).unwrap();
     let kept = other.gateway.with_encoder(|encoder| encoder.stored().clone());
-    assert_eq!((kept.gear().steps(), kept.preset()), (3600, 5));
+    assert_eq!((kept.gear().total_steps(), kept.preset()), (3600, 5));
     for number in ProgramNumber::all() {
         let wanted = profile.image.program(number).unwrap();
         assert_eq!((kept.program(number).mask, kept.program(number).cams), (wanted.mask, wanted.cams));
@@ -207,7 +207,7 @@ fn a_change_since_the_plan_stops_the_write() {
     assert_eq!(stand.left(), (0, StartupMode::K3));
     // Or the mask of a program.
     let change = edited(&mut stand, &[4], |wanted| {
-        assert!(wanted.put(Item::CamMask(program(4)), ItemValue::Mask(0xFF)));
+        assert!(wanted.set_value(Item::CamMask(program(4)), ItemValue::Mask(0xFF)));
     });
     let prepared = stand.prepare(change);
     let now = moment(&stand);
@@ -233,7 +233,7 @@ fn a_worn_eeprom_is_written_only_by_force() {
     let mut prepared = stand.prepare(Change::Default);
     for (seen, refused) in [(Some(WEAR_LIMIT - 2), false), (Some(WEAR_LIMIT - 1), true), (None, true)] {
         prepared.cycles_seen = seen;
-        assert_eq!(matches!(prepared.wear(), Some(Wear::Worn(_) | Wear::Unknown)), refused);
+        assert_eq!(matches!(prepared.wear_to_report(), Some(WearAfterPlan::Worn(_) | WearAfterPlan::Unknown)), refused);
         let prepared = stand.prepare(Change::Default);
         let prepared = encoder_studio::devices::interbus::jobs::Prepared { cycles_seen: seen, ..prepared };
         let consent = Consent::to(prepared.plan.id());
@@ -316,12 +316,12 @@ fn steps_less_one_are_read_and_written_unchanged() {
         other => panic!("{other:?}"),
     };
     assert_eq!((identity.steps, identity.flags.steps_minus_one()), (3599, true));
-    assert_eq!(identity.gear().map(|gear| gear.steps()), Ok(3600));
+    assert_eq!(identity.gear().map(|gear| gear.total_steps()), Ok(3600));
     let change = edited(&mut stand, &[], |wanted| wanted.parameters.steps = 719);
     let prepared = stand.prepare(change);
     stand.commit(prepared).unwrap();
-    assert_eq!(stand.gateway.with_encoder(|encoder| encoder.stored().gear().steps()), 720);
-    assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.steps()), Some(720));
+    assert_eq!(stand.gateway.with_encoder(|encoder| encoder.stored().gear().total_steps()), 720);
+    assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(720));
 }
 
 /// A cancellation takes effect between two words; then the encoder runs again, in its original mode.
@@ -330,7 +330,7 @@ fn cancelling_leaves_a_running_encoder() {
     let wanted = |stand: &mut Stand| {
         edited(stand, &[6], |wanted| {
             wanted.parameters.zero_shift = 3;
-            assert!(wanted.put(Item::Cam(program(6), CamNumber::new(2).unwrap()), ItemValue::Cam(cam(1, 2))));
+            assert!(wanted.set_value(Item::Cam(program(6), CamNumber::new(2).unwrap()), ItemValue::Cam(cam(1, 2))));
         })
     };
     let mut interrupted_ones = 0;
@@ -418,7 +418,7 @@ fn an_encoder_with_lost_parameters_can_be_led_back_and_restored() {
     let done = stand.commit(prepared).unwrap();
     assert_eq!(done.written.verified, done.written.written);
     let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
-    assert_eq!((kept.gear().steps(), kept.gear().turns()), (360, 1));
+    assert_eq!((kept.gear().total_steps(), kept.gear().turns()), (360, 1));
     assert!(stand.session.take_sample().unwrap().is_valid());
     assert_eq!(stand.left(), (0, StartupMode::K3));
     assert!(stand.elapsed() - begun < Duration::from_secs(120), "{:?}", stand.elapsed() - begun);

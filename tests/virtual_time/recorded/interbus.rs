@@ -45,7 +45,7 @@ fn image(stand: &mut Stand) -> Image {
         InterbusOutput::Surveyed(survey) => *survey,
         other => panic!("{other:?}"),
     };
-    Image::of(survey.parameters)
+    Image::from_parameters(survey.parameters)
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_restore_is_as_recorded() {
             other => panic!("{other:?}"),
         };
         profile.image.parameters.zero_shift = 9;
-        assert!(profile.image.put(Item::CamMask(program(1)), ItemValue::Mask(0x33)));
+        assert!(profile.image.set_value(Item::CamMask(program(1)), ItemValue::Mask(0x33)));
         Change::Restore { profile: Box::new(profile), options: RestoreOptions::default() }
     };
     recorded("restore", restore, 17);

@@ -21,7 +21,7 @@ use crate::result_of;
 const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
                        delete-field, change-code, increment-counter, clear-counter and configure-for-now";
 
-pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
+pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.parse_action::<HiperfaceAction>(KIND, ACTIONS)?, words.as_slice()) {
@@ -117,8 +117,8 @@ fn parse_field_status(words: &[&str]) -> Result<DataFieldStatus> {
                     .and_then(AccessCodeNumber::new)
                     .ok_or_else(|| out_of_range("code", value, 0, 3))?;
             }
-            Some(("ce", value)) => required = flag("ce", value)?,
-            Some(("we", value)) => writable = flag("we", value)?,
+            Some(("ce", value)) => required = parse_switch("ce", value)?,
+            Some(("we", value)) => writable = parse_switch("we", value)?,
             _ => return Err(Failure::Usage(format!("{option:?} is not code=N, ce=0, ce=1, we=0 or we=1"))),
         }
     }
@@ -126,7 +126,7 @@ fn parse_field_status(words: &[&str]) -> Result<DataFieldStatus> {
     Ok(status)
 }
 
-fn flag(name: &str, value: &str) -> Result<bool> {
+fn parse_switch(name: &str, value: &str) -> Result<bool> {
     match value {
         "0" => Ok(false),
         "1" => Ok(true),
@@ -167,5 +167,5 @@ fn check_device(common: &CommonArgs, output: &Output, restart: bool) -> Result {
     // A good line is not listed as a step. Scripts find its figures in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
         lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
-    check::show_check(output, &words::check(&shown), quality)
+    check::show_check(output, &words::check_lines(&shown), quality)
 }

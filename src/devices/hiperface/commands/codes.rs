@@ -19,12 +19,12 @@ pub(super) struct AccessCodeArgs {
 }
 
 #[derive(Clone, Copy)]
-struct Code {
+struct CodeArg {
     number: AccessCodeNumber,
     code: AccessCode,
 }
 
-impl FromStr for Code {
+impl FromStr for CodeArg {
     type Err = String;
 
     /// Parses an access code with its number. The error message does not repeat the text, which may be a code.
@@ -32,7 +32,7 @@ impl FromStr for Code {
         let form = || "an access code has the form N=HEX with N from 0 to 3, such as 2=1A".to_owned();
         let (number, code) = text.split_once('=').ok_or_else(form)?;
         let number = number.trim().parse().ok().and_then(AccessCodeNumber::new).ok_or_else(form)?;
-        Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
+        Ok(CodeArg { number, code: parse_code(code).ok_or_else(form)? })
     }
 }
 
@@ -45,7 +45,7 @@ pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
 }
 
 /// Returns the access codes from the environment, followed by those from the command line.
-pub(super) fn given(option: &AccessCodeArgs) -> Result<InitialAccessCodes> {
+pub(super) fn given_codes(option: &AccessCodeArgs) -> Result<InitialAccessCodes> {
     let mut codes = Vec::new();
     if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
         for code in text.split(',').filter(|code| !code.trim().is_empty()) {
@@ -55,9 +55,9 @@ pub(super) fn given(option: &AccessCodeArgs) -> Result<InitialAccessCodes> {
     for code in &option.codes {
         codes.push(read(code, "--code")?);
     }
-    Ok(codes.into_iter().map(|Code { number, code }| (number, code)).collect())
+    Ok(codes.into_iter().map(|CodeArg { number, code }| (number, code)).collect())
 }
 
-fn read(text: &str, from: &str) -> Result<Code> {
+fn read(text: &str, from: &str) -> Result<CodeArg> {
     text.parse().map_err(|why| Failure::Usage(format!("{from}: {why}")))
 }

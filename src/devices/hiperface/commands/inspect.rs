@@ -13,7 +13,7 @@ use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperface::commands::run::{Runner, reported_codes};
-use crate::devices::hiperface::commands::table::Table;
+use crate::devices::hiperface::commands::table::PositionTable;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
 };
@@ -152,7 +152,7 @@ fn identity_text(identity: &Identity, runner: &Runner) -> String {
         .add_line("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
         .add_line("data fields", identity.memory.map_or_else(unknown, |memory| memory.fields.to_string()))
         .add_line("options", format!("{:02X}h", identity.label.options));
-    if let Some(label) = identity.extended() {
+    if let Some(label) = identity.extended_label() {
         for parameter in &label.parameters {
             let value = parameter.value;
             lines.add_line(format!("label parameter {}", parameter.number), format!("{value} ({value:04X}h)"));
@@ -201,7 +201,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
             identity.label.encoder_type
         ));
     }
-    let table = position.csv.then(|| Table::of(identity.geometry));
+    let table = position.csv.then(|| PositionTable::for_geometry(identity.geometry));
     if let Some(table) = &table {
         output.write_stdout(table.header())?;
     }
@@ -217,7 +217,7 @@ fn show(
     runner: &mut Runner,
     output: &Output,
     came: std::result::Result<HiperfaceOutput, Box<JobError>>,
-    table: Option<&Table>,
+    table: Option<&PositionTable>,
     codes_before: &mut Vec<StatusCode>,
 ) -> Result<()> {
     match came {
@@ -261,7 +261,7 @@ fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
 }
 
 fn position_error_text(error: &JobError) -> String {
-    explained::job(error).iter().map(|text| text.terminal_text()).collect()
+    explained::job_error_texts(error).iter().map(|text| text.terminal_text()).collect()
 }
 
 fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
@@ -271,7 +271,7 @@ fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
 }
 
 pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
-    let item = &super::item(item)?;
+    let item = &super::parse_item(item)?;
     let mut runner = Runner::open(common)?;
     let value = result_of!(runner.run(HiperfaceJob::Read(*item))?, HiperfaceOutput::Value(value) => value);
     let (json, text) = match &value {

@@ -68,7 +68,7 @@ impl DeviceCommands for HiperfaceCommands {
     }
 
     fn add_given(&self, options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
-        Ok(given.with_value(codes::given(&options.read()?)?))
+        Ok(given.with_value(codes::given_codes(&options.read()?)?))
     }
 
     fn refused_option(&self, option: &str) -> Option<String> {
@@ -97,18 +97,18 @@ impl DeviceCommands for HiperfaceCommands {
             Command::Read(read) => inspect::read(common, output, &read.item),
             Command::Save(save) => profiles::save(common, output, save),
             Command::Write(write) => write::write(common, output, write),
-            Command::Do(act) => act::act(common, output, act),
+            Command::Do(act) => act::run_action(common, output, act),
             Command::Decode(decode) => decode::decode(output, &decode.hex),
             _ => return None,
         })
     }
 
     fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
-        simulated(output, arguments)
+        create_simulated(output, arguments)
     }
 }
 
-fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
+fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     if arguments.bridge {
         return Err(Failure::Usage("--bridge is for biss: hiperface uses a serial port".to_owned()));
     }
@@ -119,10 +119,10 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Servab
 
 impl ServableDevice for Bus {
     fn line_format(&self, now: Moment) -> Option<CharacterFormat> {
-        self.encoder(0).and_then(|encoder| encoder.active_settings_at(now)).and_then(LineSettings::format)
+        self.encoder(0).and_then(|encoder| encoder.active_settings_at(now)).and_then(LineSettings::character_format)
     }
 }
 
-fn item(text: &str) -> Result<Item> {
+fn parse_item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: crate::devices::hiperface::profile::ItemError| Failure::Usage(error.to_string()))
 }

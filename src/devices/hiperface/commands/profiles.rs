@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::HiperfaceCommands;
-use super::write::{commit, operations, plan_text};
+use super::write::{commit_plan, operations_json, plan_text};
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
@@ -22,7 +22,7 @@ use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let mut runner = Runner::open(common)?;
-    let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
+    let saved = read_saved_profile(&mut runner, SaveOptions { complete: save.complete })?;
     report_locked_fields(output, &saved, "saved without its bytes");
     let fields = saved.profile.fields.len();
     let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
@@ -40,7 +40,7 @@ impl ProfileCommands for HiperfaceCommands {
             allow_other_type: restore.allow_other_type,
             with_mounting: restore.with_mounting,
             recreate: restore.recreate,
-            copy: answers(restore)?,
+            copy: parse_decisions(restore)?,
         };
         let mut runner = Runner::open(common)?;
         let change = Change::Restore { profile: Box::new(profile), options };
@@ -62,12 +62,12 @@ impl ProfileCommands for HiperfaceCommands {
         let redo = prepared.redo().iter().map(ToString::to_string).collect();
         let missing = prepared.missing.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing, redo };
-        let plan = shown(&prepared);
-        write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
+        let plan = plan_report(&prepared);
+        write_restore(output, restore, &plan, &left, || commit_plan(&mut runner, output, prepared, &restore.consent))
     }
 
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, _profile: Option<&Body>) -> Result<Body> {
-        let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
+        let saved = read_saved_profile(&mut Runner::open(common)?, SaveOptions::default())?;
         report_locked_fields(output, &saved, "compared without its bytes");
         Ok(Body::new(saved.profile))
     }
@@ -85,7 +85,7 @@ impl ProfileCommands for HiperfaceCommands {
     }
 }
 
-fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>> {
+fn read_saved_profile(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>> {
     Ok(result_of!(runner.run(HiperfaceJob::Save(options))?, HiperfaceOutput::Saved(saved) => saved))
 }
 
@@ -98,11 +98,11 @@ fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
 }
 
 /// Returns the command-line decisions on data fields whose bytes have no known meaning.
-fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
+fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
         for text in given {
-            let Item::Field(FieldRange { field, start: 0, count: None }) = super::item(text)? else {
+            let Item::Field(FieldRange { field, start: 0, count: None }) = super::parse_item(text)? else {
                 return Err(Failure::Usage(format!("{text:?} is not a whole data field: use field:N")));
             };
             if answers.insert(field, copies).is_some_and(|before| before != copies) {
@@ -127,7 +127,7 @@ fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> 
         )]));
     }
     for own in fields {
-        let item = own.item();
+        let item = own.as_range();
         let becomes = match own.answer {
             Some(true) => "They are copied.".to_owned(),
             Some(false) => "They are not changed.".to_owned(),
@@ -138,7 +138,7 @@ fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> 
     Ok(())
 }
 
-fn shown(prepared: &Prepared) -> PlanReport {
-    let (operations, write_cycles) = (operations(&prepared.plan), prepared.plan.write_cycles());
+fn plan_report(prepared: &Prepared) -> PlanReport {
+    let (operations, write_cycles) = (operations_json(&prepared.plan), prepared.plan.write_cycles());
     PlanReport { operations, text: plan_text(prepared), write_cycles }
 }

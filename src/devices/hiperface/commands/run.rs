@@ -38,7 +38,7 @@ impl CliDevice for Hiperface {
         if let DeviceMessage::CodesUnheard(count) = remark {
             write_stderr(&format!("{}\n", words::unanswered_codes(*count).terminal_text()));
         }
-        for code in codes(remark) {
+        for code in codes_in_message(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };
             write_stderr(&format!("encoder {kind}: {code}\n"));
         }
@@ -50,10 +50,10 @@ impl CliDevice for Hiperface {
 }
 
 pub(super) fn reported_codes(runner: &Runner) -> Vec<StatusCode> {
-    runner.remarks.iter().flat_map(codes).copied().collect()
+    runner.remarks.iter().flat_map(codes_in_message).copied().collect()
 }
 
-fn codes(remark: &DeviceMessage) -> &[StatusCode] {
+fn codes_in_message(remark: &DeviceMessage) -> &[StatusCode] {
     match remark {
         DeviceMessage::Codes(codes) => codes,
         DeviceMessage::CodesUnheard(_) | DeviceMessage::Found(_) | DeviceMessage::Line(_) => &[],

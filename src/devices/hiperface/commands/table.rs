@@ -4,14 +4,14 @@ use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
 
 /// Table of positions, in degrees for a rotary encoder and in millimetres for a linear encoder.
-pub(super) struct Table {
+pub(super) struct PositionTable {
     linear: bool,
 }
 
-impl Table {
+impl PositionTable {
     /// Returns the table for an encoder. If the geometry is unknown, the table is that of a rotary encoder.
-    pub(super) fn of(geometry: Option<Geometry>) -> Self {
-        Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
+    pub(super) fn for_geometry(geometry: Option<Geometry>) -> Self {
+        PositionTable { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }
 
     pub(super) fn header(&self) -> &'static str {
@@ -38,15 +38,15 @@ impl Table {
             number(place.and_then(|place| place.steps())),
             angle.map_or_else(String::new, |angle| angle.to_string()),
             reading.valid,
-            words(&reading.codes),
+            describe_codes(&reading.codes),
         )
     }
 
     pub(super) fn row_without_position(&self, codes: &[StatusCode]) -> String {
-        format!(",,,,,false,{}\n", words(codes))
+        format!(",,,,,false,{}\n", describe_codes(codes))
     }
 }
 
-fn words(codes: &[StatusCode]) -> String {
+fn describe_codes(codes: &[StatusCode]) -> String {
     codes.iter().map(|code| format!("{:02X}", code.byte())).collect::<Vec<_>>().join(" ")
 }

@@ -19,7 +19,7 @@ use crate::devices::hiperface::state::explain as words;
 use crate::result_of;
 
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
-    let item = super::item(&write.item)?;
+    let item = super::parse_item(&write.item)?;
     let change = parse_change(item, &write.value)?;
     execute_change(common, output, change, &write.consent, &item.to_string())
 }
@@ -36,9 +36,9 @@ pub(super) fn execute_change(
     let mut runner = Runner::open(common)?;
     let prepared =
         result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
-    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan).text());
+    let (operations, changes) = (operations_json(&prepared.plan), change_lines(&prepared.plan).text());
     let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
-    let spent = commit(&mut runner, output, prepared, consent)?;
+    let spent = commit_plan(&mut runner, output, prepared, consent)?;
     if changes_code {
         output.print_message("An access code cannot be read back; the encoder acknowledged it.");
     }
@@ -68,7 +68,7 @@ fn parse_change(item: Item, value: &str) -> Result<Change> {
             Ok(Change::SetAddress(address))
         }
         Item::Settings => Ok(Change::Configure(settings(value)?)),
-        Item::Counter => match number(item, value)? {
+        Item::Counter => match parse_item_value(item, value)? {
             0 => Ok(Change::ClearCounter),
             _ => Err(Failure::Usage(
                 "the counter can only be set to 0, or incremented with \"do hiperface increment-counter\"".to_owned(),
@@ -92,19 +92,19 @@ pub(super) fn settings(value: &str) -> Result<LineSettings> {
 }
 
 fn parse_byte_in_range(item: Item, value: &str, range: std::ops::RangeInclusive<u8>) -> Result<u8> {
-    let number = number(item, value)?;
+    let number = parse_item_value(item, value)?;
     u8::try_from(number)
         .ok()
         .filter(|byte| range.contains(byte))
         .ok_or_else(|| out_of_range(item, value, (*range.start()).into(), (*range.end()).into()))
 }
 
-fn number(item: Item, value: &str) -> Result<i64> {
+fn parse_item_value(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
 /// Executes the plan, after asking for consent if required. An empty plan sends nothing.
-pub(super) fn commit(
+pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
@@ -137,12 +137,12 @@ fn change_lines(plan: &HiperfacePlan) -> Lines {
     let mut lines = Lines::default();
     for op in &plan.ops {
         let (old, new) = old_and_new_text(op);
-        lines.add_line(op.item().to_string(), format!("{old}  →  {new}"));
+        lines.add_line(op.plan_item().to_string(), format!("{old}  →  {new}"));
     }
     lines
 }
 
-pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
+pub(super) fn operations_json(plan: &HiperfacePlan) -> Vec<Json> {
     plan.ops
         .iter()
         .map(|op| {
@@ -159,7 +159,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
                     (Some(old), Some(new))
                 }
             };
-            json!({"item": op.item().to_string(), "old": old, "new": new})
+            json!({"item": op.plan_item().to_string(), "old": old, "new": new})
         })
         .collect()
 }
@@ -173,7 +173,7 @@ fn old_and_new_text(op: &Op) -> (String, String) {
         }
         Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
         op => {
-            let changes = words::op(op).changes.into_iter();
+            let changes = words::operation_texts(op).changes.into_iter();
             changes.map(|own| (own.old.terminal_text(), own.new.terminal_text())).next().unwrap_or_default()
         }
     }

@@ -2,22 +2,22 @@
 
 use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::EncoderWriter;
-use crate::devices::hiperface::procedures::{Identity, profile_of};
-use crate::devices::hiperface::profile::{Base, Op, Recorded, SingleValue, created_fields};
+use crate::devices::hiperface::procedures::{Identity, create_profile};
+use crate::devices::hiperface::profile::{Base, Op, RecordedValues, SingleValue, created_fields};
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
 
-pub(super) fn commit(
+pub(super) fn commit_plan(
     encoder: &mut Hiperface,
     context: &mut SessionContext,
     commit: &Commit,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-    let mut write = EncoderWriter::new(encoder.master(context), &commit.prepared.identity);
+    let mut write = EncoderWriter::new(encoder.create_master(context), &commit.prepared.identity);
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map_step(|op| JobStep::Operation(op.clone()))))
 }
 
@@ -52,7 +52,7 @@ impl PlannedWrite for Prepared {
 
     fn before_image(&self) -> String {
         let base = &self.plan.base;
-        let mut recorded = Recorded::default();
+        let mut recorded = RecordedValues::default();
         for scalar in &base.scalars {
             match scalar {
                 SingleValue::Position(position) => recorded.position = Some(*position),
@@ -60,7 +60,7 @@ impl PlannedWrite for Prepared {
                 SingleValue::Address(_) | SingleValue::Settings(_) => {}
             }
         }
-        let mut profile = profile_of(&self.identity, base.fields.clone(), recorded);
+        let mut profile = create_profile(&self.identity, base.fields.clone(), recorded);
         profile.created = created_fields(&self.plan);
         backup_document(Body::new(profile)).emit()
     }

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
-use crate::devices::hiperface::procedures::find::{Attempt, EncoderSearchResult, FindOptions, FoundEncoder};
-use crate::devices::hiperface::procedures::write::{Interrupted, WrittenChanges};
+use crate::devices::hiperface::procedures::find::{EncoderSearchResult, FindOptions, FoundEncoder, SearchStep};
+use crate::devices::hiperface::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::hiperface::procedures::{
     Error, Identity, LineQuality, PositionReading, RestPosition, SaveOptions, Survey,
 };
@@ -218,14 +218,14 @@ pub enum DeviceMessage {
 pub enum JobStep {
     Field(u64),
     Operation(Op),
-    Attempt(Attempt),
+    Attempt(SearchStep),
 }
 
 impl fmt::Display for JobStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             JobStep::Field(field) => write!(f, "field:{field}"),
-            JobStep::Operation(op) => op.item().fmt(f),
+            JobStep::Operation(op) => op.plan_item().fmt(f),
             JobStep::Attempt(attempt) => attempt.fmt(f),
         }
     }
@@ -249,7 +249,7 @@ pub enum HiperfaceOutput {
     Committed(Committed),
 }
 
-pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+pub type JobError = crate::worker::JobError<Error, PlanError, InterruptedWrite, ChangeKind>;
 
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {

@@ -15,15 +15,16 @@ pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, HiperfaceJob, HiperfaceOutput, JobError, JobStep, Prepared,
     SavedProfile, TypeMismatch, Value, WEAR_LIMIT,
 };
-pub use open::{check, may_have_other_master, open};
+pub use open::{check_link, may_have_other_master, open};
 pub use types::{TypeTableFileError, encoder_types};
 
 use status::RecentStatusCodes;
 
 use crate::devices::hiperface::procedures::find::SearchProgress;
 use crate::devices::hiperface::procedures::{
-    self, Codes, Error, Identity, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
-    read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched_value,
+    self, Codes, Error, Identity, Master, PolledSample, Station, WatchedQuantity, check, find, identify, read_analogue,
+    read_counter, read_field, read_field_status, read_position, read_range, read_sample, read_status,
+    read_watched_value,
 };
 use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
 use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
@@ -51,7 +52,7 @@ impl fmt::Debug for Hiperface {
 }
 
 impl Hiperface {
-    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+    fn create_master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
@@ -68,7 +69,7 @@ impl Hiperface {
         }
         if self.identified.is_none() {
             let types = self.types.clone();
-            if let Ok(identity) = identify(&mut self.master(context), &types) {
+            if let Ok(identity) = identify(&mut self.create_master(context), &types) {
                 self.set_identity(context, &identity);
             }
         }
@@ -116,8 +117,8 @@ impl Device for Hiperface {
     type Output = HiperfaceOutput;
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
-    type Sample = Sample;
-    type Watch = Watch;
+    type Sample = PolledSample;
+    type Watch = WatchedQuantity;
     type JobStep = JobStep;
 
     fn run(
@@ -126,16 +127,16 @@ impl Device for Hiperface {
         job: HiperfaceJob,
         tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
-        let result = self.carry_out(context, job, tell);
+        let result = self.execute_job(context, job, tell);
         let codes = self.station.take_unlogged_codes();
         self.store_codes(context, &codes);
         result
     }
 
-    fn take_sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+    fn take_sample(&mut self, context: &mut SessionContext) -> Result<PolledSample, JobError> {
         let geometry = self.geometry;
         let met_before = self.station.codes_met.len();
-        let sample = read_sample(&mut self.master(context), geometry);
+        let sample = read_sample(&mut self.create_master(context), geometry);
         self.record_sampled_codes(context);
         let sample = sample?;
         // The result already contains these codes.
@@ -143,15 +144,19 @@ impl Device for Hiperface {
         Ok(sample)
     }
 
-    fn read_watched(&mut self, context: &mut SessionContext, what: &Watch) -> Result<WatchReply<Sample>, JobError> {
+    fn read_watched(
+        &mut self,
+        context: &mut SessionContext,
+        what: &WatchedQuantity,
+    ) -> Result<WatchReply<PolledSample>, JobError> {
         let met_before = self.station.codes_met.len();
-        let reading = read_watched_value(&mut self.master(context), *what);
+        let reading = read_watched_value(&mut self.create_master(context), *what);
         self.record_sampled_codes(context);
         let reading = reading?;
         // The result already contains these codes.
         self.station.codes_met.truncate(met_before);
         let refused = reading.is_refused();
-        let sample = Sample::Watched(reading);
+        let sample = PolledSample::Watched(reading);
         Ok(if refused { WatchReply::Refused(sample) } else { WatchReply::Sample(sample) })
     }
 
@@ -184,7 +189,7 @@ impl Hiperface {
         Some(self.station.take_missed_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
     }
 
-    fn carry_out(
+    fn execute_job(
         &mut self,
         context: &mut SessionContext,
         job: HiperfaceJob,
@@ -194,52 +199,54 @@ impl Hiperface {
         let steps = &mut |progress| tell(JobReport::Progress(progress));
         Ok(match job {
             HiperfaceJob::Prepare(change) => {
-                let prepared = prepare::prepare(self, context, change, steps)?;
+                let prepared = prepare::prepare_plan(self, context, change, steps)?;
                 self.identified = Some(device_key(&prepared.identity, context.is_virtual));
                 HiperfaceOutput::Prepared(Box::new(prepared))
             }
-            HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, context, &commit, steps)?),
+            HiperfaceJob::Commit(commit) => {
+                HiperfaceOutput::Committed(commit::commit_plan(self, context, &commit, steps)?)
+            }
             HiperfaceJob::Survey => {
                 let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
-                let survey = procedures::survey(&mut self.master(context), &types, progress)?;
+                let survey = procedures::read_all_values(&mut self.create_master(context), &types, progress)?;
                 self.set_identity(context, &survey.identity);
                 HiperfaceOutput::Surveyed(Box::new(survey))
             }
             HiperfaceJob::UseCode { number, code } => {
-                self.station.codes.set(number, code);
+                self.station.codes.set_code(number, code);
                 HiperfaceOutput::CodeNoted
             }
             HiperfaceJob::Identify => {
-                let identity = identify(&mut self.master(context), &types)?;
+                let identity = identify(&mut self.create_master(context), &types)?;
                 self.set_identity(context, &identity);
                 HiperfaceOutput::Identity(identity)
             }
-            HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(context))?),
+            HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.create_master(context))?),
             HiperfaceJob::Position(geometry) => {
-                HiperfaceOutput::Position(read_position(&mut self.master(context), geometry)?)
+                HiperfaceOutput::Position(read_position(&mut self.create_master(context), geometry)?)
             }
             HiperfaceJob::Rest => {
                 let geometry = self.geometry;
-                HiperfaceOutput::Rest(procedures::read_at_rest(&mut self.master(context), geometry)?)
+                HiperfaceOutput::Rest(procedures::read_at_rest(&mut self.create_master(context), geometry)?)
             }
-            HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(context), item)?),
+            HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.create_master(context), item)?),
             HiperfaceJob::Save(options) => {
                 let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
-                let profile = procedures::save(&mut self.master(context), &types, options, progress)?;
+                let profile = procedures::save(&mut self.create_master(context), &types, options, progress)?;
                 let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
                 let locked = locked.map(|field| (field.number, field.status.code())).collect();
                 HiperfaceOutput::Saved(Box::new(SavedProfile { profile, locked }))
             }
             HiperfaceJob::Check { restart } => {
-                HiperfaceOutput::Check(check::check(&mut self.master(context), &types, restart)?)
+                HiperfaceOutput::Check(check::check_encoder(&mut self.create_master(context), &types, restart)?)
             }
-            HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(context))?),
+            HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.create_master(context))?),
             HiperfaceJob::Find(options) => {
                 let watch = &mut |news: SearchProgress<'_>| tell(search_report(news));
-                HiperfaceOutput::Found(find::find(&mut self.master(context), &options, watch)?)
+                HiperfaceOutput::Found(find::find(&mut self.create_master(context), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
-                procedures::set_temporary_line_settings(&mut self.master(context), settings)?;
+                procedures::set_temporary_line_settings(&mut self.create_master(context), settings)?;
                 HiperfaceOutput::Configured
             }
         })

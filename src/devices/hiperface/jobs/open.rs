@@ -16,7 +16,7 @@ use crate::worker::{OpenError, Session};
 ///
 /// # Errors
 /// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
-pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 

@@ -17,14 +17,14 @@ use crate::devices::hiperface::protocol::{
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Progress, SessionContext};
 
-pub(super) fn prepare(
+pub(super) fn prepare_plan(
     encoder: &mut Hiperface,
     context: &mut SessionContext,
     change: Change,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
-    let mut master = encoder.master(context);
+    let mut master = encoder.create_master(context);
     let identity = identify(&mut master, &types)?;
     let mut prepared = Prepared {
         kind: change.kind(),
@@ -47,7 +47,7 @@ pub(super) fn prepare(
         }
         Change::ShiftPosition { steps } => {
             let now = ensure_standstill(&mut master, prepared.identity.geometry)?;
-            let range = prepared.identity.geometry.and_then(Geometry::range).unwrap_or(1 << 32);
+            let range = prepared.identity.geometry.and_then(Geometry::position_count).unwrap_or(1 << 32);
             let to = (i64::from(now) + steps).rem_euclid(i64::try_from(range).unwrap_or(i64::MAX));
             let to = u32::try_from(to).unwrap_or(now);
             let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
@@ -154,7 +154,7 @@ fn set_position(
     if synchronise && !prepared.identity.kit.unwrap_or(kit) {
         return Err(Error::NotAKit { encoder: prepared.identity.name.clone() }.into());
     }
-    let range = prepared.identity.geometry.and_then(Geometry::range);
+    let range = prepared.identity.geometry.and_then(Geometry::position_count);
     if let Some(range) = range.filter(|range| u64::from(wanted) >= *range) {
         return Err(Error::PositionRange { wanted: wanted.into(), last: range - 1 }.into());
     }

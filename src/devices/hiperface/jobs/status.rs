@@ -10,7 +10,7 @@ use crate::store::{DeviceKey, Logbook, Store};
 use crate::units::Moment;
 
 /// Time within which a code that live values report repeatedly is stored only once.
-const AGAIN: Duration = Duration::from_secs(60);
+const REPEAT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// Status codes recorded recently while polling the position.
 #[derive(Debug, Default)]
@@ -19,7 +19,7 @@ pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 impl RecentStatusCodes {
     /// Returns whether any of these codes was not recorded in the last minute. All of them then count as recorded.
     pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
-        self.0.retain(|(_, kept)| now.duration_since(*kept) < AGAIN);
+        self.0.retain(|(_, kept)| now.duration_since(*kept) < REPEAT_INTERVAL);
         let mut is_new = false;
         for code in codes {
             if !self.0.iter().any(|(own, _)| own == code) {

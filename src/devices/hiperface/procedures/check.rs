@@ -68,7 +68,11 @@ pub enum CheckFinding {
 ///
 /// # Errors
 /// Errors of the exchange, or cancellation.
-pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Result<Vec<HiperfaceStepResult>, Error> {
+pub fn check_encoder(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    restart: bool,
+) -> Result<Vec<HiperfaceStepResult>, Error> {
     let mut lines = Vec::new();
     let codes = if restart {
         let codes = reset(master)?;
@@ -77,7 +81,11 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
     } else {
         read_status(master)?
     };
-    lines.push(HiperfaceStepResult { step: CheckStep::Status, verdict: verdict(&codes), findings: found(&codes) });
+    lines.push(HiperfaceStepResult {
+        step: CheckStep::Status,
+        verdict: codes_verdict(&codes),
+        findings: code_findings(&codes),
+    });
     let identity = identify(master, types)?;
     let known = if identity.geometry.is_some() { Verdict::Good } else { Verdict::Attention };
     let findings = vec![
@@ -101,12 +109,12 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
                 Some(position) => CheckFinding::Position(position),
                 None => CheckFinding::RawPosition(reading.raw),
             }];
-            findings.extend(found(&reading.codes));
-            let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
+            findings.extend(code_findings(&reading.codes));
+            let verdict = if reading.valid { codes_verdict(&reading.codes) } else { Verdict::Bad };
             Ok(HiperfaceStepResult { step, verdict, findings })
         }
         Err(Error::Rejected { codes, .. }) => {
-            Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: found(&codes) })
+            Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: code_findings(&codes) })
         }
         Err(why) => {
             Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: vec![CheckFinding::Unreadable(why)] })
@@ -117,7 +125,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
 /// Compares the analogue channels with their limits on the extended label. A channel that the encoder refuses is
 /// omitted.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
-    let Some(label) = identity.extended() else { return Ok(None) };
+    let Some(label) = identity.extended_label() else { return Ok(None) };
     let mut findings = Vec::new();
     let mut worst = Verdict::Good;
     for (channel, limit) in label.limits() {
@@ -170,7 +178,7 @@ fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     HiperfaceStepResult { step: CheckStep::Line, verdict, findings: vec![CheckFinding::Line(quality)] }
 }
 
-fn verdict(codes: &[StatusCode]) -> Verdict {
+fn codes_verdict(codes: &[StatusCode]) -> Verdict {
     if codes.is_empty() {
         Verdict::Good
     } else if codes.iter().all(|code| code.is_warning()) {
@@ -180,6 +188,6 @@ fn verdict(codes: &[StatusCode]) -> Verdict {
     }
 }
 
-fn found(codes: &[StatusCode]) -> Vec<CheckFinding> {
+fn code_findings(codes: &[StatusCode]) -> Vec<CheckFinding> {
     codes.iter().copied().map(CheckFinding::Code).collect()
 }

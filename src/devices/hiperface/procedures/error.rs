@@ -19,11 +19,11 @@ pub enum Error {
         echo_heard: bool,
     },
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
-    Damaged { command: Command, tries: u32, cause: Damage },
+    Damaged { command: Command, tries: u32, cause: ReplyDamage },
     /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
-    #[error("{} was refused: {}", command.row().name, list(codes))]
+    #[error("{} was refused: {}", command.row().name, code_list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
     /// The encoder can no longer be reached, so it is unknown whether a change was carried out.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
@@ -90,7 +90,7 @@ pub enum ReadBackValue {
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Damage {
+pub enum ReplyDamage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
     /// The reply to a request with an access code is unreadable. Its bytes are not shown, because they may be the echo
@@ -141,6 +141,6 @@ impl Error {
     }
 }
 
-fn list(codes: &[StatusCode]) -> String {
+fn code_list(codes: &[StatusCode]) -> String {
     codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

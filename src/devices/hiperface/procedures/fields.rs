@@ -1,6 +1,6 @@
 //! Reading of data fields (4Ch, 4Ah). If the line damages a long transfer, it is split in half.
 
-use super::error::Damage;
+use super::error::ReplyDamage;
 use super::identify::read_type_label;
 use super::master::ExchangeFailure;
 use super::{Error, Master};
@@ -10,7 +10,7 @@ use crate::devices::hiperface::protocol::{
 };
 
 /// Minimum number of bytes per transfer. A shorter frame would consist mostly of its header.
-const LEAST_TRANSFER: usize = 4;
+const MIN_TRANSFER: usize = 4;
 
 /// Reads the status byte of a field.
 ///
@@ -125,11 +125,11 @@ pub fn read_range(
             break;
         }
         let chunk = first.as_ref().map_or(master.station().chunk.min(count - bytes.len()), Vec::len);
-        let request = transfer(field, address + bytes.len(), chunk, code)?;
+        let request = transfer_request(field, address + bytes.len(), chunk, code)?;
         let trouble = match (read_once(master, &request)?, first.take()) {
             (Ok(again), Some(before)) if again != before => {
                 first = Some(again);
-                ExchangeFailure::Damage(Damage::Inconsistent)
+                ExchangeFailure::Damage(ReplyDamage::Inconsistent)
             }
             (Ok(once), None) if master.station().needs_double_read() => {
                 first = Some(once);
@@ -156,7 +156,7 @@ pub fn read_range(
         in_a_row = 0;
         master.prepare_retry(&request, failures, trouble)?;
         let station = master.station();
-        station.chunk = (station.chunk.min(chunk) / 2).max(LEAST_TRANSFER);
+        station.chunk = (station.chunk.min(chunk) / 2).max(MIN_TRANSFER);
         if let Some(first) = &mut first {
             first.truncate(station.chunk);
         }
@@ -172,7 +172,7 @@ fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCod
     Ok(pair.into_iter().skip(address - start).take(1).collect())
 }
 
-fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result<Request, Error> {
+fn transfer_request(field: u8, address: usize, count: usize, code: AccessCode) -> Result<Request, Error> {
     match (u8::try_from(address), u8::try_from(count)) {
         (Ok(address), Ok(count)) => Ok(Request::ReadData { field, address, count, code }),
         _ => Err(Error::OutOfField { field, address, count, size: MAX_TRANSFER }),
@@ -180,11 +180,11 @@ fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result
 }
 
 fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, ExchangeFailure>, Error> {
-    let answered = match master.attempt(request)? {
+    let answered = match master.exchange_once(request)? {
         Ok(answered) => answered,
         Err(trouble) => return Ok(Err(trouble)),
     };
-    match master.settle(request, answered)?.reply {
+    match master.resolve_status(request, answered)?.reply {
         Reply::Data(bytes) => Ok(Ok(bytes)),
         other => Err(Error::unexpected_reply(Command::ReadData, &other)),
     }

@@ -32,18 +32,18 @@ pub struct FoundEncoder {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Attempt {
+pub enum SearchStep {
     Listening,
     DefaultWindow,
     Probing { address: u8, format: CharacterFormat },
 }
 
-impl fmt::Display for Attempt {
+impl fmt::Display for SearchStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Attempt::Listening => f.write_str("listening to the bus"),
-            Attempt::DefaultWindow => f.write_str("waiting for the encoder to be switched on"),
-            Attempt::Probing { address, format } => write!(f, "{address:02X}h at {format}"),
+            SearchStep::Listening => f.write_str("listening to the bus"),
+            SearchStep::DefaultWindow => f.write_str("waiting for the encoder to be switched on"),
+            SearchStep::Probing { address, format } => write!(f, "{address:02X}h at {format}"),
         }
     }
 }
@@ -53,7 +53,7 @@ pub enum SearchProgress<'a> {
     Trying {
         done: u64,
         total: u64,
-        attempt: &'a Attempt,
+        attempt: &'a SearchStep,
     },
     /// An encoder has replied. Each encoder is reported once.
     Found(&'a FoundEncoder),
@@ -108,18 +108,18 @@ impl Search<'_> {
     /// Runs the search, or returns the number of bytes received from another device if there were any.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
         // A device server has a fixed format, so the encoder would be found once for each format tried.
-        let formats = if master.can_set_format() { formats() } else { vec![master.station().format] };
+        let formats = if master.can_set_format() { formats_by_likelihood() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
-        self.report(0, total, &Attempt::Listening);
-        let heard = master.drain(LISTEN)?;
+        self.report_progress(0, total, &SearchStep::Listening);
+        let heard = master.read_pending(LISTEN)?;
         if !heard.is_empty() {
             return Ok(Some(heard.len()));
         }
         if let Some(patience) = options.power_cycle {
-            self.report(0, total, &Attempt::DefaultWindow);
+            self.report_progress(0, total, &SearchStep::DefaultWindow);
             let hit = search_in_default_window(master, patience, options.one_encoder)?;
-            self.add(hit);
+            self.add_found(hit);
         }
         let mut done = 1;
         for format in formats {
@@ -127,23 +127,23 @@ impl Search<'_> {
             let found_before = self.found.len();
             let broadcast = options.one_encoder.then_some(BROADCAST);
             for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
-                self.report(done, total, &Attempt::Probing { address, format });
+                self.report_progress(done, total, &SearchStep::Probing { address, format });
                 done += 1;
                 if address == BROADCAST && self.found.len() > found_before {
                     continue;
                 }
-                let hit = probe(master, address, format)?;
-                self.add(hit);
+                let hit = probe_address(master, address, format)?;
+                self.add_found(hit);
             }
         }
         Ok(None)
     }
 
-    fn report(&mut self, done: u64, total: u64, attempt: &Attempt) {
+    fn report_progress(&mut self, done: u64, total: u64, attempt: &SearchStep) {
         (self.watch)(SearchProgress::Trying { done, total, attempt });
     }
 
-    fn add(&mut self, hit: Option<FoundEncoder>) {
+    fn add_found(&mut self, hit: Option<FoundEncoder>) {
         if let Some(hit) = hit.filter(|hit| !self.found.contains(hit)) {
             (self.watch)(SearchProgress::Found(&hit));
             self.found.push(hit);
@@ -152,7 +152,7 @@ impl Search<'_> {
 }
 
 /// Returns the formats, most likely first: 9600 with each parity, then the other baud rates.
-fn formats() -> Vec<CharacterFormat> {
+fn formats_by_likelihood() -> Vec<CharacterFormat> {
     let rest = BAUDS.into_iter().rev().filter(|baud| *baud != Baud::B9600);
     std::iter::once(Baud::B9600)
         .chain(rest)
@@ -170,7 +170,7 @@ fn search_in_default_window(
     let address = if broadcast { BROADCAST } else { master.station().address };
     let end = master.now() + patience;
     while master.now() < end {
-        if let Some(found) = probe(master, address, CharacterFormat::FACTORY)? {
+        if let Some(found) = probe_address(master, address, CharacterFormat::FACTORY)? {
             return Ok(Some(found));
         }
         master.wait(Timing::INITIALISATION)?;
@@ -179,10 +179,10 @@ fn search_in_default_window(
 }
 
 /// Sends one request. It is repeated only once after a damaged reply, which proves that a device is present.
-fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
+fn probe_address(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {
-        match master.attempt(&Request::ReadTypeLabel)? {
+        match master.exchange_once(&Request::ReadTypeLabel)? {
             Ok(answered) => {
                 let sender = answered.sender;
                 return Ok(match answered.answer {

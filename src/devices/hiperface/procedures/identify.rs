@@ -26,7 +26,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    pub fn extended(&self) -> Option<ExtendedLabel> {
+    pub fn extended_label(&self) -> Option<ExtendedLabel> {
         self.extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok())
     }
 }
@@ -67,12 +67,12 @@ pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Id
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
-    let memory = match have(master.request_confirmed(&Request::FreeMemory))? {
+    let memory = match optional_value(master.request_confirmed(&Request::FreeMemory))? {
         Some(Reply::FreeMemory(memory)) => Some(memory),
         _ => None,
     };
     let extended_label = match label.encoder_type {
-        TypeLabel::EXTENDED => have(read_extended_label(master))?,
+        TypeLabel::EXTENDED => optional_value(read_extended_label(master))?,
         _ => None,
     };
     let extended = extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok());
@@ -102,7 +102,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
 /// # Errors
 /// Errors of the exchange, or a refusal.
 pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
-    Ok(match have(master.request_confirmed(&Request::ReadSerial))? {
+    Ok(match optional_value(master.request_confirmed(&Request::ReadSerial))? {
         Some(Reply::Serial(serial)) => serial,
         _ => {
             SerialLabel { serial_number: String::new(), firmware_version: String::new(), firmware_date: String::new() }
@@ -142,7 +142,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 }
 
 /// Converts the refusal of an unsupported command to `None`. Any other error remains an error.
-fn have<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
+fn optional_value<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),
         Err(error)

@@ -9,7 +9,7 @@ mod exchange;
 
 use std::time::Duration;
 
-use super::error::Damage;
+use super::error::ReplyDamage;
 use super::{Error, Station};
 use crate::devices::hiperface::protocol::{Answer, Command, Reply, Request};
 use crate::link::Ctx;
@@ -64,7 +64,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Errors of the connection, or [`Error::Cancelled`].
-    pub fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
+    pub fn read_pending(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
         Ok(self.line.receive_pending(duration)?)
     }
 
@@ -87,7 +87,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Every attempt failed, the encoder refused, or the user cancelled.
-    pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
+    pub(super) fn request(&mut self, request: &Request) -> Result<Reply, Error> {
         self.request_with_time(request).map(|timed| timed.reply)
     }
 
@@ -99,33 +99,33 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sends a request like [`ask`](Self::ask). If the line has damaged any data before, the same reply must be
+    /// Sends a request like [`request`](Self::request). If the line has damaged any data before, the same reply must be
     /// received twice.
     ///
     /// # Errors
-    /// See [`ask`](Self::ask).
+    /// See [`request`](Self::request).
     pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
-        let mut reply = self.ask(request)?;
+        let mut reply = self.request(request)?;
         for _ in 0..MAX_ATTEMPTS {
             if !self.station.needs_double_read() {
                 return Ok(reply);
             }
-            let again = self.ask(request)?;
+            let again = self.request(request)?;
             if again == reply {
                 return Ok(reply);
             }
             self.station.line.quality.damaged += 1;
             reply = again;
         }
-        Err(Error::Damaged { command: request.command(), tries: MAX_ATTEMPTS, cause: Damage::Inconsistent })
+        Err(Error::Damaged { command: request.command(), tries: MAX_ATTEMPTS, cause: ReplyDamage::Inconsistent })
     }
 
     pub(super) fn request_with_time(&mut self, request: &Request) -> Result<TimedReply, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
-            match self.attempt(request)? {
-                Ok(answer) => return self.settle(request, answer),
+            match self.exchange_once(request)? {
+                Ok(answer) => return self.resolve_status(request, answer),
                 Err(trouble) => self.prepare_retry(request, tries, trouble)?,
             }
         }
@@ -145,7 +145,7 @@ impl<'a> Master<'a> {
         let mut tries = 0;
         loop {
             tries += 1;
-            let trouble = match self.attempt(request)? {
+            let trouble = match self.exchange_once(request)? {
                 Ok(answer) => return self.acknowledge(request, answer).map(|()| tries),
                 Err(trouble) => trouble,
             };
@@ -165,7 +165,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Errors of the connection, or [`Error::Cancelled`].
     pub(super) fn send_broadcast(&mut self, request: &Request) -> Result<(), Error> {
-        self.begin()?;
+        self.wait_for_line()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
         self.send(&frame, sent_at)?;
@@ -189,7 +189,7 @@ impl<'a> Master<'a> {
         let quality = &mut self.station.line.quality;
         match &trouble {
             ExchangeFailure::Silence { .. } => quality.silent += 1,
-            ExchangeFailure::Damage(Damage::Late) => quality.late += 1,
+            ExchangeFailure::Damage(ReplyDamage::Late) => quality.late += 1,
             ExchangeFailure::Damage(_) => quality.damaged += 1,
         }
         let longest = self.station.timing().worst_case(request) + self.station.line.margin;
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
     }
 
     /// Reads the status codes that a reply announces, and returns a refusal as an error.
-    pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<TimedReply, Error> {
+    pub(super) fn resolve_status(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<TimedReply, Error> {
         self.station.line.clear_error();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
         if *pending && request.command() != Command::ReadStatus {
@@ -222,7 +222,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Completes a request that changes the encoder. Unlike [`settle`](Self::settle), it leaves announced status codes
+    /// Completes a request that changes the encoder. Unlike [`resolve_status`](Self::resolve_status), it leaves announced status codes
     /// to the next exchange, which announces them again. A cancellation can therefore not occur between a change and
     /// its counting. After 55h and 67h it is also necessary, because the encoder no longer replies with the old
     /// settings.
@@ -231,6 +231,6 @@ impl<'a> Master<'a> {
             self.station.line.clear_error();
             return Ok(());
         }
-        self.run_uncancellable(|master| master.settle(request, answered)).map(drop)
+        self.run_uncancellable(|master| master.resolve_status(request, answered)).map(drop)
     }
 }

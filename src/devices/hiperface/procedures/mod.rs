@@ -18,20 +18,20 @@ mod survey;
 pub mod write;
 
 pub use crate::link::line::{Echo, LineQuality};
-pub use error::{Damage, Error, ReadBackValue};
+pub use error::{Error, ReadBackValue, ReplyDamage};
 pub use fields::{UnreadableField, read_all_fields, read_field, read_field_status, read_range, try_read_field};
 pub use identify::{
     Identity, identify, read_address, read_extended_label, read_settings, read_status, recorded_identity,
 };
 pub use master::Master;
 pub use position::{
-    PositionReading, Sample, Watch, WatchedReading, ensure_standstill, read_analogue, read_analogue_limit,
-    read_counter, read_position, read_sample, read_watched_value,
+    PolledSample, PositionReading, WatchedQuantity, WatchedReading, ensure_standstill, read_analogue,
+    read_analogue_limit, read_counter, read_position, read_sample, read_watched_value,
 };
 pub use reset::{reset, set_temporary_line_settings};
 pub use rest_reading::{RestPosition, Signals, read_at_rest};
-pub use save::{SaveOptions, profile_of, save};
-pub use station::{Codes, InitialAccessCodes, LinkParameters, MOST_PERIODS, Station};
+pub use save::{SaveOptions, create_profile, save};
+pub use station::{Codes, InitialAccessCodes, LinkParameters, MAX_PERIODS, Station};
 
-use survey::{Reading, read_survey};
-pub use survey::{Survey, survey};
+use survey::{ReadPolicy, read_survey};
+pub use survey::{Survey, read_all_values};

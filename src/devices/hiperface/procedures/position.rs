@@ -39,7 +39,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Sample {
+pub enum PolledSample {
     Position(PositionReading),
     /// The encoder is present but currently has no position to report.
     NoPosition {
@@ -52,7 +52,7 @@ pub enum Sample {
 
 /// Value that can be polled in addition to the position. All other values of an encoder change only when written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Watch {
+pub enum WatchedQuantity {
     /// Analogue channel (44h). 48h is the temperature in °C. 00h and 01h are usually the sine and cosine signals in
     /// counts of 10 bits for 5 V. The data sheet defines all other channels.
     Analogue(u8),
@@ -60,9 +60,9 @@ pub enum Watch {
     Counter,
 }
 
-impl Watch {
+impl WatchedQuantity {
     /// Temperature in °C. Not every encoder has this channel.
-    pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
+    pub const TEMPERATURE: WatchedQuantity = WatchedQuantity::Analogue(0x48);
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub struct WatchedReading {
     /// Time at which the encoder sampled an analogue value. It is the falling edge of the reply's first start bit. For
     /// a counter or a refusal, it is the time at which the reply was parsed.
     pub at: Moment,
-    pub watch: Watch,
+    pub watch: WatchedQuantity,
     pub value: Result<i64, Error>,
     pub codes: Vec<StatusCode>,
 }
@@ -91,11 +91,11 @@ impl WatchedReading {
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn read_watched_value(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
+pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Result<WatchedReading, Error> {
     let met_before = master.station().codes_met.len();
     let answer = match what {
-        Watch::Analogue(channel) => request_analogue(master, channel).map(|(at, value)| (at, value.into())),
-        Watch::Counter => read_counter(master).map(|value| (master.now(), value.into())),
+        WatchedQuantity::Analogue(channel) => request_analogue(master, channel).map(|(at, value)| (at, value.into())),
+        WatchedQuantity::Counter => read_counter(master).map(|value| (master.now(), value.into())),
     };
     let (at, value) = match answer {
         Ok((at, value)) => (at, Ok(value)),
@@ -110,10 +110,10 @@ pub fn read_watched_value(master: &mut Master<'_>, what: Watch) -> Result<Watche
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal for another reason.
-pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Sample, Error> {
+pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PolledSample, Error> {
     let met_before = master.station().codes_met.len();
     match read_position(master, geometry) {
-        Ok(reading) => Ok(Sample::Position(reading)),
+        Ok(reading) => Ok(PolledSample::Position(reading)),
         Err(error) if error.is_without_position() => {
             let at = master.now();
             let mut codes = match error {
@@ -123,7 +123,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
             let met = master.station().codes_met.get(met_before..).unwrap_or_default();
             let more: Vec<StatusCode> = met.iter().copied().filter(|code| !codes.contains(code)).collect();
             codes.extend(more);
-            Ok(Sample::NoPosition { at, codes })
+            Ok(PolledSample::NoPosition { at, codes })
         }
         Err(error) => Err(error),
     }
@@ -189,7 +189,7 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
         readings.push(last);
     }
     let range = position_range(geometry);
-    if readings.iter().all(|reading| distance(first, *reading, range) <= 1) {
+    if readings.iter().all(|reading| shortest_distance(first, *reading, range) <= 1) {
         Ok(last)
     } else {
         Err(Error::Moving { readings })
@@ -198,11 +198,11 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
 
 /// Returns the number of distinct positions. If the geometry is unknown, this is the number of all 32-bit words.
 pub(super) fn position_range(geometry: Option<Geometry>) -> u64 {
-    geometry.and_then(Geometry::range).unwrap_or(1 << 32)
+    geometry.and_then(Geometry::position_count).unwrap_or(1 << 32)
 }
 
 /// Returns the number of steps between two positions in the shorter direction. A shaft at rest may jitter across zero.
-pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
+pub(super) fn shortest_distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));
     straight.min(range.saturating_sub(straight))
 }
@@ -213,8 +213,8 @@ mod tests {
 
     #[test]
     fn distances_take_the_shorter_direction() {
-        assert_eq!(distance(0, 4095, 4096), 1);
-        assert_eq!(distance(5, 3, 4096), 2);
-        assert_eq!(distance(0, u32::MAX, 1 << 32), 1);
+        assert_eq!(shortest_distance(0, 4095, 4096), 1);
+        assert_eq!(shortest_distance(5, 3, 4096), 2);
+        assert_eq!(shortest_distance(0, u32::MAX, 1 << 32), 1);
     }
 }

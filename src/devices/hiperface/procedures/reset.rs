@@ -12,7 +12,7 @@ use crate::units::CharacterFormat;
 /// encoder listens with factory settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
 /// Reserve added to the manual's times for the stored settings, because clocks differ.
-const RESERVE: Duration = Duration::from_millis(100);
+const TIME_RESERVE: Duration = Duration::from_millis(100);
 
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue. The
 /// initialisation may have added up to four codes to the queue.
@@ -25,10 +25,10 @@ const RESERVE: Duration = Duration::from_millis(100);
 /// Errors of the exchange, or no reply at the stored settings.
 pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let stored = read_type_label(master)?.settings;
-    let format = stored.format().ok_or(Error::ReservedFormat { settings: stored })?;
+    let format = stored.character_format().ok_or(Error::ReservedFormat { settings: stored })?;
     master.send_broadcast(&Request::Reset)?;
     let factory = format == CharacterFormat::FACTORY && stored.has_long_timeout();
-    let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + RESERVE };
+    let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + TIME_RESERVE };
     // The encoder restarts even if the user cancels now. The session must then know its settings.
     master.run_uncancellable(|master| {
         master.wait(wait)?;
@@ -44,10 +44,10 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 /// # Errors
 /// A refusal, or no reply at the new settings. Both sides then have the old settings, if the encoder still replies.
 pub fn set_temporary_line_settings(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
-    let format = settings.format().ok_or(Error::ReservedFormat { settings })?;
+    let format = settings.character_format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);
     let request = Request::ConfigureLineTemporarily { settings };
-    let outcome = match master.attempt(&request)? {
+    let outcome = match master.exchange_once(&request)? {
         Ok(answered) => master.acknowledge(&request, answered),
         // The reply was lost. The next request shows whether the encoder has the new settings.
         Err(_) => Ok(()),

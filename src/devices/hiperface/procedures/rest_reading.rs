@@ -48,7 +48,7 @@ pub fn read_at_rest(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resu
     let before = ensure_standstill(master, geometry)?;
     let signals = read_signals(master)?;
     let after = read_position(master, geometry)?;
-    if super::position::distance(before, after.raw, super::position::position_range(geometry)) > 1 {
+    if super::position::shortest_distance(before, after.raw, super::position::position_range(geometry)) > 1 {
         return Err(Error::Moving { readings: vec![before, after.raw] });
     }
     Ok(RestPosition { raw: after.raw, valid: after.valid, signals })

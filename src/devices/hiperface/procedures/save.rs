@@ -1,7 +1,7 @@
 //! Reading the identity of an encoder and all values that can be restored.
 
-use super::{Error, Identity, Master, Reading, Sample, Survey, read_survey};
-use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
+use super::{Error, Identity, Master, PolledSample, ReadPolicy, Survey, read_survey};
+use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, RecordedValues};
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::UnknownValues;
 
@@ -31,20 +31,20 @@ fn save_once(
     options: SaveOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<HiperfaceProfile, Error> {
-    let Survey { identity, fields, counter, position, .. } = read_survey(master, types, progress, Reading::Whole)?;
+    let Survey { identity, fields, counter, position, .. } = read_survey(master, types, progress, ReadPolicy::Whole)?;
     if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
         && options.complete
     {
         return Err(Error::CodeUnknown { field: locked.number, number: locked.status.code() });
     }
     let position = match position {
-        Some(Sample::Position(reading)) => Some(reading.raw),
-        Some(Sample::NoPosition { .. } | Sample::Watched(_)) | None => None,
+        Some(PolledSample::Position(reading)) => Some(reading.raw),
+        Some(PolledSample::NoPosition { .. } | PolledSample::Watched(_)) | None => None,
     };
-    Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
+    Ok(create_profile(&identity, fields, RecordedValues { position, counter, ..RecordedValues::default() }))
 }
 
-pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
+pub fn create_profile(identity: &Identity, fields: Vec<FieldImage>, recorded: RecordedValues) -> HiperfaceProfile {
     let mut profile = HiperfaceProfile {
         identity: ProfileIdentity {
             serial_number: identity.serial.serial_number.clone(),

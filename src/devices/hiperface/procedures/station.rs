@@ -28,8 +28,8 @@ parameters! {
         pub long_timeout: bool = true, "timeout" => CustomNotation(AllowedValues::TimeoutBits, read_timeout);
         /// Time allowed for a reply beyond the worst case of the protocol. `None` means the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
-        pub periods: Option<u32> = None, "periods" => OptionalValue(CustomNotation(AllowedValues::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
-        pub turns: Option<u32> = None, "turns" => OptionalValue(CustomNotation(AllowedValues::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
+        pub periods: Option<u32> = None, "periods" => OptionalValue(CustomNotation(AllowedValues::Periods { most: MAX_PERIODS }, read_periods)), "connect.periods" like "128";
+        pub turns: Option<u32> = None, "turns" => OptionalValue(CustomNotation(AllowedValues::MostTurns { most: MAX_PERIODS }, read_periods)), "connect.turns" like "4096";
     }
 }
 
@@ -48,7 +48,7 @@ impl Codes {
         self.0.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
-    pub fn set(&mut self, number: AccessCodeNumber, code: AccessCode) {
+    pub fn set_code(&mut self, number: AccessCodeNumber, code: AccessCode) {
         if let Some(own) = self.0.get_mut(usize::from(number.get())) {
             *own = code;
         }
@@ -62,7 +62,7 @@ pub struct InitialAccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 impl InitialAccessCodes {
     pub fn apply_codes(&self, codes: &mut Codes) {
         for (number, code) in &self.0 {
-            codes.set(*number, *code);
+            codes.set_code(*number, *code);
         }
     }
 }
@@ -124,7 +124,7 @@ impl Station {
         station.format = CharacterFormat { baud: link.baud, parity: link.parity };
         (station.address, station.long_timeout) = (link.address, link.long_timeout);
         station.line.echo = link.echo;
-        station.geometry = geometry(&link)?;
+        station.geometry = parse_geometry(&link)?;
         Ok(station)
     }
 
@@ -199,22 +199,22 @@ fn read_timeout(text: &str) -> Option<bool> {
 }
 
 /// Maximum number of periods. A 32-bit word has room for 32 steps in each of them.
-pub const MOST_PERIODS: u32 = 1 << 27;
+pub const MAX_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
-    parse_whole(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
+    parse_whole(text).filter(|periods| (1..=MAX_PERIODS).contains(periods))
 }
 
 /// Returns the geometry given by `periods=` and `turns=`. The default is one turn.
-fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, RejectedParameter> {
+fn parse_geometry(link: &LinkParameters) -> Result<Option<Geometry>, RejectedParameter> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {
         None if link.turns.is_some() => {
             Err(RejectedParameter::new("turns", turns, AllowedValues::OnlyWith("periods=")))
         }
         None => Ok(None),
-        Some(periods) if turns > MOST_PERIODS / periods => {
-            Err(RejectedParameter::new("turns", turns, AllowedValues::MostTurns { most: MOST_PERIODS / periods }))
+        Some(periods) if turns > MAX_PERIODS / periods => {
+            Err(RejectedParameter::new("turns", turns, AllowedValues::MostTurns { most: MAX_PERIODS / periods }))
         }
         Some(periods) => Ok(Some(Geometry::Rotary { periods, turns })),
     }

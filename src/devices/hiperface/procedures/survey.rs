@@ -2,7 +2,7 @@
 
 use super::fields::separate_value_error;
 use super::{
-    Error, Identity, LineQuality, Master, Sample, UnreadableField, identify, read_all_fields, read_counter,
+    Error, Identity, LineQuality, Master, PolledSample, UnreadableField, identify, read_all_fields, read_counter,
     read_sample, try_read_field,
 };
 use crate::devices::hiperface::profile::FieldImage;
@@ -21,25 +21,25 @@ pub struct Survey {
     pub line: LineQuality,
     pub counter: Option<u32>,
     /// Position. It is `None` if the encoder refused to report it for a reason that is not temporary.
-    pub position: Option<Sample>,
+    pub position: Option<PolledSample>,
 }
 
 /// Reads the status queue first, then everything else. A feature that an encoder type does not support is not an error.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal of a command that every type supports.
-pub fn survey(
+pub fn read_all_values(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Survey, Error> {
     // The codes stay in the station until the survey is complete, so they are reported even if it fails.
     master.collect_codes()?;
-    let mut survey = read_survey(master, types, progress, Reading::AsFarAsPossible)?;
+    let mut survey = read_survey(master, types, progress, ReadPolicy::AsFarAsPossible)?;
     survey.codes = master.station().take_undisplayed_codes();
     // A code that the encoder announced before applies to this position too.
     let spoilt = survey.codes.iter().any(|code| code.invalidates_position());
-    if let Some(Sample::Position(reading)) = &mut survey.position {
+    if let Some(PolledSample::Position(reading)) = &mut survey.position {
         reading.valid &= !spoilt;
     }
     Ok(survey)
@@ -47,7 +47,7 @@ pub fn survey(
 
 /// Treatment of data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reading {
+pub(super) enum ReadPolicy {
     AsFarAsPossible,
     /// An unreadable field ends the reading with an error, because a saved profile must be complete.
     Whole,
@@ -58,14 +58,14 @@ pub(super) fn read_survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
-    reading: Reading,
+    reading: ReadPolicy,
 ) -> Result<Survey, Error> {
     let identity = identify(master, types)?;
     let count = identity.memory.map_or(0, |memory| memory.fields);
     let mut unreadable = Vec::new();
     let fields = match reading {
-        Reading::Whole => read_all_fields(master, count, progress)?,
-        Reading::AsFarAsPossible => read_accessible_fields(master, count, &mut unreadable, progress)?,
+        ReadPolicy::Whole => read_all_fields(master, count, progress)?,
+        ReadPolicy::AsFarAsPossible => read_accessible_fields(master, count, &mut unreadable, progress)?,
     };
     // A restore needs neither value, so a refusal does not end the reading.
     let position = read_sample(master, identity.geometry);

@@ -10,7 +10,7 @@ use super::{
 use crate::bits::hex_compact;
 use crate::devices::hiperface::procedures::identify::{read_serial, read_type_label};
 use crate::devices::hiperface::procedures::master::ExchangeFailure;
-use crate::devices::hiperface::procedures::position::{distance, position_range};
+use crate::devices::hiperface::procedures::position::{position_range, shortest_distance};
 use crate::devices::hiperface::profile::{
     Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, SingleValue,
 };
@@ -20,10 +20,10 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::profile::Write;
 
-type Confirmed<'p> = crate::profile::ConfirmedPlan<'p, Base, Op>;
+type ConfirmedPlan<'p> = crate::profile::ConfirmedPlan<'p, Base, Op>;
 
 /// Write that ended early.
-pub type Interrupted = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
+pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
@@ -64,34 +64,36 @@ impl Write for EncoderWriter<'_, '_> {
         }
         for field in &plan.base.fields {
             if read_field(master, field.number)? != *field {
-                return Err(Error::Changed { item: PlanItem::Item(Item::Field(FieldRange::of(field.number))) });
+                return Err(Error::Changed {
+                    item: PlanItem::Item(Item::Field(FieldRange::whole_field(field.number))),
+                });
             }
         }
         plan.base.scalars.iter().try_for_each(|scalar| ensure_scalar_unchanged(master, *scalar, identity.geometry))
     }
 
-    fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
-        let sent = perform(&mut self.master, op, confirmed, position_range(self.identity.geometry));
+    fn apply(&mut self, op: &Op, confirmed: &ConfirmedPlan<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
+        let sent = execute(&mut self.master, op, confirmed, position_range(self.identity.geometry));
         // A change that was refused or not sent has no effect. Any other change may have been carried out.
         done.write_cycles += match &sent {
             Ok(sent) => u64::from(*sent),
             Err(cause) => u64::from(may_have_been_executed(cause)),
         };
         sent?;
-        done.count_operation(op.weight());
+        done.count_operation(op.change_count());
         Ok(())
     }
 
-    fn finish(&mut self, confirmed: &Confirmed<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
+    fn finish(&mut self, confirmed: &ConfirmedPlan<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
         let range = position_range(self.identity.geometry);
-        done.verified = self.master.run_uncancellable(|master| verify(master, confirmed.plan(), range))?;
+        done.verified = self.master.run_uncancellable(|master| verify_plan(master, confirmed.plan(), range))?;
         Ok(())
     }
 
     /// Restores the write protection of fields that were made writable, if the encoder still replies.
     fn lead_back(
         &mut self,
-        confirmed: &Confirmed<'_>,
+        confirmed: &ConfirmedPlan<'_>,
         ended: Result<(), Error>,
         done: &mut WrittenChanges,
     ) -> Result<(), Error> {
@@ -102,7 +104,7 @@ impl Write for EncoderWriter<'_, '_> {
         let unlocked: Vec<u8> = begun.filter(|op| op.removes_protection()).filter_map(Op::field).collect();
         let range = position_range(self.identity.geometry);
         for field in unlocked {
-            let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
+            let Some(lock) = after.iter().find(|op| op.locks_field(field)) else { continue };
             let lock_again = |master: &mut Master<'_>| restore_write_protection(master, lock, confirmed, range, done);
             if cause.is_lost() || self.master.run_uncancellable(lock_again).is_err() {
                 self.left.unlocked.push(field);
@@ -128,7 +130,7 @@ fn ensure_scalar_unchanged(
     let (same, item) = match scalar {
         SingleValue::Position(then) => {
             let now = ensure_standstill(master, geometry)?;
-            if distance(now, then, position_range(geometry)) > 1 {
+            if shortest_distance(now, then, position_range(geometry)) > 1 {
                 return Err(Error::Moving { readings: vec![then, now] });
             }
             (true, PlanItem::Position)
@@ -143,7 +145,7 @@ fn ensure_scalar_unchanged(
 fn restore_write_protection(
     master: &mut Master<'_>,
     lock: &Op,
-    confirmed: &Confirmed<'_>,
+    confirmed: &ConfirmedPlan<'_>,
     range: u64,
     done: &mut WrittenChanges,
 ) -> Result<(), Error> {
@@ -157,13 +159,13 @@ fn restore_write_protection(
     };
     // The other changes of the plan are not made: only the protection is restored.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
-    let sent = perform(master, &lock, confirmed, range)?;
+    let sent = execute(master, &lock, confirmed, range)?;
     done.write_cycles += u64::from(sent);
     Ok(())
 }
 
 /// Executes one operation on an encoder with `range` positions, and returns how often the operation was sent.
-fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
+fn execute(master: &mut Master<'_>, op: &Op, confirmed: &ConfirmedPlan<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(AccessCodeNumber::ZERO);
     match op {
         Op::Define { field, from, to } => {
@@ -182,7 +184,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
             let sent = master
                 .send_verified(&request, |master| is_code_accepted(master, &confirmed.plan().base, *number, *new))?;
-            master.station().codes.set(*number, *new);
+            master.station().codes.set_code(*number, *new);
             Ok(sent)
         }
         Op::SetPosition { from, to, synchronise } => {
@@ -191,12 +193,12 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
             } else {
                 Request::SetPosition { position: *to, code0 }
             };
-            let telling = distance(*from, *to, range) > 1;
+            let telling = shortest_distance(*from, *to, range) > 1;
             master.send_verified(&request, |master| {
                 if !telling {
                     return Err(Error::PositionUnchanged);
                 }
-                Ok(distance(super::read_position(master, None)?.raw, *to, range) <= 1)
+                Ok(shortest_distance(super::read_position(master, None)?.raw, *to, range) <= 1)
             })
         }
         Op::SetAddress { to, .. } => set_address(master, *to),
@@ -270,7 +272,7 @@ fn is_code_accepted(
 }
 
 /// Reads back the final value of every field and byte that the plan has changed.
-fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u64, Error> {
+fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u64, Error> {
     let mut verified = 0;
     for (at, op) in plan.ops.iter().enumerate() {
         let later = plan.ops.get(at + 1..).unwrap_or_default();
@@ -278,7 +280,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
             Op::Define { field, to, .. } => {
                 let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
                 if !later.iter().any(redefined) && !reads_back_status(master, *field, *to)? {
-                    let (item, expected) = (op.item(), format!("{:02X}", to.byte()));
+                    let (item, expected) = (op.plan_item(), format!("{:02X}", to.byte()));
                     return Err(Error::NotVerified { item, expected, got: ReadBackValue::AnotherStatus });
                 }
                 verified += 1;
@@ -291,14 +293,14 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
                 let expected = new.get(..size).unwrap_or_default();
                 let got = read_range(master, *field, usize::from(*address), size, code)?;
                 if got != expected {
-                    return Err(mismatch(op, hex_compact(expected), hex_compact(&got)));
+                    return Err(mismatch_error(op, hex_compact(expected), hex_compact(&got)));
                 }
-                verified += op.weight();
+                verified += op.change_count();
             }
             Op::SetPosition { to, .. } => {
                 let raw = super::read_position(master, None)?.raw;
-                if distance(raw, *to, range) > 1 {
-                    return Err(mismatch(op, to.to_string(), raw.to_string()));
+                if shortest_distance(raw, *to, range) > 1 {
+                    return Err(mismatch_error(op, to.to_string(), raw.to_string()));
                 }
                 verified += 1;
             }
@@ -309,7 +311,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
             Op::Configure { to, .. } => {
                 let settings = read_type_label(master)?.settings;
                 if settings != *to {
-                    return Err(mismatch(op, format!("{to:?}"), format!("{settings:?}")));
+                    return Err(mismatch_error(op, format!("{to:?}"), format!("{settings:?}")));
                 }
                 verified += 1;
             }
@@ -320,7 +322,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
                 };
                 let counter = read_counter(master)?;
                 if counter != expected {
-                    return Err(mismatch(op, expected.to_string(), counter.to_string()));
+                    return Err(mismatch_error(op, expected.to_string(), counter.to_string()));
                 }
                 verified += 1;
             }
@@ -331,8 +333,8 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
     Ok(verified)
 }
 
-fn mismatch(op: &Op, expected: String, got: String) -> Error {
-    Error::NotVerified { item: op.item(), expected, got: ReadBackValue::Value(got) }
+fn mismatch_error(op: &Op, expected: String, got: String) -> Error {
+    Error::NotVerified { item: op.plan_item(), expected, got: ReadBackValue::Value(got) }
 }
 
 /// Checks that no encoder replies at an address, since two encoders at one address can never be separated again.
@@ -341,7 +343,7 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
 /// [`Error::AddressTaken`] if anything is received, errors of the connection, or cancellation.
 pub fn check_address_is_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
-    let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
+    let answers = (0..2).map(|_| master.exchange_once(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
     master.station().address = before;
     match answers?.iter().all(|answer| matches!(answer, Err(ExchangeFailure::Silence { .. }))) {
         true => Ok(()),

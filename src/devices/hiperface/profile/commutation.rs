@@ -53,10 +53,10 @@ impl CommutationRecord {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;
         }
-        Some(Self::checked(bytes).ok_or(CommutationRecordError))
+        Some(Self::from_valid_bytes(bytes).ok_or(CommutationRecordError))
     }
 
-    fn checked(bytes: &[u8]) -> Option<Self> {
+    fn from_valid_bytes(bytes: &[u8]) -> Option<Self> {
         let (body, check) = bytes.get(..Self::BYTES)?.split_at(Self::BYTES - 2);
         let &[_, _, _, flags, o3, o2, o1, o0, pole_pairs, direction, ..] = body else { return None };
         let sound = check == crc(body).to_be_bytes() && direction <= 1 && pole_pairs > 0;

@@ -14,8 +14,8 @@ pub(super) fn compare(left: &[FieldImage], right: &[FieldImage]) -> Comparison {
     for number in numbers {
         match (find(left, number), find(right, number)) {
             (Some(left), Some(right)) => compare_fields(&left, &right, &mut comparison),
-            (Some(_), None) => comparison.only_left.push(whole(number)),
-            (None, _) => comparison.only_right.push(whole(number)),
+            (Some(_), None) => comparison.only_left.push(field_name(number)),
+            (None, _) => comparison.only_right.push(field_name(number)),
         }
     }
     comparison
@@ -33,8 +33,8 @@ fn compare_fields(left: &FieldImage, right: &FieldImage, comparison: &mut Compar
     match (&left.bytes, &right.bytes) {
         (Some(a), Some(b)) => compare_bytes(left.number, a, b, comparison),
         (None, None) => {}
-        (Some(_), None) => comparison.only_left.push(whole(left.number)),
-        (None, Some(_)) => comparison.only_right.push(whole(left.number)),
+        (Some(_), None) => comparison.only_left.push(field_name(left.number)),
+        (None, Some(_)) => comparison.only_right.push(field_name(left.number)),
     }
 }
 
@@ -57,7 +57,7 @@ fn compare_bytes(number: u8, left: &[u8], right: &[u8], comparison: &mut Compari
     }
 }
 
-fn whole(number: u8) -> String {
+fn field_name(number: u8) -> String {
     FieldRange { field: number, start: 0, count: None }.to_string()
 }
 

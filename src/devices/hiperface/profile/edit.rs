@@ -20,14 +20,14 @@ pub fn plan_store(
     }
     let mut ops = Vec::new();
     for field in &fields {
-        ops.extend(stores(field, edits.iter().filter(|(range, _)| range.field == field.number))?);
+        ops.extend(store_operations(field, edits.iter().filter(|(range, _)| range.field == field.number))?);
     }
     Ok(plan(field_count, fields, ops))
 }
 
 /// Returns the operations for one field in ascending order of addresses. No operation is too long, because fields and
 /// transfers are both limited to 128 bytes.
-fn stores<'e>(
+fn store_operations<'e>(
     field: &FieldImage,
     edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,
 ) -> Result<Vec<Op>, PlanError> {
@@ -76,7 +76,7 @@ pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> R
     if number != memory.fields {
         return Err(PlanError::NotNext { field: number, next: memory.fields });
     }
-    if status.size().blocks() > memory.blocks {
+    if status.size().block_count() > memory.blocks {
         return Err(PlanError::NoMemory { needed: status.size().bytes(), free: memory.bytes() });
     }
     Ok(plan(memory.fields, Vec::new(), vec![Op::Define { field: number, from: None, to: status }]))
@@ -90,7 +90,7 @@ pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus
     let from = field.status;
     if to.size() != from.size() {
         check_is_last_field(memory, field.number)?;
-        let more = to.size().blocks().saturating_sub(from.size().blocks());
+        let more = to.size().block_count().saturating_sub(from.size().block_count());
         if more > memory.blocks {
             let needed = usize::from(more) * FieldSize::BLOCK;
             return Err(PlanError::NoMemory { needed, free: memory.bytes() });
@@ -106,7 +106,7 @@ pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus
 /// The field is not the last one.
 pub fn plan_delete(memory: FreeMemory, field: &FieldImage) -> Result<HiperfacePlan, PlanError> {
     check_is_last_field(memory, field.number)?;
-    let op = Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() };
+    let op = Op::Define { field: field.number, from: Some(field.status), to: field.status.as_deleted() };
     Ok(plan(memory.fields, vec![field.clone()], vec![op]))
 }
 

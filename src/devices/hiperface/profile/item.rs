@@ -93,7 +93,7 @@ impl fmt::Display for Item {
 
 impl FieldRange {
     /// Creates a range that covers a whole field.
-    pub fn of(field: u8) -> Self {
+    pub fn whole_field(field: u8) -> Self {
         FieldRange { field, start: 0, count: None }
     }
 

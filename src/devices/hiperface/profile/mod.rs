@@ -16,7 +16,7 @@ pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store}
 pub use entry_error::EntryError;
 pub use item::{FieldRange, Item, ItemError, PlanItem};
 pub use plan::{Base, HiperfacePlan, Op, SingleValue};
-pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, Recorded};
+pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, RecordedValues};
 pub use restore::{
     DeviceState, PlanError, RequiredSetup, Restore, RestoreOptions, UnknownMeaningField, check_allowed, check_device,
     created_fields, plan_restore,

@@ -110,7 +110,7 @@ impl Operation for Op {
 
 impl Op {
     /// Returns the item that is changed. If it is readable, `read` accepts its name.
-    pub fn item(&self) -> PlanItem {
+    pub fn plan_item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
             Op::Store { field, address, new, .. } => {
@@ -139,11 +139,11 @@ impl Op {
             Op::ClearCounter { from } => (number(*from), number(0)),
             Op::IncrementCounter { from } => (number(*from), number(from.saturating_add(1))),
         };
-        ChangedItem::new(self.item(), old, new)
+        ChangedItem::new(self.plan_item(), old, new)
     }
 
     /// Returns the number of changes as in a comparison, in which each byte of a data field counts.
-    pub fn weight(&self) -> u64 {
+    pub fn change_count(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
             _ => 1,
@@ -158,7 +158,7 @@ impl Op {
     }
 
     /// Returns whether the operation write-protects the given field.
-    pub fn locks(&self, number: u8) -> bool {
+    pub fn locks_field(&self, number: u8) -> bool {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }
 

@@ -15,7 +15,7 @@ pub struct HiperfaceProfile {
     /// Address and interface settings. They are recorded, but neither compared nor restored.
     pub interface: Interface,
     /// Values that change by themselves. They are recorded, but neither compared nor restored.
-    pub recorded: Recorded,
+    pub recorded: RecordedValues,
     /// Mounting values. They are written to another encoder only if the user agrees.
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
@@ -62,7 +62,7 @@ pub struct Interface {
 
 /// Values that change by themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Recorded {
+pub struct RecordedValues {
     /// Position in steps.
     pub position: Option<u32>,
     /// Value of the counter.
@@ -242,8 +242,8 @@ fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
     })
 }
 
-fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
-    Ok(Recorded {
+fn read_recorded(mut entries: Entries) -> Result<RecordedValues, ProfileError> {
+    Ok(RecordedValues {
         position: entries.take_optional("position", AllowedValues::whole_range(0, 4_294_967_295))?,
         counter: entries.take_optional("counter", AllowedValues::whole_range(0, 16_777_215))?,
         unknown: entries.into_unknown()?,

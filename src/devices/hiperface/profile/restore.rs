@@ -16,7 +16,7 @@ pub use undo::created_fields;
 pub use unknown::UnknownMeaningField;
 
 use planner::Planner;
-use undo::{deletable_created_fields, delete, without};
+use undo::{deletable_created_fields, delete, without_fields};
 use unknown::unknown_fields;
 
 use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
@@ -96,7 +96,7 @@ pub fn plan_restore(
     let left: Vec<u8> = unknown_fields.iter().filter(|own| !own.is_copied()).map(|own| own.field).collect();
     let (undone, created_left) =
         if is_other { (Vec::new(), Vec::new()) } else { deletable_created_fields(profile, device) };
-    let now = without(device, &undone);
+    let now = without_fields(device, &undone);
     let mut planner = Planner {
         profile,
         device: &now,
@@ -120,9 +120,9 @@ pub fn plan_restore(
         planner.delete_fields_from(first)?;
         kept.truncate(usize::from(first));
     }
-    for target in planner.targets(recreated) {
+    for target in planner.target_fields(recreated) {
         match kept.iter().find(|field| field.number == target.number) {
-            Some(now) => planner.change(now, &target),
+            Some(now) => planner.change_field(now, &target),
             None => planner.create(&target),
         }
     }

@@ -95,7 +95,7 @@ impl FieldSize {
     }
 
     /// Returns the size in blocks of 16 bytes.
-    pub const fn blocks(self) -> u8 {
+    pub const fn block_count(self) -> u8 {
         self.0
     }
 }
@@ -175,7 +175,7 @@ impl DataFieldStatus {
 
     /// Returns a copy of the status with bit E cleared. Command 4Dh deletes the field if it receives this status.
     #[must_use]
-    pub const fn deleted(self) -> Self {
+    pub const fn as_deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)
     }
 }
@@ -246,7 +246,7 @@ mod tests {
         let size = FieldSize::from_bytes(32).unwrap();
         let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
         assert_eq!(status.byte(), 0xC9);
-        assert_eq!(status.deleted().byte(), 0x49);
+        assert_eq!(status.as_deleted().byte(), 0x49);
         assert_eq!(DataFieldStatus::from_byte(0xE8).with_write_enable(false).byte(), 0xA8);
         assert_eq!(status.with_size(FieldSize::from_bytes(128).unwrap()).byte(), 0xCF);
     }

@@ -75,17 +75,17 @@ pub enum Arguments {
 ///
 /// # Errors
 /// The bytes are not a frame.
-pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameDetail>, FrameError> {
+pub fn describe_frame(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameDetail>, FrameError> {
     let frame = Frame::parse(bytes)?;
     let mut facts = vec![FrameDetail::Heading { address: frame.address, command: frame.command }];
     if let Some(answer) = request.and_then(|request| request.parse_reply(frame.address, bytes).ok()) {
-        facts.extend(answered(answer));
+        facts.extend(describe_reply(answer));
         return Ok(facts);
     }
     match Request::parse(&frame) {
         Ok(request) => facts.push(FrameDetail::Request(request_arguments(request))),
         Err(error) => match guess_reply(&frame, bytes) {
-            Some(answer) => facts.extend(answered(answer)),
+            Some(answer) => facts.extend(describe_reply(answer)),
             None => facts.push(FrameDetail::NoRequest(error)),
         },
     }
@@ -153,7 +153,7 @@ fn request_arguments(request: Request) -> Arguments {
     }
 }
 
-fn answered(answer: Answer) -> Vec<FrameDetail> {
+fn describe_reply(answer: Answer) -> Vec<FrameDetail> {
     match answer {
         Answer::Rejected { codes, .. } => codes.into_iter().map(FrameDetail::Refused).collect(),
         Answer::Reply { reply: Reply::Status(codes), .. } => codes.into_iter().map(FrameDetail::Code).collect(),
@@ -179,7 +179,7 @@ mod tests {
             ("40 41 01", 0x41, FrameDetail::NoRequest(RequestError::Command(0x41))),
         ];
         for (bytes, command, expected) in cases {
-            let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
+            let said = describe_frame(&parse_hex(bytes).unwrap(), None).unwrap();
             assert_eq!(said, [heading(command), expected], "{bytes}");
         }
     }
@@ -192,7 +192,7 @@ mod tests {
             ("40 4F 02 55 66 3E", Arguments::Code(AccessCodeNumber::new(2).unwrap())),
         ];
         for (bytes, expected) in cases {
-            let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
+            let said = describe_frame(&parse_hex(bytes).unwrap(), None).unwrap();
             assert_eq!(said.last(), Some(&FrameDetail::Request(expected)), "{bytes}");
         }
     }
@@ -200,13 +200,13 @@ mod tests {
     #[test]
     fn the_wrong_checksum_in_the_manual_is_reported() {
         let wrong = parse_hex("40 4D 01 E0 55 69").unwrap();
-        assert_eq!(describe(&wrong, None), Err(FrameError::Checksum { expected: 0xB9, got: 0x69 }));
+        assert_eq!(describe_frame(&wrong, None), Err(FrameError::Checksum { expected: 0xB9, got: 0x69 }));
     }
 
     #[test]
     fn a_refusal_is_recognized_by_its_request() {
         let request = Request::ReadPosition;
-        let said = describe(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
+        let said = describe_frame(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
         assert_eq!(said.last(), Some(&FrameDetail::Refused(StatusCode::new(0x1F))));
     }
 }

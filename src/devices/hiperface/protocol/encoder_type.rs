@@ -75,14 +75,14 @@ struct Row {
     code: u8,
     name: String,
     #[serde(default)]
-    shape: Option<Shape>,
+    shape: Option<EncoderShape>,
     #[serde(default)]
     kit: bool,
 }
 
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Shape {
+enum EncoderShape {
     Rotary { periods: u32, turns: u32 },
     Linear { period_nm: u32 },
 }
@@ -102,7 +102,7 @@ impl EncoderTypes {
             column: error.span.start.col,
             problem: error.code.to_string(),
         })?;
-        file.types.into_iter().map(Row::check).collect::<Result<_, _>>().map(EncoderTypes)
+        file.types.into_iter().map(Row::into_encoder_type).collect::<Result<_, _>>().map(EncoderTypes)
     }
 
     /// Returns the built-in table.
@@ -128,25 +128,25 @@ impl EncoderTypes {
 impl Row {
     /// Upper limit of periods, and of periods times turns. The position word has 32 bits, of which five count the steps
     /// within a period.
-    const MOST: u32 = 1 << 27;
+    const MAX_PERIODS_AND_TURNS: u32 = 1 << 27;
 
-    fn check(self) -> Result<EncoderType, TypeTableError> {
+    fn into_encoder_type(self) -> Result<EncoderType, TypeTableError> {
         let geometry = match self.shape {
             None => None,
-            Some(Shape::Rotary { periods, turns }) => {
-                self.within(GeometryEntry::Periods, periods, 1..=Self::MOST)?;
-                self.within(GeometryEntry::Turns, turns, 1..=Self::MOST / periods)?;
+            Some(EncoderShape::Rotary { periods, turns }) => {
+                self.check_range(GeometryEntry::Periods, periods, 1..=Self::MAX_PERIODS_AND_TURNS)?;
+                self.check_range(GeometryEntry::Turns, turns, 1..=Self::MAX_PERIODS_AND_TURNS / periods)?;
                 Some(Geometry::Rotary { periods, turns })
             }
-            Some(Shape::Linear { period_nm }) => {
-                self.within(GeometryEntry::PeriodLength, period_nm, 1..=u32::MAX)?;
+            Some(EncoderShape::Linear { period_nm }) => {
+                self.check_range(GeometryEntry::PeriodLength, period_nm, 1..=u32::MAX)?;
                 Some(Geometry::Linear { period_nm, periods: 0 })
             }
         };
         Ok(EncoderType { code: self.code, name: self.name, geometry, kit: self.kit })
     }
 
-    fn within(&self, entry: GeometryEntry, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
+    fn check_range(&self, entry: GeometryEntry, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
         if range.contains(&value) { Ok(()) } else { Err(TypeTableError::Range { code: self.code, entry, range }) }
     }
 }
@@ -172,7 +172,7 @@ mod tests {
         for (code, periods, turns, bits) in cases {
             let geometry = types.find(code).unwrap().geometry.unwrap();
             assert_eq!(geometry, Geometry::Rotary { periods, turns }, "{code:02X}");
-            assert_eq!(geometry.range(), Some(1 << bits), "{code:02X}");
+            assert_eq!(geometry.position_count(), Some(1 << bits), "{code:02X}");
         }
         for (code, mm) in [(0x90, 1), (0x91, 2), (0x92, 4), (0x93, 8), (0x94, 16)] {
             let geometry = types.find(code).unwrap().geometry;

@@ -90,7 +90,7 @@ impl ExtendedLabel {
         Ok(ExtendedLabel {
             checksum_fits: checksum(bytes) == 0,
             flags: *flags,
-            geometry: Self::geometry(flags & Self::LINEAR != 0, first, second),
+            geometry: Self::geometry_from(flags & Self::LINEAR != 0, first, second),
             designation: text(designation),
             parameters: Self::parameters(sets),
         })
@@ -117,7 +117,7 @@ impl ExtendedLabel {
     ///
     /// # Errors
     /// [`LabelError::Short`] if the description is incomplete.
-    pub fn parts(bytes: &[u8]) -> Result<Vec<(usize, usize, LabelPart)>, LabelError> {
+    pub fn parse_parts(bytes: &[u8]) -> Result<Vec<(usize, usize, LabelPart)>, LabelError> {
         let (description, mut sets) =
             bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;
         let [_, _, a3, a2, a1, a0, b3, b2, b1, b0, ..] = description;
@@ -148,7 +148,7 @@ impl ExtendedLabel {
         Ok(parts)
     }
 
-    fn geometry(linear: bool, first: u32, second: u32) -> Option<Geometry> {
+    fn geometry_from(linear: bool, first: u32, second: u32) -> Option<Geometry> {
         if first == 0 || second == 0 {
             return None;
         }
@@ -158,7 +158,7 @@ impl ExtendedLabel {
             Geometry::Rotary { periods: first, turns: second }
         };
         // The position word has 32 bits.
-        geometry.range().filter(|range| *range <= 1 << 32).map(|_| geometry)
+        geometry.position_count().filter(|range| *range <= 1 << 32).map(|_| geometry)
     }
 
     fn parameters(mut sets: &[u8]) -> Vec<LabelParameter> {
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn label_parts_are_at_the_addresses_of_the_manual() {
-        let parts = ExtendedLabel::parts(&label()).unwrap();
+        let parts = ExtendedLabel::parse_parts(&label()).unwrap();
         assert_eq!(
             parts[..5].iter().map(|(at, count, _)| (*at, *count)).collect::<Vec<_>>(),
             [(0, 1), (1, 1), (2, 4), (6, 4), (10, 18)]
@@ -267,6 +267,6 @@ mod tests {
         assert_eq!(parts[7], (0x20, 2, LabelPart::Limit { number: 1, value: 0x73, valid: true }));
         assert_eq!(parts[8], (0x22, 2, LabelPart::Limit { number: 2, value: 0, valid: false }));
         assert_eq!(parts.len(), 6 + 15, "one set: 28 + 2 + 30 bytes");
-        assert_eq!(ExtendedLabel::parts(&[0; 27]), Err(LabelError::Short { got: 27 }));
+        assert_eq!(ExtendedLabel::parse_parts(&[0; 27]), Err(LabelError::Short { got: 27 }));
     }
 }

@@ -79,7 +79,7 @@ impl LineSettings {
     }
 
     /// Returns the character format, or `None` if baud rate or parity is reserved.
-    pub fn format(self) -> Option<CharacterFormat> {
+    pub fn character_format(self) -> Option<CharacterFormat> {
         Some(CharacterFormat { baud: self.baud()?, parity: self.parity()? })
     }
 
@@ -95,7 +95,7 @@ impl LineSettings {
 
     /// Returns whether the byte contains no reserved values and may be sent to an encoder.
     pub fn is_valid(self) -> bool {
-        self.format().is_some() && self.0 & 0x08 == 0
+        self.character_format().is_some() && self.0 & 0x08 == 0
     }
 }
 
@@ -107,7 +107,7 @@ impl fmt::Debug for LineSettings {
 
 impl fmt::Display for LineSettings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.format() {
+        match self.character_format() {
             Some(format) => write!(f, "{format}")?,
             None => write!(f, "reserved format")?,
         }
@@ -137,7 +137,7 @@ mod tests {
         for (byte, baud, parity, long_timeout, bus) in cases {
             let settings = LineSettings::from_byte(byte);
             let format = CharacterFormat { baud: Baud::new(baud).unwrap(), parity };
-            assert_eq!(settings.format(), Some(format), "{byte:02X}");
+            assert_eq!(settings.character_format(), Some(format), "{byte:02X}");
             assert_eq!(settings.has_long_timeout(), long_timeout, "{byte:02X}");
             assert_eq!(settings.is_bus(), bus, "{byte:02X}");
             assert_eq!(settings.with_format(format), Some(settings), "{byte:02X}");

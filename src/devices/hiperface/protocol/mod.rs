@@ -35,7 +35,7 @@ pub use command::{COMMANDS, Command, CommandRow};
 pub use data_field::{
     AccessCode, AccessCodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
 };
-pub use describe::{Arguments, FrameDetail, describe};
+pub use describe::{Arguments, FrameDetail, describe_frame};
 pub use encoder_type::{EncoderType, EncoderTypes, GeometryEntry, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};

@@ -34,7 +34,7 @@ impl Geometry {
     }
 
     /// Returns the number of distinct positions, or `None` if it is unknown. Positions count from 0.
-    pub fn range(self) -> Option<u64> {
+    pub fn position_count(self) -> Option<u64> {
         match self {
             Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()?.saturating_mul(u64::from(turns.max(1)))),
             Geometry::Linear { periods: 0, .. } => None,
@@ -44,7 +44,7 @@ impl Geometry {
 
     /// Converts a position word to an angle or a distance.
     pub fn position(self, raw: u32) -> Position {
-        let in_range = self.range().is_none_or(|range| u64::from(raw) < range);
+        let in_range = self.position_count().is_none_or(|range| u64::from(raw) < range);
         match self {
             Geometry::Rotary { .. } => {
                 let per_turn = self.steps_per_turn().unwrap_or(1);
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn the_skm36_position_matches_the_reference() {
         let skm36 = Geometry::Rotary { periods: 128, turns: 4096 };
-        assert_eq!(skm36.range(), Some(1 << 24));
+        assert_eq!(skm36.position_count(), Some(1 << 24));
         let position = skm36.position(0x000E_0531);
         assert_eq!((position.turns(), position.steps()), (Some(224), Some(1329)));
         assert!((position.degrees().unwrap() - 116.806_640_625).abs() < 1e-9);

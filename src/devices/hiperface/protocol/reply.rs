@@ -140,7 +140,7 @@ impl Request {
                 Ok(Answer::Reply { pending, reply })
             }
             Some(Command::ReadStatus) if (1..=4).contains(&frame.payload.len()) => {
-                Ok(Answer::Rejected { pending, codes: codes(frame.payload) })
+                Ok(Answer::Rejected { pending, codes: parse_codes(frame.payload) })
             }
             _ => Err(ReplyError::Command { expected: expected.byte(), got: frame.command }),
         }
@@ -201,7 +201,7 @@ impl Request {
                 Ok(Some(Reply::FreeMemory(FreeMemory { blocks: *blocks, fields: *fields })))
             }
             (Request::ChangeCode { number, .. }, [echo]) => echoed(number.get() == *echo, Reply::Done),
-            (Request::ReadStatus, [_, ..]) if payload.len() <= 4 => Ok(Some(Reply::Status(codes(payload)))),
+            (Request::ReadStatus, [_, ..]) if payload.len() <= 4 => Ok(Some(Reply::Status(parse_codes(payload)))),
             (Request::ReadTypeLabel, [settings, encoder_type, eeprom_units, options]) => {
                 Ok(Some(Reply::TypeLabel(TypeLabel {
                     settings: LineSettings::from_byte(*settings),
@@ -216,6 +216,6 @@ impl Request {
     }
 }
 
-fn codes(payload: &[u8]) -> Vec<StatusCode> {
+fn parse_codes(payload: &[u8]) -> Vec<StatusCode> {
     payload.iter().copied().map(StatusCode::new).collect()
 }

@@ -204,7 +204,7 @@ impl Request {
         Self::from_payload(command, frame.payload)
             .filter(|_| got == expected)
             .ok_or(RequestError::Length { expected, got })
-            .and_then(Self::checked)
+            .and_then(Self::check_ranges)
     }
 
     /// Returns the argument bytes and the indices of those that are access codes.
@@ -295,7 +295,7 @@ impl Request {
     }
 
     /// Checks the ranges that the frame alone determines. The encoder checks all others.
-    fn checked(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
+    fn check_ranges(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
                 Err(RequestError::Argument("count"))
@@ -329,14 +329,14 @@ impl MaskableFrame {
     }
 
     /// Returns the bytes for display. Access codes are masked, and so is the checksum that would reveal them.
-    pub fn masked(&self) -> MaskedBytes {
+    pub fn to_masked(&self) -> MaskedBytes {
         MaskedBytes::with_masked(&self.bytes, &self.secret)
     }
 }
 
 impl fmt::Debug for MaskableFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "SecretFrame({})", self.masked())
+        write!(f, "SecretFrame({})", self.to_masked())
     }
 }
 
@@ -378,7 +378,7 @@ mod tests {
     #[test]
     fn codes_and_their_checksum_are_masked() {
         let store = Request::StoreData { field: 1, address: 5, code: AccessCode::new(0x66), data: vec![0x08, 0x15] };
-        assert_eq!(store.emit(0x40).masked().to_string(), "40 4B 01 05 02 ** 08 15 **");
+        assert_eq!(store.emit(0x40).to_masked().to_string(), "40 4B 01 05 02 ** 08 15 **");
         let change = Request::ChangeCode {
             number: AccessCodeNumber::new(2).unwrap(),
             old: AccessCode::FACTORY,

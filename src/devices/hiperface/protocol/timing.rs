@@ -30,7 +30,7 @@ impl Timing {
 
     /// Creates the timing for a settings byte, or returns `None` if the byte contains reserved values.
     pub fn from_settings(settings: LineSettings) -> Option<Self> {
-        Some(Self::new(settings.format()?, settings.has_long_timeout()))
+        Some(Self::new(settings.character_format()?, settings.has_long_timeout()))
     }
 
     /// Returns the maximum time from the first bit of a request to the last bit of its reply. It is the sum of both

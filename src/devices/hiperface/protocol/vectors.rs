@@ -45,7 +45,7 @@ fn bytes(text: &str) -> Vec<u8> {
         .collect()
 }
 
-fn lines() -> Vec<Line> {
+fn vector_lines() -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let mut request = None;
     for (number, text) in (1..).zip(FILE.lines()) {
@@ -82,7 +82,7 @@ fn lines() -> Vec<Line> {
 }
 
 fn lines_of_kind(kind: Kind) -> impl Iterator<Item = Line> {
-    lines().into_iter().filter(move |line| line.kind == kind)
+    vector_lines().into_iter().filter(move |line| line.kind == kind)
 }
 
 impl Line {
@@ -104,7 +104,7 @@ fn has_zero_xor(bytes: &[u8]) -> bool {
 
 #[test]
 fn every_frame_in_the_file_has_a_correct_checksum() {
-    for line in lines() {
+    for line in vector_lines() {
         match line.kind {
             Kind::SingleByte => {}
             Kind::NotAFrame => {
@@ -163,7 +163,7 @@ fn frames_that_are_not_replies_are_refused() {
 
 #[test]
 fn truncated_and_damaged_replies_are_refused() {
-    for line in lines() {
+    for line in vector_lines() {
         let asked = match line.kind {
             Kind::Reply => vec![line.requested_frame()],
             Kind::ErrorFrame => vec![(Request::ReadStatus, 0x40), (Request::ReadPosition, 0x40)],
@@ -203,7 +203,7 @@ fn single_bytes_decode_as_in_the_file() {
             }
             "settings" => {
                 let settings = LineSettings::from_byte(line.bytes[0]);
-                let format = settings.format().unwrap();
+                let format = settings.character_format().unwrap();
                 let shown = [
                     if settings.is_bus() { "bus" } else { "standard" }.to_owned(),
                     if settings.has_long_timeout() { "44" } else { "11" }.to_owned(),
@@ -236,7 +236,7 @@ fn the_label_in_the_file_parses() {
 #[test]
 fn file_and_table_have_the_same_requests_and_replies() {
     let mut file = BTreeSet::new();
-    for line in lines() {
+    for line in vector_lines() {
         match line.kind {
             Kind::Request => file.insert(format!("> {}", hex(&line.bytes))),
             Kind::Reply => file.insert(format!("< {}", hex(&line.bytes))),
@@ -244,7 +244,7 @@ fn file_and_table_have_the_same_requests_and_replies() {
         };
     }
     let mut table = BTreeSet::new();
-    for vector in table::vectors() {
+    for vector in table::all_vectors() {
         table.insert(format!("> {}", vector.bytes));
         table.extend(vector.replies.iter().map(|(reply, _)| format!("< {reply}")));
     }
@@ -253,7 +253,7 @@ fn file_and_table_have_the_same_requests_and_replies() {
 }
 
 /// Returns noise; half of it is made a valid frame so that it reaches the parsers after the checksum.
-fn noise() -> impl Strategy<Value = Vec<u8>> {
+fn noise_bytes() -> impl Strategy<Value = Vec<u8>> {
     let payload = proptest::collection::vec(any::<u8>(), 0..160);
     let command = prop_oneof![any::<u8>(), (0..COMMANDS.len()).prop_map(|at| COMMANDS[at].command.byte())];
     (any::<bool>(), prop_oneof![Just(0x40), any::<u8>()], command, payload).prop_map(
@@ -271,13 +271,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1024))]
 
     #[test]
-    fn noise_never_panics(bytes in noise(), address: u8) {
-        let _ = describe(&bytes, None);
-        for vector in table::vectors() {
+    fn noise_never_panics(bytes in noise_bytes(), address: u8) {
+        let _ = describe_frame(&bytes, None);
+        for vector in table::all_vectors() {
             let _ = vector.request.parse_reply(address, &bytes);
             let _ = vector.request.parse_reply(0x40, &bytes);
             let _ = vector.request.reply_length(&bytes);
-            let _ = describe(&bytes, Some(&vector.request));
+            let _ = describe_frame(&bytes, Some(&vector.request));
         }
         if let Ok(request) = Frame::parse(&bytes).map_err(|_| ()).and_then(|f| Request::parse(&f).map_err(|_| ())) {
             let emitted = request.emit(bytes[0]);
@@ -288,7 +288,7 @@ proptest! {
     #[test]
     fn noise_as_a_label_does_not_panic(bytes in proptest::collection::vec(any::<u8>(), 0..160)) {
         if let Ok(label) = ExtendedLabel::parse(&bytes) {
-            prop_assert!(label.geometry.is_none_or(|geometry| geometry.range().is_some_and(|range| range <= 1 << 32)));
+            prop_assert!(label.geometry.is_none_or(|geometry| geometry.position_count().is_some_and(|range| range <= 1 << 32)));
         }
         if let Some(label) = SerialLabel::parse(&bytes) {
             prop_assert!(label.serial_number.is_ascii() && label.firmware_version.is_ascii());

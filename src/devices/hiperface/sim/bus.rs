@@ -105,8 +105,10 @@ impl Bus {
     }
 
     fn execute_encoder_action(&mut self, index: usize, at: Moment) {
-        let Some(transmission) = self.encoders.get_mut(index).and_then(|encoder| encoder.act(at)) else { return };
-        if let Some(format) = transmission.settings.format() {
+        let Some(transmission) = self.encoders.get_mut(index).and_then(|encoder| encoder.run_due_action(at)) else {
+            return;
+        };
+        if let Some(format) = transmission.settings.character_format() {
             self.drive(LineDriver::Encoder(index), transmission.start, format, &transmission.bytes);
         }
     }
@@ -120,7 +122,9 @@ impl Bus {
             if travelling.talker == LineDriver::Encoder(index) {
                 continue;
             }
-            let Some(format) = encoder.active_settings_at(start).and_then(LineSettings::format) else { continue };
+            let Some(format) = encoder.active_settings_at(start).and_then(LineSettings::character_format) else {
+                continue;
+            };
             let clean = !collides && format == travelling.format;
             let byte = if clean { byte } else { garbage_byte(&mut self.wires.rng) };
             // Without a parity bit a flipped bit is not detected.

@@ -1,7 +1,7 @@
 //! Settings of a virtual encoder in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&encoders=2`.
 //! [`Bus::new`](super::Bus::new) creates the virtual line from them.
 
-use super::encoder::Pace;
+use super::encoder::ResponseTimes;
 use super::models::{MODELS, Model};
 use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
 use crate::expected::{AllowedValues, Quantity};
@@ -19,7 +19,7 @@ parameters! {
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
         pub(super) model: Model = default_model(), "model" => ModelValues;
         pub(super) encoder_type: Option<u8> = None, "type" => OptionalValue(CustomNotation(AllowedValues::TypeByte, parse_whole::<u8>));
-        pub(super) serial_number: Option<String> = None, "serial" => OptionalValue(CustomNotation(AllowedValues::SerialNumber, serial));
+        pub(super) serial_number: Option<String> = None, "serial" => OptionalValue(CustomNotation(AllowedValues::SerialNumber, parse_serial_number));
         pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => CustomNotation(AllowedValues::BusAddress { last: DeviceAddress::LAST.byte() }, address);
         pub(super) settings: LineSettings = LineSettings::FACTORY,
             "settings" => CustomNotation(AllowedValues::SettingsByte, settings);
@@ -28,7 +28,7 @@ parameters! {
         pub(super) temperature: i16 = 42, "temperature" => WholeNumbers(Quantity::WholeCelsius, -100..=300);
         pub(super) echo: bool = false, "echo" => SWITCH;
         pub(super) encoders: u8 = 1, "encoders" => WholeNumbers(Quantity::Number, 1..=8);
-        pub(super) pace: Pace = Pace::Typical, "pace" => Keywords(&[("typical", Pace::Typical), ("worst", Pace::Worst)]);
+        pub(super) pace: ResponseTimes = ResponseTimes::Typical, "pace" => Keywords(&[("typical", ResponseTimes::Typical), ("worst", ResponseTimes::Worst)]);
         pub(super) codes: [AccessCode; 4] = [AccessCode::FACTORY; 4], secret "codes" => Codes;
     }
 }
@@ -45,7 +45,7 @@ impl Config {
         Ok(config)
     }
 
-    pub(super) fn address_of(&self, index: u8) -> DeviceAddress {
+    pub(super) fn device_address(&self, index: u8) -> DeviceAddress {
         DeviceAddress::new(self.address.byte().saturating_add(index)).unwrap_or(self.address)
     }
 
@@ -76,7 +76,7 @@ impl Config {
     }
 
     fn check_combination(&self) -> Result<(), ConfigError> {
-        let range = self.geometry(&EncoderTypes::built_in()).range();
+        let range = self.geometry(&EncoderTypes::built_in()).position_count();
         if let (Some(position), Some(range)) = (self.position, range)
             && u64::from(position) >= range
         {
@@ -133,7 +133,7 @@ impl ParameterValues for Codes {
     }
 }
 
-fn serial(text: &str) -> Option<String> {
+fn parse_serial_number(text: &str) -> Option<String> {
     let fits = (1..=9).contains(&text.len()) && text.bytes().all(|c| matches!(c, b' '..=b'~'));
     fits.then(|| text.to_owned())
 }
@@ -176,7 +176,7 @@ mod tests {
             temperature: -10,
             echo: true,
             encoders: 8,
-            pace: Pace::Worst,
+            pace: ResponseTimes::Worst,
             codes: [0x12, 0x55, 0x55, 0xAB].map(AccessCode::new),
         };
         assert!(config == expected);

@@ -18,7 +18,7 @@ use crate::units::Moment;
 pub struct Wear(BTreeMap<u8, u32>);
 
 impl Wear {
-    pub fn writes(&self, command: Command) -> u32 {
+    pub fn write_count(&self, command: Command) -> u32 {
         self.0.get(&command.byte()).copied().unwrap_or(0)
     }
 
@@ -90,7 +90,7 @@ impl EncoderElectronics {
             kit: config.is_kit(&types),
             encoder_type: config.encoder_type.unwrap_or(model.encoder_type),
             serial_number: config.serial_number_of(index),
-            address: config.address_of(index),
+            address: config.device_address(index),
             stored_settings: config.settings,
             memory: factory_memory(&model, config.codes),
             shaft: Shaft::new(config.geometry(&types), position, config.rpm),
@@ -115,7 +115,7 @@ impl EncoderElectronics {
     }
 
     /// Returns whether the encoder supports the command. Only kit encoders support 63h.
-    pub(super) fn has(&self, command: Command) -> bool {
+    pub(super) fn supports(&self, command: Command) -> bool {
         command != Command::Synchronise || self.kit
     }
 
@@ -124,7 +124,7 @@ impl EncoderElectronics {
     /// # Errors
     /// The status code with which the encoder refuses the request. Nothing has changed.
     pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
-        let data = self.carry_out(at, request)?;
+        let data = self.execute_request(at, request)?;
         let command = request.command();
         if command.row().persistent {
             self.wear.count(command);
@@ -132,7 +132,7 @@ impl EncoderElectronics {
         Ok(data)
     }
 
-    fn carry_out(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
+    fn execute_request(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
         match request {
             Request::ReadPosition => self.read_position(at),
             Request::SetPosition { position, code0 } | Request::Synchronise { position, code0 } => {
@@ -168,17 +168,17 @@ impl EncoderElectronics {
                 Ok([&[*field, *address, *count], data].concat())
             }
             Request::StoreData { field, address, code, data } => {
-                self.memory.store(*field, *address, data, *code)?;
+                self.memory.store_bytes(*field, *address, data, *code)?;
                 // 4Bh carries at most 128 bytes.
                 Ok(vec![*field, *address, u8::try_from(data.len()).unwrap_or(u8::MAX)])
             }
             Request::FieldStatus { field } => Ok(vec![*field, self.memory.status(*field)?.byte()]),
             Request::DefineField { field, status, code } => {
-                self.memory.define(*field, *status, *code)?;
+                self.memory.define_field(*field, *status, *code)?;
                 Ok(vec![*field, status.byte()])
             }
             Request::FreeMemory => {
-                let free = self.memory.free();
+                let free = self.memory.free_memory();
                 Ok(vec![free.blocks, free.fields])
             }
             Request::ChangeCode { number, old, new } => {
@@ -224,7 +224,7 @@ impl EncoderElectronics {
     ) -> Result<(), StatusCode> {
         self.memory.check_store_request(field, address, data.len(), code)?;
         let half = data.get(..data.len().div_ceil(2)).unwrap_or(data);
-        self.memory.store(field, address, half, code)?;
+        self.memory.store_bytes(field, address, half, code)?;
         self.wear.count(Command::StoreData);
         Ok(())
     }
@@ -238,8 +238,8 @@ impl EncoderElectronics {
 
     fn analogue_value(&self, at: Moment, channel: u8) -> Result<i16, StatusCode> {
         match channel {
-            Self::SINE => Ok(self.shaft.sine(at)),
-            Self::COSINE => Ok(self.shaft.cosine(at)),
+            Self::SINE => Ok(self.shaft.sine_at(at)),
+            Self::COSINE => Ok(self.shaft.cosine_at(at)),
             Self::TEMPERATURE => Ok(self.temperature),
             _ => Err(StatusCode::ARGUMENT),
         }
@@ -265,8 +265,8 @@ fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
         let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
         // If the name plate does not fit, the field is left out.
         let _ = memory
-            .define(0, status, AccessCode::FACTORY)
-            .and_then(|()| memory.store(0, 0, model.name_plate, AccessCode::FACTORY));
+            .define_field(0, status, AccessCode::FACTORY)
+            .and_then(|()| memory.store_bytes(0, 0, model.name_plate, AccessCode::FACTORY));
     }
     if !model.extended_label.is_empty() {
         memory = memory.with_extended_label(model.extended_label);

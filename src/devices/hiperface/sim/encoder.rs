@@ -22,7 +22,7 @@ use crate::sim::SimulatedFaults;
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Pace {
+pub enum ResponseTimes {
     /// Typical times as observed. The position takes 3.7 ms, a store 20 ms plus 1.5 ms per byte, and any other command
     /// half of its maximum time.
     #[default]
@@ -31,7 +31,7 @@ pub enum Pace {
     Worst,
 }
 
-impl Pace {
+impl ResponseTimes {
     const READ_POSITION: Duration = Duration::from_micros(3_700);
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
@@ -40,14 +40,14 @@ impl Pace {
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
-            (Pace::Worst, Ok(request)) => longest(request.command()),
-            (Pace::Worst, Err(_)) => longest(Command::ReadStatus),
-            (Pace::Typical, Ok(Request::ReadPosition)) => Self::READ_POSITION,
-            (Pace::Typical, Ok(Request::StoreData { data, .. })) => {
+            (ResponseTimes::Worst, Ok(request)) => longest(request.command()),
+            (ResponseTimes::Worst, Err(_)) => longest(Command::ReadStatus),
+            (ResponseTimes::Typical, Ok(Request::ReadPosition)) => Self::READ_POSITION,
+            (ResponseTimes::Typical, Ok(Request::StoreData { data, .. })) => {
                 Self::STORE + Self::STORE_A_BYTE * u32::try_from(data.len()).unwrap_or(u32::MAX)
             }
-            (Pace::Typical, Ok(request)) => longest(request.command()) / 2,
-            (Pace::Typical, Err(_)) => longest(Command::ReadStatus) / 2,
+            (ResponseTimes::Typical, Ok(request)) => longest(request.command()) / 2,
+            (ResponseTimes::Typical, Err(_)) => longest(Command::ReadStatus) / 2,
         }
     }
 }
@@ -75,7 +75,7 @@ pub(super) struct Transmission {
 pub struct Encoder {
     electronics: EncoderElectronics,
     faults: SimulatedFaults,
-    pace: Pace,
+    pace: ResponseTimes,
     power: Power,
     /// Interface settings that were stored at the last start.
     user: LineSettings,
@@ -178,7 +178,7 @@ impl Encoder {
     }
 
     /// Adds a monitoring code to the status queue. The code is lost if four are already waiting.
-    pub fn report(&mut self, code: StatusCode) {
+    pub fn queue_code(&mut self, code: StatusCode) {
         self.electronics.queue.push(code);
     }
 
@@ -245,7 +245,7 @@ impl Encoder {
         self.electronics.restart();
     }
 
-    /// Returns the time at which [`act`](Self::act) must be called next.
+    /// Returns the time at which [`run_due_action`](Self::run_due_action) must be called next.
     pub(super) fn next_action_time(&self) -> Option<Moment> {
         match &self.activity {
             Activity::Listening(reception) => reception.as_ref().map(|reception| reception.ends),
@@ -275,13 +275,13 @@ impl Encoder {
     }
 
     /// Executes the action due at `at`, the time returned by [`next_action_time`](Self::next_action_time).
-    pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
+    pub(super) fn run_due_action(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {
                 self.handle_frame_end(at, &reception);
                 None
             }
-            Activity::Executing { settings, verdict, .. } => self.answer(at, settings, verdict),
+            Activity::Executing { settings, verdict, .. } => self.start_reply(at, settings, verdict),
             Activity::Listening(None) | Activity::Talking { .. } => None,
         }
     }
@@ -318,14 +318,14 @@ impl Encoder {
     }
 
     fn parse_request(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
-        if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.has(command)) {
+        if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.supports(command)) {
             return Err(StatusCode::UNKNOWN_COMMAND);
         }
         Request::parse(frame).map_err(|error| error.status())
     }
 
     /// Completes the processing of a request: applies its effect and starts the reply.
-    fn answer(
+    fn start_reply(
         &mut self,
         at: Moment,
         settings: LineSettings,

@@ -49,7 +49,7 @@ impl Memory {
     }
 
     /// Returns the free memory (4Eh).
-    pub fn free(&self) -> FreeMemory {
+    pub fn free_memory(&self) -> FreeMemory {
         let blocks = (self.bytes.len() - self.used_bytes()) / FieldSize::BLOCK;
         // Both fit: a memory has at most 255 blocks, and a field at least one.
         let byte = |count: usize| u8::try_from(count).unwrap_or(u8::MAX);
@@ -72,7 +72,7 @@ impl Memory {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_deref();
         }
-        self.bytes.get(self.place(field)?)
+        self.bytes.get(self.field_range(field)?)
     }
 
     pub fn code(&self, number: AccessCodeNumber) -> AccessCode {
@@ -116,9 +116,9 @@ impl Memory {
     ///
     /// # Errors
     /// See [`check_store_request`](Self::check_store_request). Nothing is written.
-    pub fn store(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
+    pub fn store_bytes(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
         self.check_store_request(field, address, data.len(), code)?;
-        let start = self.place(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
+        let start = self.field_range(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
         let target = self.bytes.get_mut(start..start + data.len()).ok_or(StatusCode::OUT_OF_FIELD)?;
         target.copy_from_slice(data);
         Ok(())
@@ -129,11 +129,11 @@ impl Memory {
     /// # Errors
     /// 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, or 10h if the memory is too
     /// small. 10h also rejects deleting a field other than the last, or changing its size.
-    pub fn define(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
+    pub fn define_field(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         let next = usize::from(field) == self.fields.len() && field != EXTENDED_LABEL_FIELD;
         match (next, status.exists()) {
             (true, true) => self.create(status, code),
-            (_, true) => self.change(field, status, code),
+            (_, true) => self.change_field(field, status, code),
             (_, false) => self.delete(field, code),
         }
     }
@@ -168,7 +168,7 @@ impl Memory {
         Ok(())
     }
 
-    fn change(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
+    fn change_field(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         let present = self.check_field_access(field, code)?;
         let used_then = self.used_bytes() - present.size().bytes() + status.size().bytes();
         if present.size() != status.size() && (!self.is_last(field) || used_then > self.bytes.len()) {
@@ -209,7 +209,7 @@ impl Memory {
         self.fields.iter().map(|status| status.size().bytes()).sum()
     }
 
-    fn place(&self, field: u8) -> Option<Range<usize>> {
+    fn field_range(&self, field: u8) -> Option<Range<usize>> {
         let number = usize::from(field);
         let size = self.fields.get(number)?.size().bytes();
         let start: usize = self.fields.iter().take(number).map(|status| status.size().bytes()).sum();
@@ -231,17 +231,17 @@ mod tests {
     /// Returns a memory of 8 blocks with field 0 (32 bytes) and field 1 (16 bytes).
     fn two_fields() -> Memory {
         let mut memory = Memory::new(8);
-        memory.define(0, status(0xC9), CODE).unwrap();
-        memory.define(1, status(0xE8), CODE).unwrap();
+        memory.define_field(0, status(0xC9), CODE).unwrap();
+        memory.define_field(1, status(0xE8), CODE).unwrap();
         memory
     }
 
     #[test]
     fn fields_are_contiguous() {
         let mut memory = two_fields();
-        assert_eq!(memory.free(), FreeMemory { blocks: 5, fields: 2 });
-        memory.store(0, 31, &[1], CODE).unwrap();
-        memory.store(1, 0, &[2], CODE).unwrap();
+        assert_eq!(memory.free_memory(), FreeMemory { blocks: 5, fields: 2 });
+        memory.store_bytes(0, 31, &[1], CODE).unwrap();
+        memory.store_bytes(1, 0, &[2], CODE).unwrap();
         assert_eq!(memory.bytes[31..33], [1, 2]);
         assert_eq!(memory.field_bytes(1).unwrap()[..2], [2, 0xFF]);
         assert_eq!(memory.field_bytes(2), None);
@@ -253,13 +253,13 @@ mod tests {
         assert_eq!(memory.read(2, 0, 1, CODE), Err(StatusCode::NO_SUCH_FIELD));
         assert_eq!(memory.read(1, 16, 1, WRONG), Err(StatusCode::OUT_OF_FIELD));
         assert_eq!(memory.read(1, 15, 1, WRONG), Err(StatusCode::WRONG_CODE));
-        assert_eq!(memory.store(2, 0, &[0], CODE), Err(StatusCode::NO_SUCH_FIELD));
-        assert_eq!(memory.store(0, 31, &[0, 0], CODE), Err(StatusCode::OUT_OF_FIELD));
-        memory.define(1, status(0xA8), CODE).unwrap(); // WE = 0
-        assert_eq!(memory.store(1, 0, &[0], WRONG), Err(StatusCode::WRONG_CODE));
-        assert_eq!(memory.store(1, 0, &[0], CODE), Err(StatusCode::WRITE_PROTECTED));
-        memory.define(1, status(0xE0), CODE).unwrap(); // CE = 0
-        assert_eq!(memory.store(1, 0, &[7], WRONG), Ok(()));
+        assert_eq!(memory.store_bytes(2, 0, &[0], CODE), Err(StatusCode::NO_SUCH_FIELD));
+        assert_eq!(memory.store_bytes(0, 31, &[0, 0], CODE), Err(StatusCode::OUT_OF_FIELD));
+        memory.define_field(1, status(0xA8), CODE).unwrap(); // WE = 0
+        assert_eq!(memory.store_bytes(1, 0, &[0], WRONG), Err(StatusCode::WRONG_CODE));
+        assert_eq!(memory.store_bytes(1, 0, &[0], CODE), Err(StatusCode::WRITE_PROTECTED));
+        memory.define_field(1, status(0xE0), CODE).unwrap(); // CE = 0
+        assert_eq!(memory.store_bytes(1, 0, &[7], WRONG), Ok(()));
         assert_eq!(memory.read(1, 0, 1, WRONG), Ok(&[7][..]));
     }
 
@@ -280,7 +280,7 @@ mod tests {
         ];
         let before = memory.clone();
         for (what, field, byte, code, answer) in cases {
-            assert_eq!(memory.define(field, status(byte), code), Err(answer), "{what}");
+            assert_eq!(memory.define_field(field, status(byte), code), Err(answer), "{what}");
         }
         assert!(memory == before, "what is refused changes nothing");
     }
@@ -292,20 +292,20 @@ mod tests {
         memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
         assert_eq!(memory.change_code(code2, CODE, CODE), Err(StatusCode::WRONG_CODE));
         // Field 1 moves from code 2 to code 0: code 2 is required.
-        assert_eq!(memory.define(1, status(0xC8), CODE), Err(StatusCode::WRONG_CODE));
-        assert_eq!(memory.define(1, status(0xC8), AccessCode::new(0x66)), Ok(()));
+        assert_eq!(memory.define_field(1, status(0xC8), CODE), Err(StatusCode::WRONG_CODE));
+        assert_eq!(memory.define_field(1, status(0xC8), AccessCode::new(0x66)), Ok(()));
         assert_eq!(memory.read(1, 0, 1, CODE), Ok(&[0xFF][..]));
     }
 
     #[test]
     fn resizing_the_last_field_keeps_its_content() {
         let mut memory = two_fields();
-        memory.store(1, 0, &[0x08, 0x15], CODE).unwrap();
-        memory.define(1, status(0xED), CODE).unwrap();
-        assert_eq!(memory.free(), FreeMemory { blocks: 0, fields: 2 });
-        memory.define(1, status(0x68), CODE).unwrap();
-        assert_eq!(memory.free(), FreeMemory { blocks: 6, fields: 1 });
-        memory.define(1, status(0xC8), CODE).unwrap();
+        memory.store_bytes(1, 0, &[0x08, 0x15], CODE).unwrap();
+        memory.define_field(1, status(0xED), CODE).unwrap();
+        assert_eq!(memory.free_memory(), FreeMemory { blocks: 0, fields: 2 });
+        memory.define_field(1, status(0x68), CODE).unwrap();
+        assert_eq!(memory.free_memory(), FreeMemory { blocks: 6, fields: 1 });
+        memory.define_field(1, status(0xC8), CODE).unwrap();
         assert_eq!(memory.field_bytes(1).unwrap()[..3], [0x08, 0x15, 0xFF]);
     }
 
@@ -315,8 +315,8 @@ mod tests {
         assert_eq!(memory.status(0xFF).unwrap().byte(), 0x83);
         assert_eq!(memory.read(0xFF, 0, 64, WRONG).unwrap().len(), 64);
         assert_eq!(memory.read(0xFF, 1, 64, CODE), Err(StatusCode::OUT_OF_FIELD));
-        assert_eq!(memory.store(0xFF, 0, &[0], CODE), Err(StatusCode::WRITE_PROTECTED));
-        assert_eq!(memory.define(0xFF, status(0x03), CODE), Err(StatusCode::WRITE_PROTECTED));
-        assert_eq!(memory.free().fields, 0, "the label is not counted");
+        assert_eq!(memory.store_bytes(0xFF, 0, &[0], CODE), Err(StatusCode::WRITE_PROTECTED));
+        assert_eq!(memory.define_field(0xFF, status(0x03), CODE), Err(StatusCode::WRITE_PROTECTED));
+        assert_eq!(memory.free_memory().fields, 0, "the label is not counted");
     }
 }

@@ -27,6 +27,6 @@ pub use at_adapter::AttachableEncoder;
 pub use bus::Bus;
 pub use config::Config;
 pub use electronics::Wear;
-pub use encoder::{Encoder, Pace};
+pub use encoder::{Encoder, ResponseTimes};
 pub use memory::Memory;
 pub use models::{MODELS, Model};

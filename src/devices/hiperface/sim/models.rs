@@ -36,15 +36,15 @@ pub struct Model {
 /// All models. The first is the default.
 #[rustfmt::skip]
 pub const MODELS: [Model; 3] = [
-    Model { name: "skm36", encoder_type: 0x37, geometry: rotary(128, 4096), serial_number: "GB0450179", position: 0x000E_0531, ..COMMON },
-    Model { name: "sks36", encoder_type: 0x32, geometry: rotary(128, 1),    serial_number: "GB0463022", position: 0x0000_0531, ..COMMON },
-    Model { name: "sel37", encoder_type: 0xFF, geometry: rotary(16, 4096),  serial_number: "1730A0042", position: 0x000E_0531, kit: true, name_plate: KIT_MOTOR, extended_label: SEL37_LABEL, ..COMMON },
+    Model { name: "skm36", encoder_type: 0x37, geometry: rotary_geometry(128, 4096), serial_number: "GB0450179", position: 0x000E_0531, ..COMMON },
+    Model { name: "sks36", encoder_type: 0x32, geometry: rotary_geometry(128, 1),    serial_number: "GB0463022", position: 0x0000_0531, ..COMMON },
+    Model { name: "sel37", encoder_type: 0xFF, geometry: rotary_geometry(16, 4096),  serial_number: "1730A0042", position: 0x000E_0531, kit: true, name_plate: KIT_MOTOR, extended_label: SEL37_LABEL, ..COMMON },
 ];
 
 const COMMON: Model = Model {
     name: "",
     encoder_type: 0,
-    geometry: rotary(1, 1),
+    geometry: rotary_geometry(1, 1),
     kit: false,
     serial_number: "",
     firmware_version: "V1.23",
@@ -58,7 +58,7 @@ const COMMON: Model = Model {
     extended_label: &[],
 };
 
-const fn rotary(periods: u32, turns: u32) -> Geometry {
+const fn rotary_geometry(periods: u32, turns: u32) -> Geometry {
     Geometry::Rotary { periods, turns }
 }
 
@@ -93,7 +93,7 @@ mod tests {
             assert_eq!(model.firmware_date.len(), 8, "{}", model.name);
             assert!(model.firmware_version.len() <= 20, "{}", model.name);
             assert_eq!(model.name_plate.len(), 32, "{}", model.name);
-            assert!(u64::from(model.position) < model.geometry.range().unwrap(), "{}", model.name);
+            assert!(u64::from(model.position) < model.geometry.position_count().unwrap(), "{}", model.name);
             assert_eq!(model.encoder_type == 0xFF, !model.extended_label.is_empty(), "{}", model.name);
         }
         assert_eq!(Model::find("skm37"), None);
@@ -104,6 +104,6 @@ mod tests {
         let label = ExtendedLabel::parse(SEL37_LABEL).unwrap();
         assert!(label.checksum_fits);
         assert_eq!(label.designation, "SEL37-HFB0-K02");
-        assert_eq!(label.geometry, Some(rotary(16, 4096)));
+        assert_eq!(label.geometry, Some(rotary_geometry(16, 4096)));
     }
 }

@@ -34,7 +34,7 @@ impl Shaft {
     }
 
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        (self.place, self.since) = (self.place(now), now);
+        (self.place, self.since) = (self.steps_at(now), now);
         self.rpm = rpm;
     }
 
@@ -43,58 +43,58 @@ impl Shaft {
     }
 
     pub(super) fn can_reach(&self, position: u32) -> bool {
-        u64::from(position) < self.range()
+        u64::from(position) < self.position_count()
     }
 
     pub(super) fn position(&self, at: Moment) -> u32 {
-        let word = (self.integer_steps(at) + self.offset) % self.range();
+        let word = (self.integer_steps(at) + self.offset) % self.position_count();
         // The range is at most 2³².
         u32::try_from(word).unwrap_or(u32::MAX)
     }
 
     pub(super) fn set_position(&mut self, at: Moment, position: u32) {
-        let range = self.range();
+        let range = self.position_count();
         self.offset = (u64::from(position) % range + range - self.integer_steps(at)) % range;
     }
 
     /// Returns the sine signal in counts of 10 bits for 5 V. It has a mean of 2.5 V and 1 V from peak to peak, and
     /// rises through the mean at the start of a period.
-    pub(super) fn sine(&self, at: Moment) -> i16 {
-        Self::counts(self.phase(at).sin())
+    pub(super) fn sine_at(&self, at: Moment) -> i16 {
+        Self::to_counts(self.phase(at).sin())
     }
 
     /// Returns the cosine signal, scaled like the sine signal.
-    pub(super) fn cosine(&self, at: Moment) -> i16 {
-        Self::counts(self.phase(at).cos())
+    pub(super) fn cosine_at(&self, at: Moment) -> i16 {
+        Self::to_counts(self.phase(at).cos())
     }
 
-    fn counts(signal: f64) -> i16 {
+    fn to_counts(signal: f64) -> i16 {
         let volts = Self::MEAN_VOLTS + Self::AMPLITUDE_VOLTS * signal;
         (volts * Self::COUNTS_PER_VOLT) as i16 // between 409 and 614
     }
 
     fn phase(&self, at: Moment) -> f64 {
         let period = f64::from(STEPS_PER_PERIOD);
-        self.place(at) % period / period * TAU
+        self.steps_at(at) % period / period * TAU
     }
 
     fn integer_steps(&self, at: Moment) -> u64 {
-        self.place(at) as u64 // not negative, below the range
+        self.steps_at(at) as u64 // not negative, below the range
     }
 
     /// Returns the mechanical position in steps, from 0 to just below the range.
-    fn place(&self, at: Moment) -> f64 {
+    fn steps_at(&self, at: Moment) -> f64 {
         // A linear scale has no turns, so `rpm` means periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;
         let moved = at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
-        let range = self.range() as f64;
+        let range = self.position_count() as f64;
         // rem_euclid may round up to the range itself.
         let place = (self.place + moved).rem_euclid(range);
         if place < range { place } else { 0.0 }
     }
 
-    fn range(&self) -> u64 {
-        self.geometry.range().unwrap_or(Self::WORD).clamp(1, Self::WORD)
+    fn position_count(&self) -> u64 {
+        self.geometry.position_count().unwrap_or(Self::WORD).clamp(1, Self::WORD)
     }
 }
 
@@ -126,10 +126,10 @@ mod tests {
     #[test]
     fn a_set_position_shifts_the_word_and_not_the_signals() {
         let mut shaft = Shaft::new(SKM36, 24, 0.0);
-        assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (409, 511));
+        assert_eq!((shaft.sine_at(at(0)), shaft.cosine_at(at(0))), (409, 511));
         shaft.set_position(at(0), 0);
         assert_eq!(shaft.position(at(9)), 0);
-        assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (409, 511));
+        assert_eq!((shaft.sine_at(at(0)), shaft.cosine_at(at(0))), (409, 511));
         shaft.set_position(at(0), 0x00FF_FFFF);
         assert_eq!(shaft.position(at(9)), 0x00FF_FFFF);
         assert!(!shaft.can_reach(0x0100_0000));
@@ -140,7 +140,7 @@ mod tests {
     fn the_signals_repeat_every_period() {
         for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {
             let shaft = Shaft::new(SKM36, 0x531 / 32 * 32 + position, 0.0);
-            assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (sine, cosine), "{position}");
+            assert_eq!((shaft.sine_at(at(0)), shaft.cosine_at(at(0))), (sine, cosine), "{position}");
         }
     }
 

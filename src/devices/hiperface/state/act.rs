@@ -10,19 +10,19 @@ use crate::app::Text;
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, HasProfile, Phase, SessionEvents};
 use crate::devices::hiperface::jobs::HiperfaceJob;
-use crate::devices::hiperface::procedures::Watch;
+use crate::devices::hiperface::procedures::WatchedQuantity;
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::devices::hiperface::state::explain as words;
 
 /// Interval at which watched values are read. They change slowly, and reading them delays the position.
-const WATCHED_EVERY: Duration = Duration::from_millis(500);
+const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    pub(crate) fn act(&mut self, action: HiperfaceAction, services: &mut Services) {
+    pub(crate) fn handle_action(&mut self, action: HiperfaceAction, services: &mut Services) {
         match action {
             HiperfaceAction::ReadStatus => self.submit(HiperfaceJob::Status, services),
-            HiperfaceAction::Watch(what, on) => self.watch(what, on),
+            HiperfaceAction::Watch(what, on) => self.watch_value(what, on),
             HiperfaceAction::ReadAnalogue(channel) => {
                 self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services)
             }
@@ -42,7 +42,7 @@ impl Encoder {
                     self.remember_code(number, code);
                 }
             }
-            HiperfaceAction::Put { field, address, bytes } => self.put(field, address, &bytes, services),
+            HiperfaceAction::Put { field, address, bytes } => self.edit_bytes(field, address, &bytes, services),
             HiperfaceAction::Revert(range) => self.staged.revert_range(range),
             HiperfaceAction::Plan(change) => self.plan(change, services),
             HiperfaceAction::PlanAgain(options) => {
@@ -59,19 +59,19 @@ impl Encoder {
     }
 
     /// Starts or stops reading a value in addition to the position.
-    fn watch(&mut self, what: Watch, on: bool) {
-        let mut watched = self.record.watched();
+    fn watch_value(&mut self, what: WatchedQuantity, on: bool) {
+        let mut watched = self.record.watched_values();
         watched.retain(|own| *own != what);
         if on {
             watched.push(what);
         }
-        self.record.watch(&watched);
+        self.record.set_watched(&watched);
         self.update_watches();
     }
 
     pub(super) fn update_watches(&mut self) {
         if let Some(line) = &self.session.line {
-            line.watch_values(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
+            line.watch_values(self.record.watched_values().into_iter().map(|what| (what, WATCH_INTERVAL)).collect());
         }
     }
 
@@ -86,7 +86,7 @@ impl Encoder {
         }
     }
 
-    pub(super) fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
+    pub(super) fn edit_bytes(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
         let allowed = match (&self.session.phase, self.field(field)) {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
             // A profile can always be edited. The write protection that it records applies to the encoder only.
@@ -94,8 +94,8 @@ impl Encoder {
             (_, Some(image)) => self.reason_not_editable(image).map_or(Ok(()), Err),
         };
         let allowed = allowed.and_then(|()| {
-            let put = self.staged.put(field, address, bytes);
-            put.map_err(|error| words::staged(&error, bytes.len(), address))
+            let put = self.staged.edit_bytes(field, address, bytes);
+            put.map_err(|error| words::edit_error_text(&error, bytes.len(), address))
         });
         if let Err(text) = allowed {
             self.session.report_rejection(text, services);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::commutation;
 use crate::app::DeviceAction;
 use crate::devices::hiperface::jobs::Change;
-use crate::devices::hiperface::procedures::Watch;
+use crate::devices::hiperface::procedures::WatchedQuantity;
 use crate::devices::hiperface::profile::{FieldRange, RestoreOptions};
 use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, LineSettings};
 use crate::profile::PlanId;
@@ -13,7 +13,7 @@ use crate::profile::PlanId;
 pub enum HiperfaceAction {
     ReadStatus,
     /// Starts or stops reading a value while the position is polled.
-    Watch(Watch, bool),
+    Watch(WatchedQuantity, bool),
     ReadAnalogue(u8),
     /// Reads position, sine and cosine while the shaft is at rest.
     ReadRest,

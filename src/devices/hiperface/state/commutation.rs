@@ -17,15 +17,15 @@ use crate::devices::hiperface::procedures::RestPosition;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::TEXTS;
 
-pub use form::{Form, OffsetInputs, Slot, Source, Storage, Vector};
+pub use form::{EnergisedVector, Form, OffsetInputs, Source, Storage, VectorSlot};
 pub use offset_location::OffsetLocation;
-pub use outcome::{CommutationOffset, Setting, Stored, check_can_read, stored};
+pub use outcome::{CommutationOffset, PositionSetting, StoredRecord, check_can_read, stored};
 pub use report::reading_kind_text;
 
 pub enum CommutationAction {
     Edit(Box<Form>),
-    Read(Slot),
-    Use(Slot),
+    Read(VectorSlot),
+    Use(VectorSlot),
     Clear,
     /// Enters the offset in the memory as an edit. This is method 1 of the manual.
     Store,
@@ -40,7 +40,7 @@ pub struct Commutation {
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
     /// Slot of the last reading. The shaft is assumed to be still at this position.
-    last: Option<Slot>,
+    last: Option<VectorSlot>,
     asked: Option<PendingReading>,
 }
 
@@ -48,7 +48,7 @@ pub struct Commutation {
 /// form meanwhile.
 #[derive(Debug)]
 struct PendingReading {
-    slot: Slot,
+    slot: VectorSlot,
     source: Source,
     /// Phase as typed by the user.
     phase: String,
@@ -58,14 +58,14 @@ struct PendingReading {
 pub struct RestReading {
     /// Position in signal periods, within the whole range of the encoder.
     pub fine_periods: f64,
-    pub kind: Kind,
+    pub kind: PositionKind,
     /// Position word of the encoder, or `None` for a typed position.
     pub raw: Option<u32>,
 }
 
 /// Source and accuracy of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum PositionKind {
     Fine {
         residual_periods: f64,
         verdict: Verdict,
@@ -78,30 +78,30 @@ pub enum Kind {
 }
 
 impl Commutation {
-    pub fn reading(&self, slot: Slot) -> Option<&RestReading> {
+    pub fn reading_of(&self, slot: VectorSlot) -> Option<&RestReading> {
         let [one, other, second] = &self.readings;
         match slot {
-            Slot::OneSide => one,
-            Slot::OtherSide => other,
-            Slot::Second => second,
+            VectorSlot::OneSide => one,
+            VectorSlot::OtherSide => other,
+            VectorSlot::Second => second,
         }
         .as_ref()
     }
 
-    pub fn pending_slot(&self) -> Option<Slot> {
+    pub fn pending_slot(&self) -> Option<VectorSlot> {
         self.asked.as_ref().map(|asked| asked.slot)
     }
 
-    fn ask(&mut self, slot: Slot) {
+    fn request_reading(&mut self, slot: VectorSlot) {
         self.asked = Some(PendingReading { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
 
-    fn note(&mut self, slot: Slot, reading: RestReading) {
+    fn store_reading(&mut self, slot: VectorSlot, reading: RestReading) {
         let [one, other, second] = &mut self.readings;
         let place = match slot {
-            Slot::OneSide => one,
-            Slot::OtherSide => other,
-            Slot::Second => second,
+            VectorSlot::OneSide => one,
+            VectorSlot::OtherSide => other,
+            VectorSlot::Second => second,
         };
         *place = Some(reading);
         self.last = Some(slot);
@@ -114,17 +114,17 @@ impl Commutation {
     }
 
     /// Stores a reading in the slot that requested it, if any.
-    pub(super) fn take(&mut self, rest: RestPosition, geometry: Option<Geometry>) {
+    pub(super) fn accept_position(&mut self, rest: RestPosition, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
-        match asked.reading(rest, geometry) {
-            Ok(reading) => self.note(asked.slot, reading),
+        match asked.to_reading(rest, geometry) {
+            Ok(reading) => self.store_reading(asked.slot, reading),
             Err(why) => self.problem = Some(why),
         }
     }
 
     /// Handles a failed job. Returns whether the job was the requested reading, whose error is then shown with the
     /// request.
-    pub(super) fn failed(&mut self, why: &Text) -> bool {
+    pub(super) fn handle_failure(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
             self.problem = Some(why.clone());
@@ -132,31 +132,33 @@ impl Commutation {
         own
     }
 
-    pub(super) fn give_up(&mut self) {
+    pub(super) fn cancel_request(&mut self) {
         self.asked = None;
     }
 
-    fn apply_typed_value(&mut self, slot: Slot) {
-        match self.form.fine(slot) {
-            Ok(fine_periods) => self.note(slot, RestReading { fine_periods, kind: Kind::Typed, raw: None }),
+    fn apply_typed_value(&mut self, slot: VectorSlot) {
+        match self.form.fine_position(slot) {
+            Ok(fine_periods) => {
+                self.store_reading(slot, RestReading { fine_periods, kind: PositionKind::Typed, raw: None })
+            }
             Err(why) => self.problem = Some(why),
         }
     }
 }
 
 impl PendingReading {
-    fn reading(&self, rest: RestPosition, geometry: Option<Geometry>) -> Result<RestReading, Text> {
+    fn to_reading(&self, rest: RestPosition, geometry: Option<Geometry>) -> Result<RestReading, Text> {
         if !rest.valid {
             return Err(Text::new("commutation.invalid"));
         }
         let absolute = RestReading {
             fine_periods: (f64::from(rest.raw) + 0.5) / f64::from(STEPS_PER_PERIOD),
-            kind: Kind::Absolute,
+            kind: PositionKind::Absolute,
             raw: Some(rest.raw),
         };
         match (self.source, rest.signals) {
             (Source::Absolute, _) | (Source::Signals, None) => Ok(absolute),
-            (Source::Typed, _) => fine(rest.raw, form::phase(&self.phase)?, geometry, None),
+            (Source::Typed, _) => fine_reading(rest.raw, form::phase(&self.phase)?, geometry, None),
             (Source::Signals, Some(signals)) => {
                 let volts = signals.sine_v.hypot(signals.cosine_v);
                 let no_signal = || TEXTS.text("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
@@ -164,24 +166,29 @@ impl PendingReading {
                     return Err(no_signal());
                 }
                 let phase = from_voltages(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
-                fine(rest.raw, phase, geometry, Some(signals.resolution_periods()))
+                fine_reading(rest.raw, phase, geometry, Some(signals.resolution_periods()))
             }
         }
     }
 }
 
 /// Combines the absolute position and the phase. Fails if the residual exceeds 14/32 of a period.
-fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
+fn fine_reading(
+    raw: u32,
+    phase: Phase,
+    geometry: Option<Geometry>,
+    resolution: Option<f64>,
+) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
     // An unknown range is treated as one that never wraps.
-    let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
+    let periods = geometry.and_then(Geometry::position_count).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
     let synchronised = synchroniser.combine(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
     if synchronised.verdict == Verdict::Fault {
         let apart = synchronised.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
         return Err(TEXTS.text("commutation.far_apart").with_number("steps", apart, 1));
     }
-    let kind = Kind::Fine {
+    let kind = PositionKind::Fine {
         residual_periods: synchronised.residual_periods,
         verdict: synchronised.verdict,
         resolution_periods: resolution,
@@ -201,28 +208,28 @@ mod tests {
     }
 
     fn read(source: Source, phase: &str, rest: RestPosition) -> Result<RestReading, &'static str> {
-        let asked = PendingReading { slot: Slot::OneSide, source, phase: phase.to_owned() };
-        asked.reading(rest, SKM36).map_err(|text| text.id())
+        let asked = PendingReading { slot: VectorSlot::OneSide, source, phase: phase.to_owned() };
+        asked.to_reading(rest, SKM36).map_err(|text| text.id())
     }
 
     #[test]
     fn a_reading_keeps_its_requested_source() {
         let form = Form { source: Source::Typed, phase: "0.27".to_owned(), ..Form::default() };
         let mut commutation = Commutation { form, ..Commutation::default() };
-        commutation.ask(Slot::OneSide);
+        commutation.request_reading(VectorSlot::OneSide);
         commutation.form = Form { source: Source::Absolute, phase: String::new(), ..Form::default() };
-        commutation.take(rest(40, None), SKM36);
-        let reading = commutation.reading(Slot::OneSide).unwrap();
+        commutation.accept_position(rest(40, None), SKM36);
+        let reading = commutation.reading_of(VectorSlot::OneSide).unwrap();
         assert!((reading.fine_periods - 1.27).abs() < 1e-12, "{reading:?}");
     }
 
     #[test]
     fn signals_refine_a_reading() {
         let without = read(Source::Signals, "", rest(40, None)).unwrap();
-        assert_eq!((without.fine_periods, without.kind, without.raw), (40.5 / 32.0, Kind::Absolute, Some(40)));
+        assert_eq!((without.fine_periods, without.kind, without.raw), (40.5 / 32.0, PositionKind::Absolute, Some(40)));
         let with = read(Source::Signals, "", rest(40, Some((0.5, 0.0)))).unwrap();
         assert_eq!(with.fine_periods, 1.25);
-        assert_eq!(read(Source::Absolute, "", rest(40, Some((0.5, 0.0)))).unwrap().kind, Kind::Absolute);
+        assert_eq!(read(Source::Absolute, "", rest(40, Some((0.5, 0.0)))).unwrap().kind, PositionKind::Absolute);
         let typed = read(Source::Typed, "0,27", rest(40, None)).unwrap();
         assert!((typed.fine_periods - 1.27).abs() < 1e-12);
         // SKM36: the last step of the range and a phase beyond its end.

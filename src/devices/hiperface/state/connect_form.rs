@@ -5,8 +5,8 @@ use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
 use crate::app::connect::target::{host_and_port, non_empty, rejection_text, required_entry, split_target};
-use crate::devices::hiperface::jobs::check;
-use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS};
+use crate::devices::hiperface::jobs::check_link;
+use crate::devices::hiperface::procedures::{Echo, LinkParameters, MAX_PERIODS};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
@@ -93,14 +93,14 @@ impl FormModel for LinkForm {
                 (form.host, form.tcp_port) = split_target(&target);
             }
         }
-        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.fill_entry(name, value));
         form
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
         let target = self.target()?;
         let url = self.parameters()?.build_link(target)?;
-        check(&url).map_err(|error| self.refused(&url, &error))?;
+        check_link(&url).map_err(|error| self.link_error_text(&url, &error))?;
         Ok(url)
     }
 
@@ -135,7 +135,7 @@ impl LinkForm {
     }
 
     /// Fills in the form entry for a parameter. Returns `false` if no entry can show the value.
-    fn take(&mut self, name: &str, value: &str) -> bool {
+    fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);
             return true;
@@ -206,7 +206,7 @@ impl LinkForm {
         u8::from_str_radix(digits, 16).map_err(|_| with_address_range(TEXTS.text("form.address")).with("value", entry))
     }
 
-    fn refused(&self, url: &LinkUrl, error: &OpenError) -> Text {
+    fn link_error_text(&self, url: &LinkUrl, error: &OpenError) -> Text {
         let (OpenError::Url(UrlError::Value { name, value, .. })
         | OpenError::Sim(ConfigError::Value { key: name, value, .. })) = error
         else {
@@ -227,7 +227,7 @@ impl LinkForm {
             "turns" => "form.turns",
             _ => return rejection_text(url, error),
         };
-        TEXTS.text(id).with("value", value).with("most", MOST_PERIODS)
+        TEXTS.text(id).with("value", value).with("most", MAX_PERIODS)
     }
 }
 

@@ -35,7 +35,7 @@ impl HasDraft for Encoder {
     }
 
     fn current_edits(&self) -> Edits {
-        self.staged.edits().collect()
+        self.staged.edited_bytes().collect()
     }
 
     fn take_edits(&mut self, edits: Edits) {

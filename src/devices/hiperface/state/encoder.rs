@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::commutation::Commutation;
-use super::meaning::Meaning;
+use super::meaning::FrameDecoder;
 use super::record::Record;
 use super::rest::RestReadingRequest;
 use super::{StagedEdits, rules};
@@ -11,7 +11,7 @@ use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Session, Source};
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::devices::hiperface::jobs::Hiperface;
-use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField, check};
+use crate::devices::hiperface::procedures::{Identity, LineQuality, PolledSample, Survey, UnreadableField, check};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Item};
 use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, LineSettings, StatusCode};
 use crate::devices::hiperface::state::TEXTS;
@@ -35,7 +35,7 @@ pub struct Encoder {
     pub record: Record,
     pub commutation: Commutation,
     pub(super) rest: RestReadingRequest,
-    pub(super) meaning: Meaning,
+    pub(super) meaning: FrameDecoder,
     /// Access codes that the user has entered or changed. The next session with this encoder starts with them.
     pub(super) access_codes: Vec<(AccessCodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
@@ -48,7 +48,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    pub(super) fn with(session: Session<Hiperface>) -> Self {
+    pub(super) fn from_session(session: Session<Hiperface>) -> Self {
         Encoder {
             session,
             identity: None,
@@ -63,7 +63,7 @@ impl Encoder {
             record: Record::default(),
             commutation: Commutation::default(),
             rest: RestReadingRequest::default(),
-            meaning: Meaning::default(),
+            meaning: FrameDecoder::default(),
             access_codes: Vec::new(),
             asked: None,
             codes_due: Vec::new(),
@@ -106,7 +106,7 @@ impl Encoder {
     pub(crate) fn edited_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
-        profile.fields = self.staged.wanted();
+        profile.fields = self.staged.edited_fields();
         // The edited bytes may also contain a commutation offset.
         profile.mark_mounting_dependent_values();
         Some(profile)
@@ -157,12 +157,12 @@ impl Encoder {
 
     /// Returns the reason why a field cannot be edited, or `None` if it can.
     pub fn reason_not_editable(&self, field: &FieldImage) -> Option<Text> {
-        self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
+        self.unreadable.get(&field.number).cloned().or_else(|| rules::check_edit(field).err())
     }
 
-    pub(super) fn add_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
+    pub(super) fn add_samples(&mut self, samples: Vec<PolledSample>, dropped: u64) {
         let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
-        self.record.add(samples, dropped, geometry);
+        self.record.add_samples(samples, dropped, geometry);
     }
 
     /// Reports whether the access code entered last opens its fields. The message does not contain the code.

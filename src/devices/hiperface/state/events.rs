@@ -12,7 +12,7 @@ use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, JobStep, SavedProfile, Value,
 };
-use crate::devices::hiperface::procedures::{Error, Sample, Station};
+use crate::devices::hiperface::procedures::{Error, PolledSample, Station};
 use crate::devices::hiperface::profile::{Item, Op};
 use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, KIND, StatusCode};
 use crate::devices::hiperface::state::explain as explained;
@@ -38,7 +38,7 @@ impl Kind for Hiperface {
     }
 
     fn job_text(job: &HiperfaceJob) -> Text {
-        words::job(job)
+        words::job_name(job)
     }
 
     fn writes_memory(job: &HiperfaceJob) -> bool {
@@ -59,7 +59,7 @@ impl Kind for Hiperface {
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {
-        explained::job(error)
+        explained::job_error_texts(error)
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
@@ -91,7 +91,7 @@ impl Encoder {
 
     /// Updates the session after a write with a new address, new access codes and the position offset. The offset is
     /// stored only here, because the encoder does not report it.
-    pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
+    pub(super) fn apply_operations(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
                 Op::ChangeCode { number, new, .. } => self.remember_code(*number, *new),
@@ -120,7 +120,7 @@ impl Encoder {
     /// Adopts the line settings that the job has changed. The next session starts with them.
     fn adopt_line_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
-        let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
+        let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.character_format()) else { return };
         let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
         if now.format.baud != format.baud {
             url.query.set("baud", &format.baud.to_string());
@@ -150,7 +150,7 @@ impl Encoder {
         }
     }
 
-    fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
+    fn save_profile(&mut self, saved: SavedProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.staged.count());
         let locked = saved.locked.iter();
         let remarks = locked
@@ -163,17 +163,17 @@ impl Encoder {
         let JobError::Interrupted { interrupted, .. } = error else { return };
         let Some(prepared) = self.open_review().and_then(Review::plan_in_progress) else { return };
         let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
-        self.follow(&done, services);
+        self.apply_operations(&done, services);
     }
 }
 
 impl SessionEvents for Encoder {
-    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<PolledSample>, dropped: u64) {
         self.add_samples(samples, dropped);
     }
 
     fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
-        self.meaning.of(frame)
+        self.meaning.explain(frame)
     }
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
@@ -205,7 +205,7 @@ impl SessionEvents for Encoder {
                 self.submit_access_codes(services);
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
-            HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
+            HiperfaceOutput::Position(reading) => self.add_samples(vec![PolledSample::Position(reading)], 0),
             HiperfaceOutput::Rest(rest) => self.handle_rest_reading(rest),
             HiperfaceOutput::Value(value) => self.apply_value(value),
             HiperfaceOutput::Check(lines) => {
@@ -224,7 +224,7 @@ impl SessionEvents for Encoder {
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::CodeNoted => self.submit_access_codes(services),
-            HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
+            HiperfaceOutput::Saved(saved) => self.save_profile(*saved, services),
             HiperfaceOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             HiperfaceOutput::Committed(committed) => self.handle_commit_end(committed, services),
             // Searches run in a separate session.

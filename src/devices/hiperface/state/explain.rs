@@ -18,18 +18,18 @@ use std::path::Path;
 
 use crate::devices::hiperface::state::TEXTS;
 
-pub use change::{change, staged};
-pub use check::{check, line_quality};
+pub use change::{change_text, edit_error_text};
+pub use check::{check_lines, line_quality};
 pub use command::command;
 pub use damage::damage_text;
-pub use frame::frame;
-pub use items::{field_range, item, plan_item_text, read_back, refused};
+pub use frame::detail_text;
+pub use items::{field_range, item_text, plan_item_text, read_back, rejection_text};
 pub use job_step::step_text;
 pub use label::{LabelRow, label};
-pub use op::op;
-pub use types::{open, store};
+pub use op::operation_texts;
+pub use types::{open, table_error_text};
 pub use words::{
-    field_access, field_code_required, field_status, geometry, line_settings, position, raw_position_text, status,
+    field_access, field_code_required, field_status, geometry_text, line_settings, position, raw_position_text, status,
     status_with_number,
 };
 
@@ -37,12 +37,12 @@ use crate::app::Text;
 use crate::app::explain::{link_error_text, not_started_text};
 use crate::devices::hiperface::jobs::{ChangeKind, JobError, TypeMismatch};
 use crate::devices::hiperface::procedures::Error;
-use crate::devices::hiperface::procedures::write::{Interrupted, WrittenChanges};
+use crate::devices::hiperface::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownMeaningField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
 /// Returns the messages for a job that ended early. There is at least one message.
-pub fn job(error: &JobError) -> Vec<Text> {
+pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
@@ -54,7 +54,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 }
 
 /// Returns the messages for an interrupted write: progress, result, and location of the backup.
-pub fn interruption_text(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+pub fn interruption_text(interrupted: &InterruptedWrite, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
         Error::Cancelled => Text::new("write.cancelled").with("done", done.ops).with("planned", planned),
@@ -88,13 +88,13 @@ pub fn connection_loss_text(error: &JobError) -> Option<Text> {
 
 /// Returns the message for a completed write. If no value was read back, it says that the encoder has acknowledged the
 /// write.
-pub fn written(written: &WrittenChanges) -> Text {
+pub fn written_text(written: &WrittenChanges) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
 /// Returns the message for a completed write, as shown at the end of a review.
-pub fn verified(written: &WrittenChanges) -> Text {
+pub fn verified_text(written: &WrittenChanges) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
         verified => Text::new("review.verified").with("verified", verified).with("cycles", written.write_cycles),
@@ -243,10 +243,10 @@ mod tests {
     use crate::devices::hiperface::procedures::write::EndState;
     use crate::link::{LinkError, LinkErrorKind};
 
-    fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
+    fn cut_off(cause: Error, write_cycles: u64) -> InterruptedWrite {
         let ops = usize::try_from(write_cycles).unwrap();
         let done = WrittenChanges { ops, write_cycles, ..WrittenChanges::default() };
-        Interrupted { done, unfinished: None, cause, end_state: EndState::default() }
+        InterruptedWrite { done, unfinished: None, cause, end_state: EndState::default() }
     }
 
     #[test]
@@ -290,10 +290,10 @@ mod tests {
     #[test]
     fn an_access_code_is_acknowledged_and_not_read_back() {
         let of = |verified| WrittenChanges { ops: 1, written: 1, verified, write_cycles: 1 };
-        assert!(verified(&of(3)).to_string_in(Language::English).starts_with("Read back and verified"));
-        for text in [written(&of(0)), verified(&of(0))] {
+        assert!(verified_text(&of(3)).to_string_in(Language::English).starts_with("Read back and verified"));
+        for text in [written_text(&of(0)), verified_text(&of(0))] {
             assert_eq!(text.id(), "session.acknowledged");
         }
-        assert_eq!(written(&of(1)).id(), "session.written");
+        assert_eq!(written_text(&of(1)).id(), "session.written");
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn with_address_range(text: Text) -> Text {
 ///
 /// # Errors
 /// Returns an error if the entry is invalid.
-pub fn channel(text: &str) -> Result<u8, Text> {
+pub fn parse_channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
@@ -55,7 +55,7 @@ pub fn channel(text: &str) -> Result<u8, Text> {
 /// Returns an error if the entry is invalid. The message contains the range, if known.
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
-    let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
+    let last = geometry.and_then(Geometry::position_count).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
     let refused = || TEXTS.text("entry.position").with("entry", text).with("last", last);
     let degrees = text.strip_suffix('°').or_else(|| text.strip_suffix("deg"));
     let steps = match (degrees, text.strip_prefix("0x")) {
@@ -156,10 +156,10 @@ mod tests {
     fn bytes_are_hexadecimal_in_every_usual_form() {
         assert_eq!(address("41").unwrap().byte(), 0x41);
         assert_eq!(address("0x5F").unwrap().byte(), 0x5F);
-        assert_eq!(channel("48h"), Ok(0x48));
+        assert_eq!(parse_channel("48h"), Ok(0x48));
         assert_eq!(access_code(" ff ").unwrap().byte(), 0xFF);
         for text in ["", "100", "+5", "zz", "0x"] {
-            assert!(channel(text).is_err(), "{text}");
+            assert!(parse_channel(text).is_err(), "{text}");
         }
         assert!(address("3F").is_err() && address("60").is_err());
         assert_eq!(new_access_code("1A", "0x1a").map(AccessCode::byte), Ok(0x1A));

@@ -4,7 +4,7 @@ use super::{Encoder, LinkForm};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Severity, Text};
-use crate::devices::hiperface::jobs::{self, Hiperface, check, encoder_types};
+use crate::devices::hiperface::jobs::{self, Hiperface, check_link, encoder_types};
 use crate::devices::hiperface::procedures::{LinkParameters, recorded_identity};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
@@ -23,7 +23,7 @@ impl DeviceType for Encoder {
     type Tables = Result<EncoderTypes, StoreError>;
 
     fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
-        check(url)
+        check_link(url)
     }
 
     fn may_have_other_master(url: &LinkUrl) -> bool {
@@ -31,7 +31,7 @@ impl DeviceType for Encoder {
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
-        words::refused(cause)
+        words::rejection_text(cause)
     }
 
     fn load_tables(store: &Store) -> Self::Tables {
@@ -43,10 +43,10 @@ impl DeviceType for Encoder {
         profile: Option<(&HiperfaceProfile, Self::Tables)>,
         services: &mut Services,
     ) -> Self {
-        let mut encoder = Encoder::with(session);
+        let mut encoder = Encoder::from_session(session);
         if let Some((profile, tables)) = profile {
             let types = tables.unwrap_or_else(|error| {
-                services.notify(Severity::Warning, vec![words::store(&error)], None);
+                services.notify(Severity::Warning, vec![words::table_error_text(&error)], None);
                 EncoderTypes::built_in()
             });
             encoder.identify(recorded_identity(profile, &types));

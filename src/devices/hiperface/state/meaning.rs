@@ -1,24 +1,24 @@
 //! Explanation of frames in the trace. A reply is explained together with the request before it.
 
 use crate::app::{FrameExplanation, Text, TraceFault};
-use crate::devices::hiperface::procedures::Damage;
-use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Request, StatusCode, describe};
+use crate::devices::hiperface::procedures::ReplyDamage;
+use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Request, StatusCode, describe_frame};
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
 /// Decoder that explains frames in the order of transmission. It remembers the last request.
 #[derive(Debug, Default)]
-pub(super) struct Meaning {
+pub(super) struct FrameDecoder {
     request: Option<(u8, Request)>,
 }
 
-impl Meaning {
+impl FrameDecoder {
     /// Explains a frame without revealing access codes.
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
+    pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
         match (entry.bytes.to_bytes(), entry.direction) {
-            (Some(bytes), Direction::Sent) => self.sent(&bytes),
-            (None, Direction::Sent) => self.sent(&with_checksum(entry.bytes.with_stand_in(0))),
-            (Some(bytes), Direction::Received) => self.received(&bytes),
+            (Some(bytes), Direction::Sent) => self.explain_sent(&bytes),
+            (None, Direction::Sent) => self.explain_sent(&with_checksum(entry.bytes.with_stand_in(0))),
+            (Some(bytes), Direction::Received) => self.explain_received(&bytes),
             (None, Direction::Received) => {
                 self.request = None;
                 FrameExplanation::from_error(Text::new("trace.hidden"))
@@ -26,27 +26,27 @@ impl Meaning {
         }
     }
 
-    fn sent(&mut self, bytes: &[u8]) -> FrameExplanation {
+    fn explain_sent(&mut self, bytes: &[u8]) -> FrameExplanation {
         let frame = Frame::parse(bytes).ok();
         self.request = frame.and_then(|frame| Some((frame.address, Request::parse(&frame).ok()?)));
-        let facts = describe(bytes, None).unwrap_or_default();
-        facts.iter().map(words::frame).collect::<Vec<Text>>().into()
+        let facts = describe_frame(bytes, None).unwrap_or_default();
+        facts.iter().map(words::detail_text).collect::<Vec<Text>>().into()
     }
 
-    fn received(&mut self, bytes: &[u8]) -> FrameExplanation {
+    fn explain_received(&mut self, bytes: &[u8]) -> FrameExplanation {
         let asked = self.request.take();
         let answer = match asked.as_ref().map(|(address, request)| request.parse_reply(*address, bytes)) {
-            Some(Err(error)) => return FrameExplanation::from_error(words::damage_text(&Damage::Reply(error))),
+            Some(Err(error)) => return FrameExplanation::from_error(words::damage_text(&ReplyDamage::Reply(error))),
             Some(Ok(answer)) => Some(answer),
             None => None,
         };
-        let facts = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
+        let facts = match describe_frame(bytes, asked.as_ref().map(|(_, request)| request)) {
             Ok(facts) => facts,
-            Err(error) => return FrameExplanation::from_error(words::damage_text(&Damage::Reply(error.into()))),
+            Err(error) => return FrameExplanation::from_error(words::damage_text(&ReplyDamage::Reply(error.into()))),
         };
         // The heading already contains the facts of the request. Only the other facts of the reply are added.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
-        let meaning: Vec<Text> = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
+        let meaning: Vec<Text> = facts.iter().filter(|facts| !known(facts)).map(words::detail_text).collect();
         let fault = answer.filter(is_status_report).map(|_| TraceFault::Reported);
         FrameExplanation { fault, ..meaning.into() }
     }
@@ -93,15 +93,15 @@ mod tests {
             ("with a warning", &[0x40, 0xC2, 0x00, 0x01, 0x23, 0x45, 0xE5], Some(TraceFault::Reported), "position"),
         ];
         for (label, reply, fault, words) in cases {
-            let mut meaning = Meaning::default();
-            assert_eq!(meaning.of(&entry(Direction::Sent, &position)).fault, None);
-            let said = meaning.of(&entry(Direction::Received, reply));
+            let mut meaning = FrameDecoder::default();
+            assert_eq!(meaning.explain(&entry(Direction::Sent, &position)).fault, None);
+            let said = meaning.explain(&entry(Direction::Received, reply));
             let text: Vec<String> = said.meaning.iter().map(|text| text.to_string_in(Language::English)).collect();
             assert_eq!(said.fault, fault, "{label}: {text:?}");
             assert!(text.join(" ").contains(words), "{label}: {text:?}");
         }
-        let mut meaning = Meaning::default();
+        let mut meaning = FrameDecoder::default();
         let hidden = TraceEntry { bytes: MaskedBytes::fully_masked(3), ..entry(Direction::Received, &[]) };
-        assert_eq!(meaning.of(&hidden).fault, Some(TraceFault::Broken));
+        assert_eq!(meaning.explain(&hidden).fault, Some(TraceFault::Broken));
     }
 }

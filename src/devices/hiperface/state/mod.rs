@@ -32,6 +32,6 @@ pub use connect_form::{LinkForm, LinkKind};
 pub use encoder::Encoder;
 pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
-pub use rules::Allowed;
+pub use rules::ActionPermission;
 pub use search::{EncoderSearchForm, Search, SearchAction};
 pub use staged::{ByteEditError, StagedEdits};

@@ -22,7 +22,7 @@ impl DeviceModel for Encoder {
 
     fn connect(&mut self, opened: OpenedConnection<Hiperface>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
-        self.record.begin(&opened.began);
+        self.record.begin_session(&opened.began);
         self.session.attach_connection(opened, services);
         self.update_watches();
         self.codes_due.clear();
@@ -31,7 +31,7 @@ impl DeviceModel for Encoder {
     }
 
     fn handle_action(&mut self, action: HiperfaceAction, context: &mut ActionContext<'_>) {
-        Encoder::act(self, action, context.services);
+        Encoder::handle_action(self, action, context.services);
     }
 
     fn handle_result(&mut self, done: Infallible, _services: &mut Services) {

@@ -2,12 +2,12 @@
 
 use super::encoder::Encoder;
 use crate::app::session::Source;
-use crate::devices::hiperface::procedures::profile_of;
-use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded};
+use crate::devices::hiperface::procedures::create_profile;
+use crate::devices::hiperface::profile::{HiperfaceProfile, RecordedValues};
 
 impl Encoder {
     /// Returns the byte ranges of a field whose values depend on the mounting, each with its meaning.
-    pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
+    pub fn mounting_ranges(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
         let own = |profile: &HiperfaceProfile| {
             let marks = profile.mounting.iter().filter(|mark| mark.item.field == field);
             marks
@@ -21,7 +21,7 @@ impl Encoder {
             Source::File { document, .. } => document.body.get::<HiperfaceProfile>().map(own).unwrap_or_default(),
             Source::Link(_) | Source::New { .. } => {
                 let Some(identity) = &self.identity else { return Vec::new() };
-                own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))
+                own(&create_profile(identity, self.staged.device().to_vec(), RecordedValues::default()))
             }
         }
     }

@@ -8,28 +8,28 @@ use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
 use crate::app::track::{DeviceRecorder, PositionSample, PositionScales, Watchable, WatchedValue};
-use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
+use crate::devices::hiperface::procedures::{PolledSample, PositionReading, WatchedQuantity, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
 #[derive(Debug, Default)]
 pub struct Record {
-    pub(super) track: DeviceRecorder<Watch>,
+    pub(super) track: DeviceRecorder<WatchedQuantity>,
     last: Option<PositionReading>,
     refused: bool,
 }
 
 impl Record {
-    pub(super) fn begin(&mut self, began: &Zoned) {
+    pub(super) fn begin_session(&mut self, began: &Zoned) {
         (self.last, self.refused) = (None, false);
         self.track.begin_session(began);
     }
 
-    pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
+    pub(super) fn add_samples(&mut self, samples: Vec<PolledSample>, dropped: u64, geometry: Option<Geometry>) {
         self.track.record_dropped(dropped);
-        let meaning = meaning(geometry);
+        let meaning = position_scales(geometry);
         for sample in samples {
             match sample {
-                Sample::Position(reading) => {
+                PolledSample::Position(reading) => {
                     let sighting = PositionSample {
                         at: reading.at,
                         position: Some(reading.raw.into()),
@@ -39,24 +39,24 @@ impl Record {
                     self.track.add_positions(&[sighting], &meaning);
                     (self.last, self.refused) = (Some(reading), false);
                 }
-                Sample::NoPosition { at, .. } => {
+                PolledSample::NoPosition { at, .. } => {
                     self.track.add_positions(
                         &[PositionSample { at, position: None, is_bad: true, is_warned: false }],
                         &meaning,
                     );
                     self.refused = true;
                 }
-                Sample::Watched(reading) => self.track.add_watched(&reading.watch, &watching(&reading)),
+                PolledSample::Watched(reading) => self.track.add_watched(&reading.watch, &watched_value(&reading)),
             }
         }
     }
 
     /// Selects the values to record in addition to the position.
-    pub(super) fn watch(&mut self, watched: &[Watch]) {
+    pub(super) fn set_watched(&mut self, watched: &[WatchedQuantity]) {
         self.track.set_watched(watched);
     }
 
-    pub fn watched(&self) -> Vec<Watch> {
+    pub fn watched_values(&self) -> Vec<WatchedQuantity> {
         self.track.watched_values()
     }
 
@@ -66,27 +66,27 @@ impl Record {
     }
 
     /// Returns whether the encoder refuses to report a position at present.
-    pub fn refused(&self) -> bool {
+    pub fn is_position_refused(&self) -> bool {
         self.refused
     }
 
-    pub fn positions(&self) -> u64 {
+    pub fn position_count(&self) -> u64 {
         self.track.position_count()
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.track.clear_unless_long();
         (self.last, self.refused) = (None, false);
     }
 }
 
-fn meaning(geometry: Option<Geometry>) -> PositionScales {
+fn position_scales(geometry: Option<Geometry>) -> PositionScales {
     match geometry {
         Some(Geometry::Linear { period_nm, .. }) => {
             PositionScales::for_millimetres(f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6)
         }
         Some(rotary @ Geometry::Rotary { .. }) => {
-            let range = rotary.range().and_then(|range| i64::try_from(range).ok());
+            let range = rotary.position_count().and_then(|range| i64::try_from(range).ok());
             PositionScales::for_steps_per_turn(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
         // Without a known range, the position wraps at the end of its 32-bit word.
@@ -94,7 +94,7 @@ fn meaning(geometry: Option<Geometry>) -> PositionScales {
     }
 }
 
-fn watching(reading: &WatchedReading) -> WatchedValue {
+fn watched_value(reading: &WatchedReading) -> WatchedValue {
     WatchedValue {
         at: reading.at,
         value: reading.value.as_ref().ok().map(|value| Value::Whole(*value)),
@@ -103,26 +103,26 @@ fn watching(reading: &WatchedReading) -> WatchedValue {
     }
 }
 
-impl Watchable for Watch {
+impl Watchable for WatchedQuantity {
     fn is_whole(&self) -> bool {
         true
     }
 
     fn create_series(&self, group: GroupId) -> Series {
         let (heading, unit) = match *self {
-            Watch::TEMPERATURE => ("temperature".to_owned(), "unit.celsius"),
-            Watch::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
-            Watch::Counter => ("counter".to_owned(), "unit.counts"),
+            WatchedQuantity::TEMPERATURE => ("temperature".to_owned(), "unit.celsius"),
+            WatchedQuantity::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
+            WatchedQuantity::Counter => ("counter".to_owned(), "unit.counts"),
         };
         Series::new(group, 0, watch_name(*self), heading, vec![Scale::new(unit, 1.0, 0)])
     }
 }
 
-pub fn watch_name(what: Watch) -> Text {
+pub fn watch_name(what: WatchedQuantity) -> Text {
     match what {
-        Watch::TEMPERATURE => TEXTS.text("recorder.temperature"),
-        Watch::Analogue(channel) => TEXTS.text("recorder.channel").with("channel", format!("{channel:02X}h")),
-        Watch::Counter => TEXTS.text("recorder.counter"),
+        WatchedQuantity::TEMPERATURE => TEXTS.text("recorder.temperature"),
+        WatchedQuantity::Analogue(channel) => TEXTS.text("recorder.channel").with("channel", format!("{channel:02X}h")),
+        WatchedQuantity::Counter => TEXTS.text("recorder.counter"),
     }
 }
 

@@ -31,7 +31,7 @@ impl Encoder {
             return;
         }
         let geometry = self.geometry();
-        self.commutation.take(rest, geometry);
+        self.commutation.accept_position(rest, geometry);
     }
 
     /// Handles a failed job. Returns whether the job was a reading at rest, whose error is then shown with the request.
@@ -40,12 +40,12 @@ impl Encoder {
             self.rest.result = Some(Err(why.clone()));
             return true;
         }
-        self.commutation.failed(why)
+        self.commutation.handle_failure(why)
     }
 
     pub(super) fn cancel_rest_reading(&mut self) {
         self.rest.is_under_way = false;
-        self.commutation.give_up();
+        self.commutation.cancel_request();
     }
 }
 

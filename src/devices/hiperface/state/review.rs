@@ -27,7 +27,7 @@ impl Reviewable for Hiperface {
     type Written = WrittenChanges;
 
     fn change_title(change: &Change) -> Text {
-        words::change(change)
+        words::change_text(change)
     }
 
     fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
@@ -42,7 +42,7 @@ impl Reviewable for Hiperface {
     }
 
     fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
-        words::op(op)
+        words::operation_texts(op)
     }
 
     fn skips_mounting_values(prepared: &Prepared) -> bool {
@@ -126,10 +126,10 @@ impl Reviewable for Hiperface {
     }
 
     fn written_text(written: &WrittenChanges) -> Text {
-        words::written(written)
+        words::written_text(written)
     }
 
     fn verified_text(written: &WrittenChanges) -> Text {
-        words::verified(written)
+        words::verified_text(written)
     }
 }

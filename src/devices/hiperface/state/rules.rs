@@ -12,33 +12,33 @@ use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
 /// Permission for an action. The error is the reason why the action is not allowed.
-pub type Allowed = Result<(), Text>;
+pub type ActionPermission = Result<(), Text>;
 
 /// Checks whether a field of this size can be created.
-pub fn create(memory: FreeMemory, size: FieldSize, code: AccessCodeNumber, code_required: bool) -> Allowed {
-    allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
+pub fn create(memory: FreeMemory, size: FieldSize, code: AccessCodeNumber, code_required: bool) -> ActionPermission {
+    plan_permission(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
 
-pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &StagedEdits) -> Allowed {
+pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &StagedEdits) -> ActionPermission {
     status(field)?;
     check_edits_preserved(staged, field.number, size.bytes())?;
-    allowed(plan_redefine(memory, field, field.status.with_size(size)))
+    plan_permission(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
 /// Checks whether the size of the field can be changed. The encoder permits this for the last field only.
-pub fn check_resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
+pub fn check_resizable(memory: FreeMemory, field: &FieldImage) -> ActionPermission {
     status(field)?;
-    allowed(plan_delete(memory, field))
+    plan_permission(plan_delete(memory, field))
 }
 
-pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &StagedEdits) -> Allowed {
+pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &StagedEdits) -> ActionPermission {
     check_resizable(memory, field)?;
     check_edits_preserved(staged, field.number, 0)
 }
 
 /// Checks whether the protection and access code of the field can be changed. The encoder requires the field's access
 /// code for this.
-pub fn status(field: &FieldImage) -> Allowed {
+pub fn status(field: &FieldImage) -> ActionPermission {
     match field.bytes {
         Some(_) => Ok(()),
         None => Err(TEXTS.text("rules.code_unknown").with("field", field.number).with("number", field.status.code())),
@@ -46,7 +46,7 @@ pub fn status(field: &FieldImage) -> Allowed {
 }
 
 /// Checks a change without querying the encoder.
-pub(super) fn change(staged: &StagedEdits, change: &Change) -> Allowed {
+pub(super) fn check_change(staged: &StagedEdits, change: &Change) -> ActionPermission {
     let field = |number: &u8| staged.device().iter().find(|field| field.number == *number);
     match change {
         Change::DeleteField { number }
@@ -68,7 +68,7 @@ pub(super) fn change(staged: &StagedEdits, change: &Change) -> Allowed {
 }
 
 /// Checks that the plan keeps every byte that has an unwritten edit.
-pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> Allowed {
+pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> ActionPermission {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
             check_edits_preserved(staged, *field, if to.exists() { to.size().bytes() } else { 0 })
@@ -78,14 +78,14 @@ pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> All
 }
 
 /// Checks that the field has no edit beyond its first `bytes` bytes.
-fn check_edits_preserved(staged: &StagedEdits, field: u8, bytes: usize) -> Allowed {
-    match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
+fn check_edits_preserved(staged: &StagedEdits, field: u8, bytes: usize) -> ActionPermission {
+    match staged.edited_bytes().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
         count => Err(TEXTS.text("rules.edits").with("field", field).with("count", count)),
     }
 }
 
-pub fn edit(field: &FieldImage) -> Allowed {
+pub fn check_edit(field: &FieldImage) -> ActionPermission {
     if field.bytes.is_none() {
         let error = PlanError::CodeUnknown { field: field.number, code: field.status.code() };
         return Err(words::plan(&error));
@@ -102,7 +102,7 @@ pub fn largest_size(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())
 }
 
-fn allowed(plan: Result<HiperfacePlan, PlanError>) -> Allowed {
+fn plan_permission(plan: Result<HiperfacePlan, PlanError>) -> ActionPermission {
     plan.map(|_| ()).map_err(|error| words::plan(&error))
 }
 
@@ -120,7 +120,7 @@ mod tests {
         staged.refresh(vec![field.clone()]);
         let plan = plan_delete(memory, &field).unwrap();
         assert_eq!(preserves_edits(&staged, &plan), Ok(()));
-        staged.put(0, 3, &[1]).unwrap();
+        staged.edit_bytes(0, 3, &[1]).unwrap();
         assert_eq!(preserves_edits(&staged, &plan).unwrap_err().id(), "rules.edits");
         let grown = plan_redefine(memory, &field, DataFieldStatus::from_byte(0xC9)).unwrap();
         assert_eq!(preserves_edits(&staged, &grown), Ok(()));

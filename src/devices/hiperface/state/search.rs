@@ -49,7 +49,7 @@ impl Search {
         url
     }
 
-    pub(crate) fn opened(
+    pub(crate) fn handle_opened(
         &mut self,
         result: Result<Box<OpenedConnection<Hiperface>>, Box<OpenFailure>>,
         services: &Services,
@@ -67,14 +67,14 @@ impl Search {
         }
     }
 
-    pub(crate) fn pump(&mut self) {
+    pub(crate) fn process_events(&mut self) {
         let dead = self.line.as_ref().is_some_and(LiveSession::is_dead);
         while let Some(event) = self.line.as_mut().and_then(LiveSession::next) {
             match event {
                 Event::Remark(DeviceMessage::Found(found)) => self.found.push(found),
                 Event::Finished(_, output) => self.finish(*output),
                 Event::Failed(_, error) | Event::Cancelled(_, error) => {
-                    self.end = words::job(&error).into_iter().next();
+                    self.end = words::job_error_texts(&error).into_iter().next();
                 }
                 Event::Lost(error) => self.end = Some(explain::link_error_text(&error)),
                 Event::Started(_)
@@ -179,7 +179,7 @@ impl Finder for EncoderSearchForm {
         let SearchLinkResult { number, result } = done;
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
-            (Some(search), result) => search.opened(result, services),
+            (Some(search), result) => search.handle_opened(result, services),
             // The search ended while its link was being opened, so the link is not needed.
             (None, Ok(opened)) => opened.close_unused(SessionId(number), services),
             (None, Err(_)) => {}
@@ -188,7 +188,7 @@ impl Finder for EncoderSearchForm {
 
     fn process_events(&mut self) {
         if let Some(search) = &mut self.search {
-            search.pump();
+            search.process_events();
         }
     }
 

@@ -54,7 +54,7 @@ impl StagedEdits {
         self.base()
     }
 
-    pub fn wanted(&self) -> Vec<FieldImage> {
+    pub fn edited_fields(&self) -> Vec<FieldImage> {
         let mut fields = self.base().clone();
         for ((number, address), byte) in self.iter() {
             let field = fields.iter_mut().find(|field| field.number == number);
@@ -79,7 +79,7 @@ impl StagedEdits {
     }
 
     /// Returns the ranges of consecutive edited bytes.
-    pub fn changes(&self) -> Vec<FieldRange> {
+    pub fn edited_byte_ranges(&self) -> Vec<FieldRange> {
         let mut runs: Vec<FieldRange> = Vec::new();
         for ((field, address), _) in self.iter() {
             match runs.last_mut() {
@@ -100,14 +100,14 @@ impl StagedEdits {
             let addresses = (range.start..).take(range.count.unwrap_or(0));
             addresses.filter_map(|address| self.byte(range.field, address)).collect()
         };
-        self.changes().into_iter().map(|range| (range, bytes(&range))).collect()
+        self.edited_byte_ranges().into_iter().map(|range| (range, bytes(&range))).collect()
     }
 
     /// Edits consecutive bytes of a field as one undoable step.
     ///
     /// # Errors
     /// Returns an error without any change if the field does not exist, is locked or is too short.
-    pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), ByteEditError> {
+    pub fn edit_bytes(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), ByteEditError> {
         let image = self.field(field).ok_or(ByteEditError::NoField { field })?;
         let size = image.bytes.as_ref().ok_or(ByteEditError::Locked { field })?.len();
         if address.checked_add(bytes.len()).is_none_or(|end| end > size) {
@@ -121,7 +121,7 @@ impl StagedEdits {
         self.revert_matching(|(field, address)| range.contains(field, address));
     }
 
-    pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
+    pub fn edited_bytes(&self) -> impl Iterator<Item = (u8, usize, u8)> {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
@@ -158,30 +158,30 @@ mod tests {
     #[test]
     fn an_edit_is_separate_from_the_device() {
         let mut staged = staged();
-        staged.put(0, 3, &[0x08, 0x00, 0x15]).unwrap();
+        staged.edit_bytes(0, 3, &[0x08, 0x00, 0x15]).unwrap();
         assert_eq!((staged.device_byte(0, 3), staged.byte(0, 3)), (Some(0), Some(0x08)));
         assert!(staged.is_edited(0, 3) && !staged.is_edited(0, 4) && staged.is_edited(0, 5));
-        assert_eq!(staged.changes(), [FieldRange::new(0, 3, 1), FieldRange::new(0, 5, 1)]);
-        assert_eq!(staged.wanted()[0].bytes.as_ref().unwrap()[5], 0x15);
-        staged.put(0, 3, &[0, 0, 0]).unwrap();
+        assert_eq!(staged.edited_byte_ranges(), [FieldRange::new(0, 3, 1), FieldRange::new(0, 5, 1)]);
+        assert_eq!(staged.edited_fields()[0].bytes.as_ref().unwrap()[5], 0x15);
+        staged.edit_bytes(0, 3, &[0, 0, 0]).unwrap();
         assert!(!staged.is_dirty(), "as the device has it is no edit");
     }
 
     #[test]
     fn refused_edits_name_a_reason_and_change_nothing() {
         let mut staged = staged();
-        assert_eq!(staged.put(0, 15, &[1, 2]), Err(ByteEditError::Outside { field: 0, last: 15 }));
-        assert_eq!(staged.put(0, usize::MAX, &[1]), Err(ByteEditError::Outside { field: 0, last: 15 }));
-        assert_eq!(staged.put(1, 0, &[1]), Err(ByteEditError::Locked { field: 1 }));
-        assert_eq!(staged.put(7, 0, &[1]), Err(ByteEditError::NoField { field: 7 }));
+        assert_eq!(staged.edit_bytes(0, 15, &[1, 2]), Err(ByteEditError::Outside { field: 0, last: 15 }));
+        assert_eq!(staged.edit_bytes(0, usize::MAX, &[1]), Err(ByteEditError::Outside { field: 0, last: 15 }));
+        assert_eq!(staged.edit_bytes(1, 0, &[1]), Err(ByteEditError::Locked { field: 1 }));
+        assert_eq!(staged.edit_bytes(7, 0, &[1]), Err(ByteEditError::NoField { field: 7 }));
         assert!(!staged.is_dirty() && !staged.undo());
     }
 
     #[test]
     fn edits_can_be_undone_and_redone() {
         let mut staged = staged();
-        staged.put(0, 0, &[1, 2]).unwrap();
-        staged.put(0, 1, &[3]).unwrap();
+        staged.edit_bytes(0, 0, &[1, 2]).unwrap();
+        staged.edit_bytes(0, 1, &[3]).unwrap();
         assert!(staged.undo());
         assert_eq!((staged.byte(0, 0), staged.byte(0, 1)), (Some(1), Some(2)));
         assert!(staged.undo() && !staged.is_dirty() && !staged.undo());
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn edits_survive_a_fresh_reading() {
         let mut staged = staged();
-        staged.put(0, 0, &[1, 2]).unwrap();
+        staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         let mut now = [0; 16];
         now[1] = 2; // written meanwhile, by this program or another one
         now[9] = 9;
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn edits_wait_for_a_field_that_cannot_be_read() {
         let mut staged = staged();
-        staged.put(0, 0, &[1, 2]).unwrap();
+        staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         let mut locked = fields(&[0; 16]);
         locked[0].bytes = None;
         staged.refresh(locked);
@@ -223,17 +223,17 @@ mod tests {
             "a plan says which code is missing"
         );
         staged.refresh(fields(&[1; 16]));
-        assert_eq!(staged.edits().collect::<Vec<_>>(), [(0, 1, 2)]);
+        assert_eq!(staged.edited_bytes().collect::<Vec<_>>(), [(0, 1, 2)]);
     }
 
     #[test]
     fn a_draft_is_restored() {
         let mut staged = staged();
-        staged.put(0, 0, &[1, 2]).unwrap();
-        let draft: Vec<(u8, usize, u8)> = staged.edits().collect();
+        staged.edit_bytes(0, 0, &[1, 2]).unwrap();
+        let draft: Vec<(u8, usize, u8)> = staged.edited_bytes().collect();
         let mut other = self::staged();
         other.take_draft(draft.into_iter().chain([(5, 0, 1), (0, 99, 1), (0, 3, 0)]));
-        assert_eq!(other.wanted(), staged.wanted());
-        assert_eq!(other.edits().count(), 2);
+        assert_eq!(other.edited_fields(), staged.edited_fields());
+        assert_eq!(other.edited_bytes().count(), 2);
     }
 }

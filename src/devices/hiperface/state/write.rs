@@ -9,8 +9,8 @@ use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, SessionEvents, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
-use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
-use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded, RestoreOptions, check_device};
+use crate::devices::hiperface::procedures::{SaveOptions, create_profile};
+use crate::devices::hiperface::profile::{HiperfaceProfile, RecordedValues, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
@@ -56,7 +56,7 @@ impl HasMemory for Encoder {
     }
 
     fn change_rejection(&self, change: &Change) -> Option<Text> {
-        rules::change(&self.staged, change).err()
+        rules::check_change(&self.staged, change).err()
     }
 
     fn rejection_reason(&self, prepared: &Prepared) -> Option<Text> {
@@ -66,7 +66,7 @@ impl HasMemory for Encoder {
     fn handle_executed_plan(&mut self, _: &Committed, services: &mut Services) {
         let Some(prepared) = self.open_review().and_then(Review::plan_in_progress) else { return };
         let ops = prepared.plan.ops.clone();
-        self.follow(&ops, services);
+        self.apply_operations(&ops, services);
     }
 
     /// Does nothing, because the list of jobs already shows the start.
@@ -85,7 +85,7 @@ impl HasMemory for Encoder {
         self.unreadable.clear();
         self.position_set = None;
         self.analogue.clear();
-        self.record.forget();
+        self.record.clear();
         self.access_codes.clear();
         self.tried_code = None;
         self.commutation = Commutation::default();
@@ -112,8 +112,8 @@ impl HasProfile for Encoder {
             .chain(locked)
             .chain(self.unreadable.values().cloned())
             .collect();
-        let recorded = Recorded { counter: self.counter, ..Recorded::default() };
-        Some(Ok((Body::new(profile_of(identity, fields, recorded)), remarks)))
+        let recorded = RecordedValues { counter: self.counter, ..RecordedValues::default() };
+        Some(Ok((Body::new(create_profile(identity, fields, recorded)), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

@@ -7,35 +7,36 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, CommutationOffset, Form, Slot, Source, Vector, check_can_read, reading_kind_text,
+    CommutationAction as Assistant, CommutationOffset, EnergisedVector, Form, Source, VectorSlot, check_can_read,
+    reading_kind_text,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{
     button_with_reason, card, card_with_trailing, dropdown, entry, folding_card, icon_button, labelled_entry,
     paragraph, split, text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
-const NUMBER: f32 = 96.0;
-const READ: f32 = 160.0;
-const POSITION: f32 = 80.0;
+const ENTRY_WIDTH: f32 = 96.0;
+const READ_BUTTON_WIDTH: f32 = 160.0;
+const POSITION_WIDTH: f32 = 80.0;
 /// Minimum width in points for showing the position on the same line as its buttons.
-const BESIDE: f32 = 430.0;
+const MIN_ONE_LINE_WIDTH: f32 = 430.0;
 /// Minimum width in points for both limits in one row.
 const BOTH_LIMITS: f32 = 420.0;
 const MESSAGE_LINES: f32 = 2.0;
 /// Minimum width in points for two columns.
-const COLUMNS: f32 = 700.0;
+const MIN_TWO_COLUMN_WIDTH: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
     // The report is below the shorter of two columns, or at the end of a single one.
-    let wide = ui.available_width() >= COLUMNS;
+    let wide = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     split(
         ui,
         theme,
-        (0.5, COLUMNS),
+        (0.5, MIN_TWO_COLUMN_WIDTH),
         (&mut *actions, &mut form),
         |ui, (_, form)| {
             preparation_ui(ui, theme, form);
@@ -63,11 +64,11 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         result::report_ui(ui, theme, encoder);
     }
     if form != encoder.commutation.form {
-        actions.push(ask(encoder, Assistant::Edit(Box::new(form))));
+        actions.push(assistant_action(encoder, Assistant::Edit(Box::new(form))));
     }
 }
 
-fn ask(encoder: &Encoder, action: Assistant) -> Action {
+fn assistant_action(encoder: &Encoder, action: Assistant) -> Action {
     Action::device(encoder.session.id, Hiperface::Commutation(action))
 }
 
@@ -75,22 +76,22 @@ fn preparation_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.before"), |ui| {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-            paragraph(ui, RichText::new(say(theme, "commutation.danger")).color(theme.palette.warn));
+            paragraph(ui, RichText::new(translate(theme, "commutation.danger")).color(theme.palette.warn));
         });
         ui.horizontal_wrapped(|ui| {
-            ui.checkbox(&mut form.disabled, say(theme, "commutation.disabled"));
-            ui.checkbox(&mut form.uncoupled, say(theme, "commutation.uncoupled"));
-            ui.checkbox(&mut form.released, say(theme, "commutation.released"));
+            ui.checkbox(&mut form.disabled, translate(theme, "commutation.disabled"));
+            ui.checkbox(&mut form.uncoupled, translate(theme, "commutation.uncoupled"));
+            ui.checkbox(&mut form.released, translate(theme, "commutation.released"));
         });
         let (current, time) = form.limit_problems();
         limits_ui(ui, theme, form);
         problem_ui(ui, theme, current.as_ref());
         problem_ui(ui, theme, time.as_ref());
-        entry(ui, theme, &say(theme, "commutation.vector"), |ui| {
-            let vectors = Vector::ALL.map(|vector| (vector, say(theme, vector.word())));
-            dropdown(ui, &say(theme, "commutation.vector"), &mut form.vector, vectors);
+        entry(ui, theme, &translate(theme, "commutation.vector"), |ui| {
+            let vectors = EnergisedVector::ALL.map(|vector| (vector, translate(theme, vector.keyword())));
+            dropdown(ui, &translate(theme, "commutation.vector"), &mut form.vector, vectors);
         });
-        if form.vector == Vector::Other {
+        if form.vector == EnergisedVector::Other {
             number_ui(ui, theme, "commutation.vector_angle", &mut form.vector_deg, "0");
         }
     });
@@ -102,12 +103,12 @@ fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         number_ui(ui, theme, "commutation.time", &mut form.time_s, "");
         return;
     }
-    let [current, time] = ["commutation.current", "commutation.time"].map(|id| say(theme, id));
+    let [current, time] = ["commutation.current", "commutation.time"].map(|id| translate(theme, id));
     entry(ui, theme, &current, |ui| {
-        text_entry(ui, &mut form.current_a, NUMBER, &current, "");
+        text_entry(ui, &mut form.current_a, ENTRY_WIDTH, &current, "");
         ui.add_space(theme.space.between);
         ui.label(theme.label(&time));
-        text_entry(ui, &mut form.time_s, NUMBER, &time, "");
+        text_entry(ui, &mut form.time_s, ENTRY_WIDTH, &time, "");
     });
 }
 
@@ -120,30 +121,30 @@ fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
 fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.motor"), |ui| {
         number_ui(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
-        let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
+        let of_type = Form::default().signal_periods(encoder.geometry()).map(|periods| periods.to_string());
         number_ui(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
         if let Some(words) = form.periods_warning(encoder.geometry()) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
-        entry(ui, theme, &say(theme, "commutation.direction"), |ui| {
+        entry(ui, theme, &translate(theme, "commutation.direction"), |ui| {
             let directions = [(false, "commutation.with"), (true, "commutation.against")];
-            let directions = directions.map(|(reversed, id)| (reversed, say(theme, id)));
-            dropdown(ui, &say(theme, "commutation.direction"), &mut form.reversed, directions);
+            let directions = directions.map(|(reversed, id)| (reversed, translate(theme, id)));
+            dropdown(ui, &translate(theme, "commutation.direction"), &mut form.reversed, directions);
         });
-        entry(ui, theme, &say(theme, "commutation.source"), |ui| {
+        entry(ui, theme, &translate(theme, "commutation.source"), |ui| {
             let sources = [
                 (Source::Signals, "commutation.from_signals"),
                 (Source::Typed, "commutation.from_typed"),
                 (Source::Absolute, "commutation.from_absolute"),
             ];
-            let sources = sources.map(|(source, id)| (source, say(theme, id)));
-            dropdown(ui, &say(theme, "commutation.source"), &mut form.source, sources);
+            let sources = sources.map(|(source, id)| (source, translate(theme, id)));
+            dropdown(ui, &translate(theme, "commutation.source"), &mut form.source, sources);
         });
         if form.source == Source::Typed {
             number_ui(ui, theme, "commutation.phase", &mut form.phase, &theme.format_number(0.0, 4));
         }
         let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
-        limit.on_hover_text(say(theme, "commutation.limit_hint"));
+        limit.on_hover_text(translate(theme, "commutation.limit_hint"));
         if let Err(why) = form.inputs(encoder.geometry()) {
             paragraph(ui, theme.label(theme.format_text(&why)));
         }
@@ -151,21 +152,21 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
 }
 
 fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
-    labelled_entry(ui, theme, TEXTS.text(id), text, NUMBER, hint)
+    labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint)
 }
 
 fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
-    let any = Slot::ALL.into_iter().any(|slot| commutation.reading(slot).is_some());
+    let any = VectorSlot::ALL.into_iter().any(|slot| commutation.reading_of(slot).is_some());
     let mut clear = false;
     let aside = |ui: &mut Ui| {
-        clear = icon_button(ui, any, icons::TRASH, &say(theme, "commutation.clear")).clicked();
+        clear = icon_button(ui, any, icons::TRASH, &translate(theme, "commutation.clear")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("commutation.rest"), aside, |ui| {
-        paragraph(ui, theme.label(say(theme, "commutation.rest_words")));
+        paragraph(ui, theme.label(translate(theme, "commutation.rest_words")));
         let [one, other, _] = &mut form.typed;
-        slot(ui, theme, encoder, Slot::OneSide, one, actions);
-        slot(ui, theme, encoder, Slot::OtherSide, other, actions);
+        slot_ui(ui, theme, encoder, VectorSlot::OneSide, one, actions);
+        slot_ui(ui, theme, encoder, VectorSlot::OtherSide, other, actions);
         let warn = |words: Text| RichText::new(theme.format_text(&words)).color(theme.palette.warn);
         let message = match (&commutation.problem, commutation.offset(encoder.geometry())) {
             (Some(problem), _) => RichText::new(theme.format_text(problem)).color(theme.palette.bad),
@@ -181,16 +182,16 @@ fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
         fixed_height_message_ui(ui, theme, message);
     });
     if clear {
-        actions.push(ask(encoder, Assistant::Clear));
+        actions.push(assistant_action(encoder, Assistant::Clear));
     }
 }
 
 fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("commutation.second"), |ui| {
-        paragraph(ui, theme.label(say(theme, "commutation.second_words")));
+        paragraph(ui, theme.label(translate(theme, "commutation.second_words")));
         number_ui(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
         let [_, _, typed] = &mut form.typed;
-        slot(ui, theme, encoder, Slot::Second, typed, actions);
+        slot_ui(ui, theme, encoder, VectorSlot::Second, typed, actions);
         match encoder.commutation.second_vector_result(encoder.geometry()) {
             Some(Ok((verdict, words))) => verdict_ui(ui, theme, verdict, &words),
             Some(Err(why)) => paragraph(ui, theme.label(theme.format_text(&why))),
@@ -209,31 +210,38 @@ pub(super) fn fixed_height_message_ui(ui: &mut Ui, theme: &Theme, message: RichT
 }
 
 /// Draws the controls for one reading: a button to read the position and an entry to type it.
-fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
+fn slot_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    slot: VectorSlot,
+    typed: &mut String,
+    actions: &mut Vec<Action>,
+) {
     let commutation = &encoder.commutation;
     let (read, take) = match slot {
-        Slot::OneSide => ("commutation.read_one", "commutation.use_one"),
-        Slot::OtherSide => ("commutation.read_other", "commutation.use_other"),
-        Slot::Second => ("commutation.read_second", "commutation.use_second"),
+        VectorSlot::OneSide => ("commutation.read_one", "commutation.use_one"),
+        VectorSlot::OtherSide => ("commutation.read_other", "commutation.use_other"),
+        VectorSlot::Second => ("commutation.read_second", "commutation.use_second"),
     };
-    let beside = ui.available_width() >= BESIDE;
+    let beside = ui.available_width() >= MIN_ONE_LINE_WIDTH;
     ui.horizontal_wrapped(|ui| {
         let allowed = check_can_read(commutation, encoder.session.is_ready());
         // All buttons have the same width, which aligns the entries in a column.
-        let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
+        let size = egui::vec2(READ_BUTTON_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
-            if button_with_reason(ui, theme, &allowed, icons::CROSSHAIR, &say(theme, read)).clicked() {
-                actions.push(ask(encoder, Assistant::Read(slot)));
+            if button_with_reason(ui, theme, &allowed, icons::CROSSHAIR, &translate(theme, read)).clicked() {
+                actions.push(assistant_action(encoder, Assistant::Read(slot)));
             }
         });
         // The labels differ between the readings, for screen readers.
-        let label = format!("{} · {}", say(theme, slot.word()), say(theme, "commutation.fine"));
-        let response = text_entry(ui, typed, POSITION, &label, &say(theme, "commutation.or_type"));
+        let label = format!("{} · {}", translate(theme, slot.keyword()), translate(theme, "commutation.fine"));
+        let response = text_entry(ui, typed, POSITION_WIDTH, &label, &translate(theme, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let filled = !typed.trim().is_empty();
-        if icon_button(ui, filled, icons::CHECK, &say(theme, take)).clicked() || (enter && filled) {
-            actions.push(ask(encoder, Assistant::Use(slot)));
+        if icon_button(ui, filled, icons::CHECK, &translate(theme, take)).clicked() || (enter && filled) {
+            actions.push(assistant_action(encoder, Assistant::Use(slot)));
         }
         if beside {
             value_ui(ui, theme, encoder, slot);
@@ -245,8 +253,8 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
 }
 
 /// Draws the position of a slot and its source. The height is one line, also without a reading.
-fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot) {
-    let Some(reading) = encoder.commutation.reading(slot) else {
+fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: VectorSlot) {
+    let Some(reading) = encoder.commutation.reading_of(slot) else {
         ui.label(theme.monospace("–").color(theme.palette.muted));
         return;
     };

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::devices::hiperface::state::TEXTS;
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 
 use egui::Ui;
 
@@ -71,16 +71,16 @@ impl TypedConnectForm for HiperfaceConnectForm {
 }
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
-    entry(ui, theme, &say(theme, "connect.model"), |ui| {
+    entry(ui, theme, &translate(theme, "connect.model"), |ui| {
         let mut at = LinkForm::model_names().position(|model| model == form.model).unwrap_or(0);
         let models = LinkForm::model_names().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
-        if dropdown(ui, &say(theme, "connect.model"), &mut at, models)
+        if dropdown(ui, &translate(theme, "connect.model"), &mut at, models)
             && let Some(model) = LinkForm::model_names().nth(at)
         {
             model.clone_into(&mut form.model);
         }
     });
-    entries_ui(ui, theme, say, LinkForm::virtual_device_entries(), &mut form.typed);
+    entries_ui(ui, theme, translate, LinkForm::virtual_device_entries(), &mut form.typed);
 }
 
 fn line_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
@@ -89,8 +89,8 @@ fn line_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
         dropdown(ui, &theme.translate("settings_card.baud"), &mut form.baud, bauds);
         parity(ui, theme, &mut form.parity);
     });
-    entry(ui, theme, &say(theme, "connect.address"), |ui| {
-        text_entry(ui, &mut form.address, 96.0, &say(theme, "connect.address"), "40");
+    entry(ui, theme, &translate(theme, "connect.address"), |ui| {
+        text_entry(ui, &mut form.address, 96.0, &translate(theme, "connect.address"), "40");
     });
 }
 
@@ -99,12 +99,12 @@ fn more_settings_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut 
         return;
     }
     echo_ui(ui, theme, &mut form.echo);
-    entry(ui, theme, &say(theme, "settings_card.timeout"), |ui| {
+    entry(ui, theme, &translate(theme, "settings_card.timeout"), |ui| {
         let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
-        let times = times.map(|(long, id)| (long, say(theme, id)));
-        dropdown(ui, &say(theme, "settings_card.timeout"), &mut form.long_timeout, times);
+        let times = times.map(|(long, id)| (long, translate(theme, id)));
+        dropdown(ui, &translate(theme, "settings_card.timeout"), &mut form.long_timeout, times);
     });
-    entries_ui(ui, theme, say, LinkForm::link_entries(), &mut form.typed);
+    entries_ui(ui, theme, translate, LinkForm::link_entries(), &mut form.typed);
 }
 
 fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState, actions: &mut Vec<Action>) {
@@ -112,17 +112,17 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState,
     let running = search.is_some_and(Search::is_running);
     theme.card_frame().show(ui, |ui| {
         fill_width(ui);
-        ui.label(theme.heading(say(theme, "find.title")));
-        paragraph(ui, theme.label(say(theme, "find.words")));
+        ui.label(theme.heading(translate(theme, "find.title")));
+        paragraph(ui, theme.label(translate(theme, "find.words")));
         ui.add_enabled_ui(!running, |ui| {
-            ui.checkbox(&mut view.one_encoder, say(theme, "find.one_encoder"));
+            ui.checkbox(&mut view.one_encoder, translate(theme, "find.one_encoder"));
             ui.add_enabled_ui(view.one_encoder, |ui| {
-                ui.checkbox(&mut view.power_cycle, say(theme, "find.power_cycle"));
+                ui.checkbox(&mut view.power_cycle, translate(theme, "find.power_cycle"));
             });
         });
         ui.horizontal(|ui| {
             if running {
-                if labelled_button(ui, icons::X, &say(theme, "find.stop")).clicked() {
+                if labelled_button(ui, icons::X, &translate(theme, "find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
                 spinner(ui, theme);
@@ -131,7 +131,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState,
                 theme,
                 &dialog.url().map(drop),
                 icons::MAGNIFYING_GLASS,
-                &say(theme, "find.start"),
+                &translate(theme, "find.start"),
             )
             .clicked()
             {

@@ -7,7 +7,7 @@ use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperface::procedures::Identity;
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
     card, card_with_trailing, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
@@ -55,10 +55,10 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
                 .with("total", identity.label.eeprom_bytes())
                 .with("free", memory.bytes())
                 .with("fields", memory.fields);
-            row(ui, theme, &say(theme, "encoder_card.memory"), theme.format_text(&text));
+            row(ui, theme, &translate(theme, "encoder_card.memory"), theme.format_text(&text));
         } else {
             let total = format!("{} B", identity.label.eeprom_bytes());
-            row(ui, theme, &say(theme, "encoder_card.memory"), theme.monospace(total));
+            row(ui, theme, &translate(theme, "encoder_card.memory"), theme.monospace(total));
         }
         line_quality_ui(ui, theme, encoder);
     });
@@ -71,7 +71,7 @@ fn line_quality_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let quality = &encoder.line_quality;
     let words = RichText::new(theme.format_text(&words::line_quality(quality)));
     let words = if quality.has_errors() { words.color(theme.palette.warn) } else { words };
-    row(ui, theme, &say(theme, "encoder_card.line"), words);
+    row(ui, theme, &translate(theme, "encoder_card.line"), words);
 }
 
 fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
@@ -79,22 +79,32 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     let or_none = |text: &str| if text.is_empty() { none() } else { text.to_owned() };
     let serial = &identity.serial;
     row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(or_none(&serial.serial_number)));
-    row(ui, theme, &say(theme, "encoder_card.type"), theme.monospace(format!("{:02X}h", identity.label.encoder_type)));
-    let resolution = match identity.geometry {
-        Some(geometry) => theme.format_text(&words::geometry(geometry)),
-        None => say(theme, "encoder_card.no_geometry"),
-    };
-    row(ui, theme, &say(theme, "encoder_card.resolution"), resolution);
-    let firmware = format!("{}  {}", serial.firmware_version, serial.firmware_date);
-    row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware.trim())));
-    row(ui, theme, &say(theme, "encoder_card.address"), theme.monospace(format!("{:02X}h", identity.address)));
     row(
         ui,
         theme,
-        &say(theme, "encoder_card.settings"),
+        &translate(theme, "encoder_card.type"),
+        theme.monospace(format!("{:02X}h", identity.label.encoder_type)),
+    );
+    let resolution = match identity.geometry {
+        Some(geometry) => theme.format_text(&words::geometry_text(geometry)),
+        None => translate(theme, "encoder_card.no_geometry"),
+    };
+    row(ui, theme, &translate(theme, "encoder_card.resolution"), resolution);
+    let firmware = format!("{}  {}", serial.firmware_version, serial.firmware_date);
+    row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(or_none(firmware.trim())));
+    row(ui, theme, &translate(theme, "encoder_card.address"), theme.monospace(format!("{:02X}h", identity.address)));
+    row(
+        ui,
+        theme,
+        &translate(theme, "encoder_card.settings"),
         theme.format_text(&words::line_settings(identity.label.settings)),
     );
-    row(ui, theme, &say(theme, "encoder_card.options"), theme.monospace(format!("{:02X}h", identity.label.options)));
+    row(
+        ui,
+        theme,
+        &translate(theme, "encoder_card.options"),
+        theme.monospace(format!("{:02X}h", identity.label.options)),
+    );
 }
 
 fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -108,12 +118,12 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
     let palette = theme.palette;
     card_with_trailing(ui, theme, "status_card.title", read, |ui| match &encoder.codes {
         None => {
-            ui.label(theme.label(say(theme, "status_card.nothing")));
+            ui.label(theme.label(translate(theme, "status_card.nothing")));
         }
         Some(codes) if codes.is_empty() => {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
-                ui.label(say(theme, "status_card.good"));
+                ui.label(translate(theme, "status_card.good"));
             });
         }
         Some(codes) => {
@@ -126,17 +136,17 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                     ui.add(egui::Label::new(theme.format_text(&words::status(*code))).wrap().selectable(true));
                 });
             }
-            ui.label(theme.caption(say(theme, "status_card.queue")));
+            ui.label(theme.caption(translate(theme, "status_card.queue")));
         }
     });
 }
 
 fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
     card(ui, theme, "check_card.title", |ui| {
-        let lines = encoder.check.as_deref().map(words::check);
+        let lines = encoder.check.as_deref().map(words::check_lines);
         lines_ui(ui, theme, lines.as_deref(), TEXTS.text("check_card.nothing"));
         ui.add_space(theme.space.between);
-        ui.checkbox(restart, say(theme, "check_card.restart"));
+        ui.checkbox(restart, translate(theme, "check_card.restart"));
         if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &theme.translate("check_card.run"))
             .clicked()
         {
@@ -153,7 +163,7 @@ fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().interact_size.y = 18.0;
                 let addresses = ui.label(theme.monospace(&part.addresses).color(theme.palette.muted));
-                ui.add_space((ADDRESSES - addresses.rect.width()).max(0.0));
+                ui.add_space((ADDRESS_WIDTH - addresses.rect.width()).max(0.0));
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
                     paragraph(ui, theme.format_text(&part.meaning));
@@ -164,4 +174,4 @@ fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-const ADDRESSES: f32 = 72.0;
+const ADDRESS_WIDTH: f32 = 72.0;

@@ -3,9 +3,9 @@
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Rgb};
-use crate::devices::hiperface::procedures::Watch;
+use crate::devices::hiperface::procedures::WatchedQuantity;
 use crate::devices::hiperface::state::{self, Encoder, HiperfaceAction as Hiperface};
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui, unknown_rows};
 use crate::ui::{Theme, icons};
@@ -20,13 +20,13 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             (number(position.millimetres().unwrap_or_default(), 4), "mm".to_owned())
         }
         (_, Some(position)) => (number(position.degrees().unwrap_or_default(), 3), "°".to_owned()),
-        (Some(reading), None) => (reading.raw.to_string(), say(theme, "live.steps")),
+        (Some(reading), None) => (reading.raw.to_string(), translate(theme, "live.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
     ui.horizontal(|ui| {
         ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
         ui.label(theme.label(unit));
-        if record.refused() {
+        if record.is_position_refused() {
             remark_ui(ui, theme, "live.refused", theme.palette.bad);
         } else if reading.is_some_and(|reading| !reading.valid) {
             remark_ui(ui, theme, "live.invalid", theme.palette.bad);
@@ -62,12 +62,12 @@ pub(crate) fn watch_menu(
     actions: &mut Vec<Action>,
 ) {
     let word = theme.translate("live.watch");
-    let watched = encoder.record.watched();
+    let watched = encoder.record.watched_values();
     icon_menu(ui, icons::EYE, &word, |ui| {
         ui.set_max_width(240.0);
         ui.label(theme.heading(&word));
-        paragraph(ui, theme.caption(say(theme, "live.watch_words")));
-        let usual = [Watch::TEMPERATURE, Watch::Counter];
+        paragraph(ui, theme.caption(translate(theme, "live.watch_words")));
+        let usual = [WatchedQuantity::TEMPERATURE, WatchedQuantity::Counter];
         let more = watched.iter().copied().filter(|own| !usual.contains(own));
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
             let mut on = watched.contains(&what);
@@ -76,13 +76,16 @@ pub(crate) fn watch_menu(
             }
         }
         ui.horizontal(|ui| {
-            ui.label(theme.label(say(theme, "analogue_card.channel")));
-            text_entry(ui, channel, 48.0, &say(theme, "analogue_card.channel"), "48");
-            let entered = state::forms::channel(channel);
-            if enabled_button(ui, entered.is_ok(), icons::PLUS, &say(theme, "live.watch_add")).clicked()
+            ui.label(theme.label(translate(theme, "analogue_card.channel")));
+            text_entry(ui, channel, 48.0, &translate(theme, "analogue_card.channel"), "48");
+            let entered = state::forms::parse_channel(channel);
+            if enabled_button(ui, entered.is_ok(), icons::PLUS, &translate(theme, "live.watch_add")).clicked()
                 && let Ok(channel) = entered
             {
-                actions.push(Action::device(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));
+                actions.push(Action::device(
+                    encoder.session.id,
+                    Hiperface::Watch(WatchedQuantity::Analogue(channel), true),
+                ));
             }
         });
     });

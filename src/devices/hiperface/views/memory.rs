@@ -10,7 +10,7 @@ use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, StagedEdits, TEXTS, forms, rules};
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{button_with_reason, dropdown, empty_placeholder, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines, typed_view,
@@ -49,11 +49,11 @@ pub(super) fn page_ui(
     view: &mut MemoryUiState,
     actions: &mut Vec<Action>,
 ) {
-    let wanted = encoder.staged.wanted();
+    let wanted = encoder.staged.edited_fields();
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
         let read = (icons::ARROW_CLOCKWISE, theme.translate("memory.read"), encoder.session.is_readable());
-        if empty_placeholder(ui, theme, &say(theme, "memory.nothing"), Some((read.0, &read.1, read.2))) {
+        if empty_placeholder(ui, theme, &translate(theme, "memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
@@ -68,7 +68,7 @@ pub(super) fn page_ui(
         (Some(field), _) => field_ui(ui, theme, encoder, field, memory, view, actions),
         (None, Some(memory)) => create_field_ui(ui, theme, encoder, memory, view, actions),
         (None, None) => {
-            ui.label(theme.label(say(theme, "memory.no_fields")));
+            ui.label(theme.label(translate(theme, "memory.no_fields")));
         }
     }
 }
@@ -89,13 +89,13 @@ fn memory_map_ui(
             let label = TEXTS.text("memory.field").with("number", field.number);
             MapField {
                 number: field.number,
-                blocks: usize::from(field.status.size().blocks()),
+                blocks: usize::from(field.status.size().block_count()),
                 label: theme.format_text(&label),
                 caption: format!("{} B", field.status.size().bytes()),
                 colour: usize::from(field.number),
                 locked: !field.status.is_writable(),
                 unreadable: field.bytes.is_none(),
-                edited: encoder.staged.edits().any(|(number, ..)| number == field.number),
+                edited: encoder.staged.edited_bytes().any(|(number, ..)| number == field.number),
                 tooltip: format!("{}\n{status}", theme.format_text(&label)),
             }
         })
@@ -110,14 +110,14 @@ fn memory_map_ui(
     let last = wanted.last().filter(|_| encoder.session.is_ready());
     let resize = last.zip(memory).map(|(last, memory)| {
         let largest = rules::largest_size(memory, last);
-        1..=usize::from(largest.blocks())
+        1..=usize::from(largest.block_count())
     });
     let model = FieldMap {
         fields: &fields,
         free_blocks: shown_free,
         selected,
         free_label: &free,
-        free_tooltip: &say(theme, "memory.free_hint"),
+        free_tooltip: &translate(theme, "memory.free_hint"),
         block_bytes: FieldSize::BLOCK,
         resize,
     };
@@ -173,7 +173,7 @@ fn field_ui(
         _ => encoder.reason_not_editable(field),
     };
     let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
-    let mounting = encoder.mounting(field.number);
+    let mounting = encoder.mounting_ranges(field.number);
     let marks: Vec<HexMark> = mounting.iter().map(|(range, words)| HexMark { range: range.clone(), words }).collect();
     let beside = ui.available_width() >= 820.0;
     let lines = hex_lines(ui.available_height(), beside);
@@ -235,7 +235,7 @@ fn field_header_ui(
         let lock = field.status.is_writable();
         let (icon, word) =
             if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
-        if button_with_reason(ui, theme, &ready().and_then(|()| rules::status(field)), icon, &say(theme, word))
+        if button_with_reason(ui, theme, &ready().and_then(|()| rules::status(field)), icon, &translate(theme, word))
             .clicked()
         {
             change = Some(Change::LockField { number: field.number, lock });
@@ -244,15 +244,21 @@ fn field_header_ui(
         let resizable = ready().and_then(|()| rules::check_resizable(memory, field));
         size_menu_ui(ui, theme, &resizable, memory, (field, &encoder.staged), &mut change);
         let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
-        if button_with_reason(ui, theme, &deletable, icons::TRASH, &say(theme, "memory.delete")).clicked() {
+        if button_with_reason(ui, theme, &deletable, icons::TRASH, &translate(theme, "memory.delete")).clicked() {
             change = Some(Change::DeleteField { number: field.number });
         }
     });
     actions.extend(change.map(|change| Action::device(encoder.session.id, Hiperface::Plan(change))));
 }
 
-fn code_menu_ui(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
-    let word = say(theme, "memory.code");
+fn code_menu_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    allowed: &rules::ActionPermission,
+    field: &FieldImage,
+    change: &mut Option<Change>,
+) {
+    let word = translate(theme, "memory.code");
     ui.add_enabled_ui(allowed.is_ok(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::KEY), |ui| {
             for code in AccessCodeNumber::all() {
@@ -275,12 +281,12 @@ fn code_menu_ui(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &Fi
 fn size_menu_ui(
     ui: &mut Ui,
     theme: &Theme,
-    allowed: &rules::Allowed,
+    allowed: &rules::ActionPermission,
     memory: FreeMemory,
     (field, staged): (&FieldImage, &StagedEdits),
     change: &mut Option<Change>,
 ) {
-    let word = say(theme, "memory.resize");
+    let word = translate(theme, "memory.resize");
     if allowed.is_err() {
         button_with_reason(ui, theme, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
         return;
@@ -312,22 +318,22 @@ fn create_field_ui(
     actions: &mut Vec<Action>,
 ) {
     ui.label(theme.heading(theme.format_text(&TEXTS.text("memory.create_title").with("number", memory.fields))));
-    ui.label(theme.label(say(theme, "memory.create_words")));
+    ui.label(theme.label(translate(theme, "memory.create_words")));
     ui.add_space(theme.space.inside);
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme.label(say(theme, "memory.size")));
+        ui.label(theme.label(translate(theme, "memory.size")));
         let sizes = FieldSize::all().map(|size| (size, format!("{} B", size.bytes())));
-        dropdown(ui, &say(theme, "memory.size"), &mut view.size, sizes);
-        ui.label(theme.label(say(theme, "memory.code")));
+        dropdown(ui, &translate(theme, "memory.size"), &mut view.size, sizes);
+        ui.label(theme.label(translate(theme, "memory.code")));
         let codes = AccessCodeNumber::all().map(|code| (code, code.to_string()));
-        dropdown(ui, &say(theme, "memory.code"), &mut view.code, codes);
-        ui.checkbox(&mut view.code_required, say(theme, "memory.required"));
+        dropdown(ui, &translate(theme, "memory.code"), &mut view.code, codes);
+        ui.checkbox(&mut view.code_required, translate(theme, "memory.required"));
         let allowed = if encoder.session.is_ready() {
             rules::create(memory, view.size, view.code, view.code_required)
         } else {
             Err(Text::new("session.not_ready"))
         };
-        if button_with_reason(ui, theme, &allowed, icons::PLUS, &say(theme, "memory.create")).clicked() {
+        if button_with_reason(ui, theme, &allowed, icons::PLUS, &translate(theme, "memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
             actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));

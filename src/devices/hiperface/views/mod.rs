@@ -118,6 +118,6 @@ impl TypedDeviceView for HiperfaceView {
 }
 
 /// Returns a message in the window's language, from the HIPERFACE catalogue or the common one.
-pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

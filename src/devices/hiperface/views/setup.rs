@@ -8,7 +8,7 @@ use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::protocol::{AccessCodeNumber, BAUDS, LineSettings};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{
     card, clear_secret, dropdown, enabled_button, entry, folding_card, paragraph, row, secret_entry, show_error_below,
     text_entry, two_columns,
@@ -25,7 +25,7 @@ pub(super) struct SetupUiState {
     position_problem: Option<Text>,
     address: String,
     address_problem: Option<Text>,
-    settings: Option<Chosen>,
+    settings: Option<SelectedSettings>,
     settings_problem: Option<Text>,
     code_number: AccessCodeNumber,
     code: String,
@@ -37,7 +37,7 @@ pub(super) struct SetupUiState {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-struct Chosen {
+struct SelectedSettings {
     format: CharacterFormat,
     long_timeout: bool,
     bus: bool,
@@ -84,23 +84,24 @@ fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
     let geometry = encoder.identity.as_ref().and_then(|identity| identity.geometry);
     let kit = encoder.identity.as_ref().and_then(|identity| identity.kit);
     card(ui, theme, TEXTS.text("position_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "position_card.words")));
-        entry(ui, theme, &say(theme, "position_card.wanted"), |ui| {
-            let hint = say(theme, "position_card.hint");
-            text_entry(ui, &mut view.position, 168.0, &say(theme, "position_card.wanted"), &hint);
+        paragraph(ui, theme.label(translate(theme, "position_card.words")));
+        entry(ui, theme, &translate(theme, "position_card.wanted"), |ui| {
+            let hint = translate(theme, "position_card.hint");
+            text_entry(ui, &mut view.position, 168.0, &translate(theme, "position_card.wanted"), &hint);
         });
-        ui.checkbox(&mut view.exact, say(theme, "position_card.exact"))
-            .on_hover_text(say(theme, "position_card.exact_hint"));
-        let hint = say(theme, "position_card.synchronise_hint");
+        ui.checkbox(&mut view.exact, translate(theme, "position_card.exact"))
+            .on_hover_text(translate(theme, "position_card.exact_hint"));
+        let hint = translate(theme, "position_card.synchronise_hint");
         ui.add_enabled_ui(kit != Some(false), |ui| {
-            ui.checkbox(&mut view.synchronise, say(theme, "position_card.synchronise"))
+            ui.checkbox(&mut view.synchronise, translate(theme, "position_card.synchronise"))
                 .on_hover_text(&hint)
                 .on_disabled_hover_text(&hint);
         });
         if view.synchronise && kit.is_none() {
-            ui.checkbox(&mut view.kit, say(theme, "position_card.kit"));
+            ui.checkbox(&mut view.kit, translate(theme, "position_card.kit"));
         }
-        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &say(theme, "position_card.plan")).clicked()
+        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &translate(theme, "position_card.plan"))
+            .clicked()
         {
             let wanted = forms::position(&view.position, geometry);
             let (exact, kit) = (view.exact, view.kit);
@@ -114,7 +115,7 @@ fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
             ui.horizontal_wrapped(|ui| {
                 ui.label(theme.label(theme.format_text(&text)));
-                let undo = say(theme, "position_card.undo");
+                let undo = translate(theme, "position_card.undo");
                 if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
                     actions.push(Action::device(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
                 }
@@ -125,16 +126,16 @@ fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
 
 fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "codes_card.words")));
-        entry(ui, theme, &say(theme, "codes_card.number"), |ui| {
+        paragraph(ui, theme.label(translate(theme, "codes_card.words")));
+        entry(ui, theme, &translate(theme, "codes_card.number"), |ui| {
             let numbers = AccessCodeNumber::all().map(|number| (number, number.to_string()));
-            dropdown(ui, &say(theme, "codes_card.number"), &mut view.code_number, numbers);
+            dropdown(ui, &translate(theme, "codes_card.number"), &mut view.code_number, numbers);
         });
         let number = view.code_number;
         let ready = encoder.session.is_ready();
-        entry(ui, theme, &say(theme, "codes_card.known"), |ui| {
-            let response = secret_entry(ui, &mut view.code, 64.0, &say(theme, "codes_card.known"));
-            if enabled_button(ui, ready, icons::KEY, &say(theme, "codes_card.use")).clicked() {
+        entry(ui, theme, &translate(theme, "codes_card.known"), |ui| {
+            let response = secret_entry(ui, &mut view.code, 64.0, &translate(theme, "codes_card.known"));
+            if enabled_button(ui, ready, icons::KEY, &translate(theme, "codes_card.use")).clicked() {
                 let code = forms::access_code(&view.code);
                 clear_secret(ui, &response, &mut view.code);
                 match code {
@@ -146,12 +147,12 @@ fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut Set
                 }
             }
         });
-        let new = entry(ui, theme, &say(theme, "codes_card.new"), |ui| {
-            secret_entry(ui, &mut view.new_code, 64.0, &say(theme, "codes_card.new"))
+        let new = entry(ui, theme, &translate(theme, "codes_card.new"), |ui| {
+            secret_entry(ui, &mut view.new_code, 64.0, &translate(theme, "codes_card.new"))
         });
-        entry(ui, theme, &say(theme, "codes_card.again"), |ui| {
-            let again = secret_entry(ui, &mut view.new_again, 64.0, &say(theme, "codes_card.again"));
-            if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &say(theme, "codes_card.change")).clicked() {
+        entry(ui, theme, &translate(theme, "codes_card.again"), |ui| {
+            let again = secret_entry(ui, &mut view.new_again, 64.0, &translate(theme, "codes_card.again"));
+            if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &translate(theme, "codes_card.change")).clicked() {
                 let code = forms::new_access_code(&view.new_code, &view.new_again);
                 clear_secret(ui, &new, &mut view.new_code);
                 clear_secret(ui, &again, &mut view.new_again);
@@ -166,12 +167,17 @@ fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut Set
 fn address_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     let now = encoder.identity.as_ref().map_or_else(|| "–".to_owned(), |own| format!("{:02X}h", own.address));
     folding_card(ui, theme, TEXTS.text("address_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "address_card.words")));
-        entry(ui, theme, &say(theme, "address_card.now"), |ui| ui.label(theme.monospace(now)));
-        entry(ui, theme, &say(theme, "address_card.new"), |ui| {
-            text_entry(ui, &mut view.address, 64.0, &say(theme, "address_card.new"), "41");
-            if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &say(theme, "address_card.plan"))
-                .clicked()
+        paragraph(ui, theme.label(translate(theme, "address_card.words")));
+        entry(ui, theme, &translate(theme, "address_card.now"), |ui| ui.label(theme.monospace(now)));
+        entry(ui, theme, &translate(theme, "address_card.new"), |ui| {
+            text_entry(ui, &mut view.address, 64.0, &translate(theme, "address_card.new"), "41");
+            if enabled_button(
+                ui,
+                encoder.session.is_ready(),
+                icons::PENCIL_SIMPLE,
+                &translate(theme, "address_card.plan"),
+            )
+            .clicked()
             {
                 let change = forms::address(&view.address).map(Change::SetAddress);
                 plan(encoder, change, &mut view.address_problem, actions);
@@ -184,11 +190,11 @@ fn address_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiS
 fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("settings_card.title"), |ui| {
         let Some(stored) = encoder.identity.as_ref().map(|identity| identity.label.settings) else {
-            ui.label(theme.label(say(theme, "settings_card.nothing")));
+            ui.label(theme.label(translate(theme, "settings_card.nothing")));
             return;
         };
         let stored_words = theme.format_text(&words::line_settings(stored));
-        row(ui, theme, &say(theme, "settings_card.stored"), stored_words);
+        row(ui, theme, &translate(theme, "settings_card.stored"), stored_words);
         let mut chosen = view.settings.unwrap_or_else(|| chosen_settings(stored));
         entry(ui, theme, &theme.translate("settings_card.baud"), |ui| {
             let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
@@ -199,23 +205,23 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity(parity))));
             dropdown(ui, &theme.translate("settings_card.parity"), &mut chosen.format.parity, parities);
         });
-        entry(ui, theme, &say(theme, "settings_card.timeout"), |ui| {
+        entry(ui, theme, &translate(theme, "settings_card.timeout"), |ui| {
             let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
-            let times = times.map(|(long, id)| (long, say(theme, id)));
-            dropdown(ui, &say(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
+            let times = times.map(|(long, id)| (long, translate(theme, id)));
+            dropdown(ui, &translate(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
         });
-        ui.checkbox(&mut chosen.bus, say(theme, "settings_card.bus"));
+        ui.checkbox(&mut chosen.bus, translate(theme, "settings_card.bus"));
         view.settings = Some(chosen).filter(|chosen| *chosen != chosen_settings(stored));
         let ready = encoder.session.is_ready();
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
             let wanted = || forms::settings(stored, chosen.format, chosen.long_timeout, chosen.bus);
-            let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &say(theme, "settings_card.plan"));
-            if store.on_hover_text(say(theme, "settings_card.plan_hint")).clicked() {
+            let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &translate(theme, "settings_card.plan"));
+            if store.on_hover_text(translate(theme, "settings_card.plan_hint")).clicked() {
                 plan(encoder, wanted().map(Change::Configure), &mut view.settings_problem, actions);
             }
-            let now = enabled_button(ui, ready, icons::LIGHTNING, &say(theme, "settings_card.now"));
-            if now.on_hover_text(say(theme, "settings_card.now_hint")).clicked() {
+            let now = enabled_button(ui, ready, icons::LIGHTNING, &translate(theme, "settings_card.now"));
+            if now.on_hover_text(translate(theme, "settings_card.now_hint")).clicked() {
                 match wanted() {
                     Ok(wanted) => actions.push(Action::device(encoder.session.id, Hiperface::ConfigureForNow(wanted))),
                     Err(why) => view.settings_problem = Some(why),
@@ -226,9 +232,9 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
     });
 }
 
-fn chosen_settings(stored: LineSettings) -> Chosen {
-    Chosen {
-        format: stored.format().unwrap_or(CharacterFormat::FACTORY),
+fn chosen_settings(stored: LineSettings) -> SelectedSettings {
+    SelectedSettings {
+        format: stored.character_format().unwrap_or(CharacterFormat::FACTORY),
         long_timeout: stored.has_long_timeout(),
         bus: stored.is_bus(),
     }
@@ -236,10 +242,10 @@ fn chosen_settings(stored: LineSettings) -> Chosen {
 
 fn restart_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("restart_card.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "restart_card.words")));
-        ui.checkbox(&mut view.is_motor_disabled, say(theme, "restart_card.disabled"));
+        paragraph(ui, theme.label(translate(theme, "restart_card.words")));
+        ui.checkbox(&mut view.is_motor_disabled, translate(theme, "restart_card.disabled"));
         let allowed = encoder.session.is_ready() && view.is_motor_disabled;
-        if enabled_button(ui, allowed, icons::POWER, &say(theme, "restart_card.run")).clicked() {
+        if enabled_button(ui, allowed, icons::POWER, &translate(theme, "restart_card.run")).clicked() {
             view.is_motor_disabled = false;
             actions.push(Action::device(encoder.session.id, Hiperface::Reset));
         }

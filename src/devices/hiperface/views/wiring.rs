@@ -4,12 +4,12 @@
 use egui::Ui;
 
 use crate::devices::hiperface::state::TEXTS;
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph};
 use crate::ui::wiring::wires_ui;
 
-const WIRE: f32 = 56.0;
+const WIRE_WIDTH: f32 = 56.0;
 
 /// Wire names from the manual, each with its signal.
 const WIRES: [(&str, &str); 8] = [
@@ -27,10 +27,10 @@ const NOTES: [&str; 4] = ["wiring.termination", "wiring.bus", "wiring.screen", "
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
-        wires_ui(ui, theme, &TEXTS, WIRE, &WIRES);
+        wires_ui(ui, theme, &TEXTS, WIRE_WIDTH, &WIRES);
         ui.add_space(theme.space.inside);
         for note in NOTES {
-            paragraph(ui, theme.caption(say(theme, note)));
+            paragraph(ui, theme.caption(translate(theme, note)));
         }
     });
 }

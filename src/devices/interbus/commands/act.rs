@@ -5,7 +5,7 @@ use serde_json::json;
 use super::DisturbanceLevel;
 use super::args::InterbusAction;
 use super::inspect::mode;
-use super::plan::{change_lines, commit, operations, prepare};
+use super::plan::{change_lines, commit_plan, operations_json, prepare_plan};
 use super::run::Runner;
 use super::value::value;
 use crate::cli::args::{ActionArgs, CommonArgs};
@@ -22,7 +22,7 @@ use crate::result_of;
 
 const ACTIONS: &str = "check, preset, default and lead-back";
 
-pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
+pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.parse_action(KIND, ACTIONS)?, words.as_slice()) {
@@ -30,13 +30,13 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
         (InterbusAction::LeadBack, []) => lead_back(common, output),
         (InterbusAction::Default, []) => {
             output.print_message(&TEXTS.text("ib_disturbs.default").terminal_text());
-            change(common, output, act, |_| Ok(Change::Default))
+            run_change(common, output, act, |_| Ok(Change::Default))
         }
         (InterbusAction::Preset, []) => {
-            change(common, output, act, |runner| Ok(Change::Preset { value: preset(runner)? }))
+            run_change(common, output, act, |runner| Ok(Change::Preset { value: preset(runner)? }))
         }
         (InterbusAction::Preset, [number]) => match value(Item::Preset, number)? {
-            ItemValue::Number(value) => change(common, output, act, |_| Ok(Change::Preset { value })),
+            ItemValue::Number(value) => run_change(common, output, act, |_| Ok(Change::Preset { value })),
             _ => Err(takes("a position")),
         },
         (InterbusAction::Preset, _) => Err(takes("nothing or a position")),
@@ -52,13 +52,13 @@ fn preset(runner: &mut Runner) -> Result<u32> {
 
 fn check_device(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::Reading.announce(output);
-    result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)))
+    DisturbanceLevel::Reading.print_effect(output);
+    result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
 }
 
 fn lead_back(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::LeadingBack.announce(output);
+    DisturbanceLevel::LeadingBack.print_effect(output);
     let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (words::startup_mode_text(now).terminal_text(), format!("0x{:08X}", reading.word));
@@ -68,11 +68,11 @@ fn lead_back(common: &CommonArgs, output: &Output) -> Result {
         return Ok(Success::Well);
     };
     output.show(&json, &format!("the encoder is in mode {is}\n"))?;
-    let why = words::refusal(error).terminal_text();
+    let why = words::error_word_text(error).terminal_text();
     Err(Failure::Failed(vec![format!("The encoder was returned to operation, but sends {word}: {why}")]))
 }
 
-fn change(
+fn run_change(
     common: &CommonArgs,
     output: &Output,
     act: &ActionArgs,
@@ -80,10 +80,10 @@ fn change(
 ) -> Result {
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::Reading.announce(output);
+    DisturbanceLevel::Reading.print_effect(output);
     let change = change(&mut runner)?;
-    let prepared = prepare(&mut runner, output, change)?;
-    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
-    let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    let prepared = prepare_plan(&mut runner, output, change)?;
+    let (operations, changes) = (operations_json(&prepared.plan), change_lines(&prepared.plan));
+    let spent = commit_plan(&mut runner, output, prepared, &act.consent)?;
     show_changes(output, &act.action, &operations, &changes, &spent)
 }

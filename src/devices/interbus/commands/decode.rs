@@ -10,7 +10,7 @@ use crate::cli::decode::{FrameExplanation, show};
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
-use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOutNumber, Single, WindowShift};
+use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOutNumber, SingleWord, WindowShift};
 
 pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
     let options: WordOptions = arguments.own.read()?;
@@ -20,33 +20,33 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
         read_out: options.read_out.as_deref().map(read_out).transpose()?,
         shift: options.shift.and_then(WindowShift::new),
     };
-    let words: Vec<Captured> = arguments.hex.iter().map(|word| parse_captured(word)).collect::<Result<_>>()?;
-    if let (Some(Captured::K1(word)), Some(Direction::Out)) =
-        (words.iter().find(|word| matches!(word, Captured::K1(_))), direction)
+    let words: Vec<CapturedData> = arguments.hex.iter().map(|word| parse_captured(word)).collect::<Result<_>>()?;
+    if let (Some(CapturedData::K1(word)), Some(Direction::Out)) =
+        (words.iter().find(|word| matches!(word, CapturedData::K1(_))), direction)
     {
         return Err(Failure::Usage(format!(
             "{word:04X} has 4 digits: only K3 encoders take words, K1 encoders do not"
         )));
     }
-    let explained: Vec<FrameExplanation> = words.iter().map(|word| explain(*word, direction, &known)).collect();
+    let explained: Vec<FrameExplanation> = words.iter().map(|word| explain_word(*word, direction, &known)).collect();
     show(output, &explained)
 }
 
 #[derive(Clone, Copy)]
-enum Captured {
+enum CapturedData {
     /// Word with 4 digits.
     K1(u16),
     /// Word with 8 digits.
     Long(u32),
 }
 
-fn parse_captured(text: &str) -> Result<Captured> {
+fn parse_captured(text: &str) -> Result<CapturedData> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     // The number parser would also accept a sign.
     let number = digits.chars().all(|c| c.is_ascii_hexdigit()).then_some(digits);
     let word = match (number, digits.len()) {
-        (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(Captured::K1),
-        (Some(digits), 8) => u32::from_str_radix(digits, 16).ok().map(Captured::Long),
+        (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(CapturedData::K1),
+        (Some(digits), 8) => u32::from_str_radix(digits, 16).ok().map(CapturedData::Long),
         _ => None,
     };
     word.ok_or_else(|| {
@@ -69,16 +69,18 @@ fn read_out(text: &str) -> Result<ReadOutNumber> {
     })
 }
 
-fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> FrameExplanation {
+fn explain_word(word: CapturedData, direction: Option<Direction>, known: &WordContext) -> FrameExplanation {
     let (shown, meanings) = match word {
-        Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(Single::parse_k1(word))])),
-        Captured::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
+        CapturedData::K1(word) => {
+            (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(SingleWord::parse_k1(word))]))
+        }
+        CapturedData::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
     if let Ok(meanings) = &meanings {
         more.insert("readings".to_owned(), meanings.iter().map(WordMeaning::json).collect::<Json>());
     }
-    let meaning = meanings.map(|meanings| meanings.iter().map(WordMeaning::line).collect());
+    let meaning = meanings.map(|meanings| meanings.iter().map(WordMeaning::to_line).collect());
     FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
@@ -92,7 +94,7 @@ fn long_word_meanings(
         Some(Direction::Out) => meaning::out_word_meanings(word, known),
         // The encoder may send any word. If it has no meaning as an OUT word, it can only be an IN word.
         None => Ok(meaning::out_word_meanings(word, known)
-            .unwrap_or_else(|_| meaning::refused(word, known))
+            .unwrap_or_else(|_| meaning::meanings_in_other_modes(word, known))
             .into_iter()
             .chain(meaning::in_word_meanings(word, known))
             .collect()),

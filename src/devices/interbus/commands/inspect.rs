@@ -16,7 +16,7 @@ use crate::result_of;
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::Reading.announce(output);
+    DisturbanceLevel::Reading.print_effect(output);
     let identity = identity(&mut runner)?;
     let json = json!({
         "device": KIND,
@@ -24,10 +24,10 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "serial_number": identity.serial_number,
         "steps": identity.steps,
         "revolutions": identity.revolutions,
-        "direction": identity.direction.word(),
+        "direction": identity.direction.keyword(),
         "software_version": identity.software_version.to_string(),
         "mode": mode(identity.mode),
-        "multiturn": identity.flags.multiturn(),
+        "multiturn": identity.flags.counts_turns(),
         "steps_minus_one": identity.flags.steps_minus_one(),
     });
     output.show(&json, &identity_text(&identity))?;
@@ -35,7 +35,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
 }
 
 fn identity_text(identity: &Identity) -> String {
-    let kind = if identity.flags.multiturn() { "multiturn" } else { "single turn" };
+    let kind = if identity.flags.counts_turns() { "multiturn" } else { "single turn" };
     let less = if identity.flags.steps_minus_one() { ", steps minus one" } else { "" };
     let direction = words::direction(identity.direction).terminal_text();
     let mut lines = Lines::default();
@@ -43,13 +43,13 @@ fn identity_text(identity: &Identity) -> String {
         .add_line("encoder", format!("INTERBUS K3, {kind}{less}"))
         .add_line("serial number", &identity.serial_number)
         .add_line("software version", identity.software_version)
-        .add_line("steps", format!("{} over {}", identity.steps, turns(identity.revolutions)))
+        .add_line("steps", format!("{} over {}", identity.steps, format_turns(identity.revolutions)))
         .add_line("direction", format!("{} ({direction})", identity.direction))
         .add_line("mode", words::startup_mode_text(identity.mode).terminal_text());
     lines.text()
 }
 
-fn turns(turns: u32) -> String {
+fn format_turns(turns: u32) -> String {
     if turns == 1 { "1 revolution".to_owned() } else { format!("{turns} revolutions") }
 }
 
@@ -66,14 +66,14 @@ pub(super) fn mode(mode: StartupMode) -> String {
 
 pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::Reading.announce(output);
+    DisturbanceLevel::Reading.print_effect(output);
     let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
     let errors: Vec<Json> = status
         .error
         .iter()
         .map(|error| {
             let word = format!("0x{:08X}", Reply::Error(*error).emit());
-            json!({"code": error.code.get(), "text": words::refusal(*error).terminal_text(), "word": word})
+            json!({"code": error.code.get(), "text": words::error_word_text(*error).terminal_text(), "word": word})
         })
         .collect();
     let warnings: Vec<Json> =
@@ -84,7 +84,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "warnings": warnings,
         "raw": status.reading.word,
         "mode": mode(status.mode),
-        "temperature_c": celsius(status.temperature_tenths),
+        "temperature_c": to_celsius(status.temperature_tenths),
         "operating_minutes": status.operating_minutes,
     });
     output.show(&json, &status_text(&status))?;
@@ -97,39 +97,39 @@ fn unexpected_bits(status: &Status) -> Option<(u32, String)> {
     (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))
 }
 
-fn celsius(tenths: i32) -> f64 {
+fn to_celsius(tenths: i32) -> f64 {
     f64::from(tenths) / 10.0
 }
 
 fn status_text(status: &Status) -> String {
-    let error = status
-        .error
-        .map(|error| format!("0x{:08X}: {}", Reply::Error(error).emit(), words::refusal(error).terminal_text()));
+    let error = status.error.map(|error| {
+        format!("0x{:08X}: {}", Reply::Error(error).emit(), words::error_word_text(error).terminal_text())
+    });
     let mut lines = Lines::default();
     lines
         .add_line("errors", error.unwrap_or_else(|| "none".to_owned()))
         .add_line("warnings", unexpected_bits(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
         .add_line("IN word", format!("0x{:08X}", status.reading.word))
         .add_line("mode", words::startup_mode_text(status.mode).terminal_text())
-        .add_line("temperature", format!("{:.1} °C", celsius(status.temperature_tenths)))
+        .add_line("temperature", format!("{:.1} °C", to_celsius(status.temperature_tenths)))
         .add_line("operating time", format!("{} min", status.operating_minutes));
     lines.text()
 }
 
 pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
-    let item = super::item(item)?;
+    let item = super::parse_item(item)?;
     let mut runner = Runner::open(common)?;
     let disturbs = if item.parameter().is_some() || !item.is_writable() {
         DisturbanceLevel::Reading
     } else {
         DisturbanceLevel::Programs
     };
-    disturbs.begin(common, output, None)?;
+    disturbs.confirm_start(common, output, None)?;
     let value = result_of!(runner.run(InterbusJob::Read(item))?, InterbusOutput::Item(value) => value);
     let own = match value {
         ItemValue::Number(number) | ItemValue::Minutes(number) => json!(number),
         ItemValue::Mask(mask) => json!(mask),
-        ItemValue::TenthsOfDegree(tenths) => json!(celsius(tenths)),
+        ItemValue::TenthsOfDegree(tenths) => json!(to_celsius(tenths)),
         ItemValue::Direction(_) | ItemValue::Cam(_) => json!(value.to_string()),
     };
     let mut json = json!({"item": item.to_string(), "value": own});

@@ -3,7 +3,7 @@
 use serde_json::{Value as Json, json};
 
 use crate::devices::interbus::protocol::{
-    CamOutput, Command, EncoderMode, Parameter, ReadOutNumber, ReadOutValue, Reply, Single, StartupMode, Value,
+    CamOutput, Command, EncoderMode, Parameter, ReadOutNumber, ReadOutValue, Reply, SingleWord, StartupMode, Value,
     WindowShift,
 };
 
@@ -25,7 +25,7 @@ pub(super) struct WordMeaning {
 }
 
 impl WordMeaning {
-    pub(super) fn line(&self) -> String {
+    pub(super) fn to_line(&self) -> String {
         let modes: Vec<&str> = self.modes.iter().map(|mode| mode.name()).collect();
         match modes.split_last() {
             None => format!("{}: {}", self.direction, self.words),
@@ -41,7 +41,7 @@ impl WordMeaning {
     }
 }
 
-pub(super) fn k1_word_meaning(word: Single) -> WordMeaning {
+pub(super) fn k1_word_meaning(word: SingleWord) -> WordMeaning {
     let position = word.position().get();
     let words =
         format!("position {position} of a K1 encoder{}", unexpected_bits(word.unexpected_bits(), "above bit 11"));
@@ -50,7 +50,7 @@ pub(super) fn k1_word_meaning(word: Single) -> WordMeaning {
 
 /// Returns the meanings of an OUT word. The error explains why the word must not be sent.
 pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
-    let readings = Command::readings(word);
+    let readings = Command::all_meanings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
@@ -76,7 +76,7 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
 }
 
 /// Returns the meanings that an OUT word has in other modes if it must not be sent in the known mode.
-pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
+pub(super) fn meanings_in_other_modes(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
         .filter(|refused| !matches!(refused.command, Command::Unknown(_)))
@@ -115,13 +115,13 @@ pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeanin
             let number = value.get();
             vec![
                 meaning(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
-                meaning(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
+                meaning(&[Velocity], format!("speed {} rpm{stray}", value.to_signed()), Some(number)),
                 meaning(&[Cam], outputs(word, known.shift), None),
             ]
         }
         Reply::Busy { .. } | Reply::Echo { .. } => vec![
-            meaning(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
-            meaning(&[Cam], echo(reply, Cam), None),
+            meaning(&[Position, Parameterisation, ReadOut, Velocity], describe_echo(reply, Parameterisation), None),
+            meaning(&[Cam], describe_echo(reply, Cam), None),
         ],
         Reply::ReadOut(value) => vec![meaning(&EncoderMode::ALL, read_out(value, known.read_out), Some(value.get()))],
         Reply::UnknownReadOut(_) => {
@@ -161,8 +161,8 @@ fn command_description(command: Command) -> (String, Option<u32>) {
         Command::Set(Parameter::Default, _) => {
             ("set the encoder to default (only in the appendix of the manual)".to_owned(), None)
         }
-        Command::Set(parameter, value) => with(set(parameter, value), value.get()),
-        Command::ReadOut(read_out) => with(format!("read out {}", name(read_out)), read_out.number().into()),
+        Command::Set(parameter, value) => with(describe_setting(parameter, value), value.get()),
+        Command::ReadOut(read_out) => with(format!("read out {}", name(read_out)), read_out.to_u16().into()),
         Command::Cams(Some(program)) => with(format!("cam mode with program {}", program.get()), program.get().into()),
         Command::Activate(mask) => with(format!("activation mask 0x{mask:04X}: {}", cams(mask)), mask.into()),
         Command::Shift(shift) => with(format!("shift of the window {}", shift.get()), shift.get().into()),
@@ -174,7 +174,7 @@ fn command_description(command: Command) -> (String, Option<u32>) {
     }
 }
 
-fn set(parameter: Parameter, value: Value) -> String {
+fn describe_setting(parameter: Parameter, value: Value) -> String {
     let row = parameter.row();
     let number = value.get();
     let range = parameter.range_with_any_gear();
@@ -195,7 +195,7 @@ fn name(read_out: ReadOutNumber) -> String {
     match (read_out.row(), read_out.register()) {
         (Some(row), _) => row.name.to_owned(),
         (None, Some(register)) => format!("register {register} of the chip"),
-        (None, None) => format!("0x{:X}, which the manual does not have", read_out.number()),
+        (None, None) => format!("0x{:X}, which the manual does not have", read_out.to_u16()),
     }
 }
 
@@ -222,7 +222,7 @@ fn outputs(word: u32, shift: Option<WindowShift>) -> String {
     format!("{} on; {window}{}", cams(output.outputs.into()), unexpected_bits(output.stray.into(), "in bits 30 to 25"))
 }
 
-fn echo(reply: Reply, mode: EncoderMode) -> String {
+fn describe_echo(reply: Reply, mode: EncoderMode) -> String {
     let (code, manufacturer, data) = match reply {
         Reply::Busy { manufacturer, data } => (0, manufacturer, data),
         Reply::Echo { manufacturer, code, data } => (code.get(), manufacturer, data),
@@ -269,8 +269,8 @@ fn scaled_value(value: Value, read_out: ReadOutNumber) -> String {
             "0x{:X}: {}, {}{}",
             flags.value().get(),
             if flags.steps_minus_one() { "steps−1 mode" } else { "steps as they are" },
-            if flags.multiturn() { "multiturn" } else { "single turn" },
-            unexpected_bits(flags.unknown(), "is unknown and"),
+            if flags.counts_turns() { "multiturn" } else { "single turn" },
+            unexpected_bits(flags.unknown_bits(), "is unknown and"),
         ),
     }
 }

@@ -31,7 +31,7 @@ use crate::link::LinkScheme;
 pub(crate) struct InterbusCommands;
 
 /// Warning in the help of commands that read cam programs.
-const SWITCHES: &str = "reading cam programs selects them one after the other, which switches the live outputs of \
+const CAM_READING_WARNING: &str = "reading cam programs selects them one after the other, which switches the live outputs of \
                         the encoder. On a terminal the command first asks whether the machine stands still; without \
                         a terminal it prints a note to stderr and continues.";
 
@@ -53,9 +53,9 @@ impl DeviceCommands for InterbusCommands {
             CommandId::Read => {
                 let items = "items: steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
                              cam-mask:P, temperature, operating-time";
-                return Some(format!("{items}; {SWITCHES}"));
+                return Some(format!("{items}; {CAM_READING_WARNING}"));
             }
-            CommandId::Save | CommandId::Diff | CommandId::Verify => SWITCHES,
+            CommandId::Save | CommandId::Diff | CommandId::Verify => CAM_READING_WARNING,
             CommandId::Write => {
                 "items: as for read, except measured values; the direction is cw or ccw, a cam START..STOP. A preset is stored \
                  and not activated."
@@ -91,19 +91,19 @@ impl DeviceCommands for InterbusCommands {
             Command::Read(read) => inspect::read(common, output, &read.item),
             Command::Save(save) => profiles::save(common, output, save),
             Command::Write(write) => write::write(common, output, write),
-            Command::Do(act) => act::act(common, output, act),
+            Command::Do(act) => act::run_action(common, output, act),
             Command::Decode(decode) => decode::decode(output, decode),
             _ => return None,
         })
     }
 
     fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
-        simulate::simulated(output, arguments)
+        simulate::create_simulated(output, arguments)
     }
 }
 
 /// Parses the name of an item. A program or cam that does not exist is reported as out of range.
-fn item(text: &str) -> Result<Item> {
+fn parse_item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
         ItemError::Program { .. } | ItemError::Cam { .. } => Failure::Failed(vec![format!("{text}: {error}.")]),
@@ -123,8 +123,8 @@ enum DisturbanceLevel {
 impl DisturbanceLevel {
     /// Announces the effect before a command begins. If live outputs switch, the user has to confirm on a terminal.
     /// This is not required after a write was approved, for a virtual encoder or without a terminal.
-    fn begin(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
-        self.announce(output);
+    fn confirm_start(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
+        self.print_effect(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);
         let consented = consent.is_some_and(|consent| consent.yes);
         if !matches!(self, DisturbanceLevel::Programs) || is_virtual || consented || !can_prompt() {
@@ -136,7 +136,7 @@ impl DisturbanceLevel {
         Err(Failure::Failed(vec!["Not confirmed; no cam program was selected.".to_owned()]))
     }
 
-    fn announce(self, output: &Output) {
+    fn print_effect(self, output: &Output) {
         let id = match self {
             DisturbanceLevel::Reading => "ib_disturbs.reading",
             DisturbanceLevel::Programs => "ib_disturbs.programs",

@@ -8,7 +8,9 @@ use crate::cli::args::ConsentArgs;
 use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary};
-use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
+use crate::devices::interbus::jobs::{
+    Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, WearAfterPlan,
+};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_to_read};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
@@ -17,10 +19,10 @@ use crate::profile::Operation as _;
 use crate::result_of;
 
 /// Plans a change. Nothing is written.
-pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
+pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
         Change::Restore { profile, .. } => programs_to_read(profile).len() == ProgramNumber::COUNT,
-        Change::Write(wanted) => wanted.known().count() == ProgramNumber::COUNT,
+        Change::Write(wanted) => wanted.known_programs().count() == ProgramNumber::COUNT,
         Change::Item(..) => false,
         Change::Preset { .. } | Change::Default => true,
     };
@@ -38,7 +40,7 @@ fn reduces_steps(op: &Op) -> bool {
 }
 
 /// Executes a plan after consent, if consent is required. An empty plan sends nothing.
-pub(super) fn commit(
+pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
@@ -47,16 +49,18 @@ pub(super) fn commit(
     if prepared.plan.is_empty() {
         return Ok(WriteSummary::default());
     }
-    let wear = prepared.wear();
+    let wear = prepared.wear_to_report();
     check_wear::<Interbus>(consent, &prepared)?;
-    let wear_text = words::wear(&prepared).map(|text| text.terminal_text());
+    let wear_text = words::wear_warning(&prepared).map(|text| text.terminal_text());
     if let Some(wear_text) = &wear_text {
         output.print_message(wear_text);
     }
     let stop = TEXTS.text("ib_disturbs.writing").terminal_text();
-    let text = format!("{}{stop}", shown(&prepared).text);
+    let text = format!("{}{stop}", plan_report(&prepared).text);
     let mut texts = vec![text.as_str()];
-    if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(wear_text)) = (wear, &wear_text) {
+    if let (Some(WearAfterPlan::Ask(_) | WearAfterPlan::Worn(_) | WearAfterPlan::Unknown), Some(wear_text)) =
+        (wear, &wear_text)
+    {
         // Stores above the manufacturer's limit require a second confirmation.
         texts.push(wear_text);
     }
@@ -66,27 +70,32 @@ pub(super) fn commit(
 }
 
 /// Returns the plan as text and JSON. It contains the cost and the old and new value of each item.
-pub(super) fn shown(prepared: &Prepared) -> PlanReport {
+pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
-    PlanReport::from_plan(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
+    PlanReport::from_plan(
+        plan,
+        plan.ops.iter().flat_map(operation_steps).collect(),
+        prepared.cycles_seen,
+        Some(WEAR_LIMIT),
+    )
 }
 
 /// Returns the operations as JSON. Items that are stored together share one cost.
-pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
-    plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
+pub(super) fn operations_json(plan: &InterbusPlan) -> Vec<Json> {
+    plan.ops.iter().flat_map(operation_steps).map(|step| step.json()).collect()
 }
 
 /// Returns the operations as text with the old and new values, one per line.
 pub(super) fn change_lines(plan: &InterbusPlan) -> String {
-    plan::step_lines(plan.ops.iter().flat_map(steps)).text()
+    plan::step_lines(plan.ops.iter().flat_map(operation_steps)).text()
 }
 
-fn steps(op: &Op) -> Vec<PlanStep> {
+fn operation_steps(op: &Op) -> Vec<PlanStep> {
     let cost = op.write_cycles();
     let last =
         |item: &str, new: String| PlanStep { item: item.to_owned(), old: None, new: Some(new), write_cycles: cost };
     let mut steps: Vec<PlanStep> = op
-        .steps()
+        .change_steps()
         .into_iter()
         .map(|step| PlanStep { item: step.name, old: Some(step.from), new: Some(step.to), write_cycles: 0 })
         .collect();

@@ -17,7 +17,7 @@ use crate::result_of;
 /// Reads positions. The encoder is only identified once to determine its gear. After that, only the IN word is read.
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::Reading.announce(output);
+    DisturbanceLevel::Reading.print_effect(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
         // Reads only the window shift, which determines the bits of the position in the word.
@@ -35,8 +35,8 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
 
 fn show(output: &Output, reading: &WordReading) -> Result<()> {
     let t = reading.at.since_start().as_secs_f64();
-    let place = reading.place();
-    let cams = reading.cams().map(|own| on(own.outputs));
+    let place = reading.turn_position();
+    let cams = reading.cams().map(|own| active_outputs(own.outputs));
     let mut json = json!({
         "t_s": t,
         "raw": reading.word,
@@ -55,21 +55,21 @@ fn show(output: &Output, reading: &WordReading) -> Result<()> {
             keys.insert("rpm".to_owned(), json!(rpm));
         }
     }
-    output.show(&json, &format!("{t:10.3} s  0x{:08X}  {}\n", reading.word, words(reading, cams.as_deref())))
+    output.show(&json, &format!("{t:10.3} s  0x{:08X}  {}\n", reading.word, describe_reading(reading, cams.as_deref())))
 }
 
-fn on(outputs: u8) -> Vec<u8> {
+fn active_outputs(outputs: u8) -> Vec<u8> {
     CamNumber::all().map(CamNumber::get).filter(|cam| outputs >> cam & 1 != 0).collect()
 }
 
-fn words(reading: &WordReading, cams: Option<&[u8]>) -> String {
+fn describe_reading(reading: &WordReading, cams: Option<&[u8]>) -> String {
     if !reading.is_valid() {
         return "not valid".to_owned();
     }
     if let Some(rpm) = reading.rpm() {
         return format!("{rpm} 1/min");
     }
-    let position = match (reading.position(), reading.place()) {
+    let position = match (reading.position(), reading.turn_position()) {
         (Some(position), Some(place)) => {
             format!("position {position}: turn {}, step {}, {:.3}°", place.turns, place.steps, place.degrees)
         }
@@ -87,7 +87,7 @@ fn words(reading: &WordReading, cams: Option<&[u8]>) -> String {
 }
 
 fn row(reading: &WordReading) -> String {
-    let place = reading.place();
+    let place = reading.turn_position();
     let column = |number: Option<String>| number.unwrap_or_default();
     format!(
         "{:.6},{},{},{},{},{}\n",

@@ -4,8 +4,8 @@ use serde_json::json;
 
 use super::DisturbanceLevel;
 use super::InterbusCommands;
-use super::plan::{commit, prepare, shown};
-use super::run::{Runner, programs, survey};
+use super::plan::{commit_plan, plan_report, prepare_plan};
+use super::run::{Runner, programs, read_survey};
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
@@ -16,13 +16,13 @@ use crate::cli::profiles::{
 use crate::cli::runner::unexpected_output;
 use crate::cli::{Result, Success};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
-use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, programs_to_read};
+use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, RecordedValues, programs_to_read};
 use crate::devices::interbus::state::explain as words;
 use crate::profile::Body;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
-    let profile = saved(common, output)?;
-    let programs = profile.image.known().count();
+    let profile = read_profile(common, output)?;
+    let programs = profile.image.known_programs().count();
     save_profile(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "programs": programs});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
@@ -36,8 +36,8 @@ impl ProfileCommands for InterbusCommands {
         let mut runner = Runner::open(common)?;
         let disturbs =
             if programs_to_read(&profile).is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
-        disturbs.begin(common, output, Some(&restore.consent))?;
-        let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+        disturbs.confirm_start(common, output, Some(&restore.consent))?;
+        let prepared = prepare_plan(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
             output.print_message(&words::other_type(types).terminal_text());
         }
@@ -45,15 +45,15 @@ impl ProfileCommands for InterbusCommands {
         print_skipped_mounting(output, &prepared.mounting_left);
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-        let plan = shown(&prepared);
-        write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
+        let plan = plan_report(&prepared);
+        write_restore(output, restore, &plan, &left, || commit_plan(&mut runner, output, prepared, &restore.consent))
     }
 
     /// Reads the encoder for a comparison. If a profile is given, only its items are read. Reading a cam program
     /// switches the outputs of the encoder.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
-            None => saved(common, output)?,
+            None => read_profile(common, output)?,
             Some(profile) => read_comparable_profile(common, output, profile)?,
         };
         Ok(Body::new(profile))
@@ -75,9 +75,9 @@ impl ProfileCommands for InterbusCommands {
     }
 }
 
-fn saved(common: &CommonArgs, output: &Output) -> Result<InterbusProfile> {
+fn read_profile(common: &CommonArgs, output: &Output) -> Result<InterbusProfile> {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::Programs.begin(common, output, None)?;
+    DisturbanceLevel::Programs.confirm_start(common, output, None)?;
     match runner.run(InterbusJob::Save { programs: true })? {
         InterbusOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected_output(&other)),
@@ -88,9 +88,9 @@ fn read_comparable_profile(common: &CommonArgs, output: &Output, profile: &Inter
     let needed = programs_to_read(profile);
     let mut runner = Runner::open(common)?;
     let disturbs = if needed.is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
-    disturbs.begin(common, output, None)?;
-    let survey = survey(&mut runner)?;
-    let mut image = Image::of(survey.parameters);
+    disturbs.confirm_start(common, output, None)?;
+    let survey = read_survey(&mut runner)?;
+    let mut image = Image::from_parameters(survey.parameters);
     if !needed.is_empty() {
         let (read, shift) = programs(&mut runner, needed)?;
         image.shift = Some(shift);
@@ -100,5 +100,5 @@ fn read_comparable_profile(common: &CommonArgs, output: &Output, profile: &Inter
             }
         }
     }
-    Ok(InterbusProfile::of(survey.identity.profile(), image, Recorded::default()))
+    Ok(InterbusProfile::new(survey.identity.profile(), image, RecordedValues::default()))
 }

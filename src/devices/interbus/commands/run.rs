@@ -28,14 +28,14 @@ impl CliDevice for Interbus {
 
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     let identity = result_of!(runner.run(InterbusJob::Identify)?, InterbusOutput::Identity(identity) => identity);
-    identity.gear().map_err(|why| to_failure(&words::implausible(why)))?;
+    identity.gear().map_err(|why| to_failure(&words::implausible_value_text(why)))?;
     Ok(identity)
 }
 
 /// Reads all values that are available without selecting a cam program.
-pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
+pub(super) fn read_survey(runner: &mut Runner) -> Result<Box<Survey>> {
     let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
-    survey.identity.gear().map_err(|why| to_failure(&words::implausible(why)))?;
+    survey.identity.gear().map_err(|why| to_failure(&words::implausible_value_text(why)))?;
     Ok(survey)
 }
 

@@ -8,7 +8,7 @@ use crate::cli::simulate::{ServableDevice, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::sim::{Config, Gateway};
 
-pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
+pub(super) fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     if arguments.pty.is_some() {
         let what =
             "an INTERBUS encoder is reached through a Modbus/TCP gateway: use --listen HOST:PORT instead of --pty";
@@ -26,6 +26,6 @@ pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box
 impl ServableDevice for Gateway {
     /// Returns a further connection to the gateway, since it serves several masters at once.
     fn clone_for_peer(&self, _peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
-        Some(Box::new(self.connection()))
+        Some(Box::new(self.new_connection()))
     }
 }

@@ -5,13 +5,13 @@ use super::{
     wear_limit,
 };
 use crate::devices::interbus::procedures::write::EncoderWriter;
-use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, Recorded};
+use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, RecordedValues};
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
-pub(super) fn commit(
+pub(super) fn commit_plan(
     encoder: &mut Interbus,
     context: &mut SessionContext,
     commit: &Commit,
@@ -19,10 +19,11 @@ pub(super) fn commit(
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let master = encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+    let master =
+        encoder.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
     let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        (tell.borrow_mut())(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item()))));
+        (tell.borrow_mut())(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item_names()))));
     })
 }
 
@@ -50,14 +51,14 @@ impl PlannedWrite for Prepared {
 
     fn before_image(&self) -> String {
         let (base, identity) = (&self.plan.base, &self.identity);
-        let mut image = Image::of(self.parameters);
+        let mut image = Image::from_parameters(self.parameters);
         image.shift = base.shift;
         for (number, program) in &base.programs {
             if let Some(place) = image.program_mut(*number) {
                 *place = Some(*program);
             }
         }
-        let profile = InterbusProfile::of(identity.profile(), image, Recorded::default());
+        let profile = InterbusProfile::new(identity.profile(), image, RecordedValues::default());
         backup_document(Body::new(profile)).emit()
     }
 }

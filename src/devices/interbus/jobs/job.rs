@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::devices::interbus::procedures::check::InterbusStepResult;
-use crate::devices::interbus::procedures::write::{Interrupted, WrittenChanges};
+use crate::devices::interbus::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::interbus::procedures::{Error, Handshake, Identity, Status, Survey, WordReading};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, Parameters, PlanError, RestoreOptions, TypeMismatch,
@@ -17,7 +17,7 @@ use crate::store::{DeviceKey, EntryKind};
 /// reference 3.
 pub const WEAR_WARNING: u64 = 150;
 /// Number of stores above which the user has to confirm a second time.
-pub const WEAR_ASK: u64 = NOMINAL_STORES as u64;
+pub const WEAR_CONFIRMATION: u64 = NOMINAL_STORES as u64;
 /// Maximum number of stores that the manufacturer guarantees.
 pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
 /// Number of stores from which the EEPROM counts as worn.
@@ -134,7 +134,7 @@ pub struct Prepared {
 
 /// Wear of the EEPROM after a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wear {
+pub enum WearAfterPlan {
     /// Number of stores after the plan. The user should be informed that stores are limited.
     Known(u64),
     /// Number of stores after the plan. It exceeds the specification of the manufacturer, so the user has to confirm.
@@ -145,13 +145,13 @@ pub enum Wear {
     Unknown,
 }
 
-impl Wear {
+impl WearAfterPlan {
     /// Returns the wear after the given number of stores, or `None` if it is too low for a message.
-    pub const fn of(stores: u64) -> Option<Self> {
+    pub const fn from_stores(stores: u64) -> Option<Self> {
         match stores {
-            WEAR_LIMIT.. => Some(Wear::Worn(stores)),
-            _ if stores > WEAR_ASK => Some(Wear::Ask(stores)),
-            WEAR_WARNING.. => Some(Wear::Known(stores)),
+            WEAR_LIMIT.. => Some(WearAfterPlan::Worn(stores)),
+            _ if stores > WEAR_CONFIRMATION => Some(WearAfterPlan::Ask(stores)),
+            WEAR_WARNING.. => Some(WearAfterPlan::Known(stores)),
             _ => None,
         }
     }
@@ -159,10 +159,10 @@ impl Wear {
 
 impl Prepared {
     /// Returns the wear after the plan, or `None` if it is too low for a message.
-    pub fn wear(&self) -> Option<Wear> {
+    pub fn wear_to_report(&self) -> Option<WearAfterPlan> {
         let cost = self.plan.write_cycles();
-        let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
-        Wear::of(seen.saturating_add(cost)).filter(|_| cost > 0)
+        let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(WearAfterPlan::Unknown) };
+        WearAfterPlan::from_stores(seen.saturating_add(cost)).filter(|_| cost > 0)
     }
 }
 
@@ -187,7 +187,7 @@ impl fmt::Display for JobStep {
         match self {
             JobStep::ReadOut(read_out) => match read_out.row() {
                 Some(row) => f.write_str(row.name),
-                None => write!(f, "read-out 0x{:X}", read_out.number()),
+                None => write!(f, "read-out 0x{:X}", read_out.to_u16()),
             },
             JobStep::Program(program) => write!(f, "cam program {}", program.get()),
             JobStep::Operation(item) => f.write_str(item),
@@ -213,7 +213,7 @@ pub enum InterbusOutput {
     LedBack(StartupMode),
 }
 
-pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+pub type JobError = crate::worker::JobError<Error, PlanError, InterruptedWrite, ChangeKind>;
 
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {
@@ -266,19 +266,19 @@ mod tests {
                 other_type: None,
                 mounting_written: Vec::new(),
             };
-            prepared.wear()
+            prepared.wear_to_report()
         };
         let cases = [
             (Some(0), 1, None),
             // Issue 22.4.
-            (None, 1, Some(Wear::Unknown)),
+            (None, 1, Some(WearAfterPlan::Unknown)),
             (None, 0, None),
             (Some(148), 1, None),
-            (Some(149), 1, Some(Wear::Known(150))),
-            (Some(199), 1, Some(Wear::Known(200))),
-            (Some(200), 1, Some(Wear::Ask(201))),
-            (Some(448), 1, Some(Wear::Ask(449))),
-            (Some(441), 9, Some(Wear::Worn(450))),
+            (Some(149), 1, Some(WearAfterPlan::Known(150))),
+            (Some(199), 1, Some(WearAfterPlan::Known(200))),
+            (Some(200), 1, Some(WearAfterPlan::Ask(201))),
+            (Some(448), 1, Some(WearAfterPlan::Ask(449))),
+            (Some(441), 9, Some(WearAfterPlan::Worn(450))),
             (Some(900), 0, None),
         ];
         for (seen, stores, told) in cases {

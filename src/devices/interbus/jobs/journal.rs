@@ -13,17 +13,17 @@ use crate::store::{DeviceKey, Drafts, EntryId, EntryKind, Intent, Logbook, Logbo
 use super::job::logbook_key;
 
 /// Description in the entry of the logbook.
-const WHAT: &str = "cam programs read, each of which may be stored when it is left";
+const PROGRAM_READ_NOTE: &str = "cam programs read, each of which may be stored when it is left";
 
-pub(super) struct Notes {
+pub(super) struct WriteJournal {
     store: Store,
     is_virtual: bool,
     begun: BTreeMap<String, (Logbook, EntryId)>,
 }
 
-impl Notes {
-    pub(super) fn of(store: Store, is_virtual: bool) -> Self {
-        Notes { store, is_virtual, begun: BTreeMap::new() }
+impl WriteJournal {
+    pub(super) fn new(store: Store, is_virtual: bool) -> Self {
+        WriteJournal { store, is_virtual, begun: BTreeMap::new() }
     }
 
     fn pending_mode_restores(&self) -> Drafts {
@@ -36,45 +36,45 @@ impl Notes {
         format!("{serial_number}{}", if self.is_virtual { " (virtual)" } else { "" })
     }
 
-    fn key(&self, serial_number: &str) -> DeviceKey {
+    fn device_key(&self, serial_number: &str) -> DeviceKey {
         logbook_key(serial_number, self.is_virtual)
     }
 
-    fn intend(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
+    fn record_intent(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
         let mut logbook = Logbook::open(&self.store.logbook_path())?;
-        let items = vec![ChangedItem::new(WHAT, None, None)];
+        let items = vec![ChangedItem::new(PROGRAM_READ_NOTE, None, None)];
         let intent = Intent { kind: EntryKind::Procedure, items, planned_cycles: stores, backup: None };
-        let entry = logbook.record_intent(Timestamp::now(), &self.key(serial_number), &intent)?;
+        let entry = logbook.record_intent(Timestamp::now(), &self.device_key(serial_number), &intent)?;
         Ok((logbook, entry))
     }
 }
 
 /// Logs an error of recording and returns `None` in this case. The job continues.
-fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
+fn log_error<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }
 
-impl Journal for Notes {
+impl Journal for WriteJournal {
     fn has_modes_to_restore(&self) -> bool {
         self.pending_mode_restores().has_drafts(KIND)
     }
 
     fn recorded_mode_switch(&self, serial_number: &str) -> Option<ModeSwitch> {
-        let text = warn(self.pending_mode_restores().load(KIND, &self.name(serial_number)))??;
+        let text = log_error(self.pending_mode_restores().load(KIND, &self.name(serial_number)))??;
         parse(&text)
     }
 
     fn save_mode_switch(&mut self, serial_number: &str, excursion: &ModeSwitch) {
-        warn(self.pending_mode_restores().save(KIND, &self.name(serial_number), &emit(excursion)));
+        log_error(self.pending_mode_restores().save(KIND, &self.name(serial_number), &emit(excursion)));
     }
 
     fn record_mode_restored(&mut self, serial_number: &str) {
-        warn(self.pending_mode_restores().remove(KIND, &self.name(serial_number)));
+        log_error(self.pending_mode_restores().remove(KIND, &self.name(serial_number)));
     }
 
     fn record_planned_stores(&mut self, serial_number: &str, stores: u64) {
         if !self.begun.contains_key(serial_number)
-            && let Some(entry) = warn(self.intend(serial_number, stores))
+            && let Some(entry) = log_error(self.record_intent(serial_number, stores))
         {
             self.begun.insert(serial_number.to_owned(), entry);
         }
@@ -82,11 +82,11 @@ impl Journal for Notes {
 
     fn record_possible_stores(&mut self, serial_number: &str, stores: u64) {
         let begun = match self.begun.remove(serial_number) {
-            None if stores > 0 => warn(self.intend(serial_number, stores)),
+            None if stores > 0 => log_error(self.record_intent(serial_number, stores)),
             begun => begun,
         };
         if let Some((mut logbook, entry)) = begun {
-            warn(logbook.record_outcome(entry, Timestamp::now(), Outcome::Done, stores));
+            log_error(logbook.record_outcome(entry, Timestamp::now(), Outcome::Done, stores));
         }
     }
 }
@@ -100,7 +100,7 @@ fn emit(excursion: &ModeSwitch) -> String {
 }
 
 fn parse(text: &str) -> Option<ModeSwitch> {
-    let modes: Vec<u32> = warn(ron::from_str(text))?;
+    let modes: Vec<u32> = log_error(ron::from_str(text))?;
     let mut modes = modes.into_iter().map(|mode| StartupMode::parse(Value::from_word(mode)));
     Some(ModeSwitch { found: modes.next()?, sent: modes.collect() })
 }

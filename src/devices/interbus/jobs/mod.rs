@@ -12,16 +12,16 @@ use std::sync::Arc;
 
 pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, InterbusJob, InterbusOutput, JobError, JobStep, Prepared,
-    WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key, wear_limit,
+    WEAR_CONFIRMATION, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan, device_key, wear_limit,
 };
-pub use open::{check, open};
+pub use open::{check_link, open};
 
-use journal::Notes;
+use journal::WriteJournal;
 
-use crate::devices::interbus::procedures::check::{MemoryWear as Limits, check as check_device};
+use crate::devices::interbus::procedures::check::{MemoryWear as Limits, check_encoder as check_device};
 use crate::devices::interbus::procedures::{
-    Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_item, read_programs,
-    read_single_value, read_status, save, select, survey,
+    Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_all_values, read_item,
+    read_programs, read_single_value, read_status, save, select,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
@@ -45,8 +45,12 @@ type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
     /// Returns the master of the encoder. It calls `on_step` for each step of the handshake.
-    fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
-        let notes = Notes::of(context.store.clone(), context.is_virtual);
+    fn create_master<'a>(
+        &'a mut self,
+        context: &'a mut SessionContext,
+        on_step: impl FnMut(Handshake) + 'a,
+    ) -> Master<'a> {
+        let notes = WriteJournal::new(context.store.clone(), context.is_virtual);
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
             .with_reporter(on_step)
             .with_journal(notes)
@@ -96,24 +100,32 @@ impl Device for Interbus {
         use InterbusOutput as Out;
         match job {
             InterbusJob::Prepare(change) => {
-                Ok(Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)))
+                Ok(Out::Prepared(Box::new(prepare::prepare_plan(self, context, &change, tell)?)))
             }
-            InterbusJob::Commit(commit) => Ok(Out::Committed(Box::new(commit::commit(self, context, &commit, tell)?))),
-            InterbusJob::Hello => self.ask(context, tell, |master, _| Ok(Out::Hello(master.reading()?))),
-            InterbusJob::Position => self.ask(context, tell, |master, _| Ok(Out::Position(master.reading()?))),
-            InterbusJob::Survey => self.ask(context, tell, |master, steps| {
+            InterbusJob::Commit(commit) => {
+                Ok(Out::Committed(Box::new(commit::commit_plan(self, context, &commit, tell)?)))
+            }
+            InterbusJob::Hello => {
+                self.run_reading_job(context, tell, |master, _| Ok(Out::Hello(master.read_in_word()?)))
+            }
+            InterbusJob::Position => {
+                self.run_reading_job(context, tell, |master, _| Ok(Out::Position(master.read_in_word()?)))
+            }
+            InterbusJob::Survey => self.run_reading_job(context, tell, |master, steps| {
                 let report = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
-                Ok(Out::Surveyed(Box::new(survey(master, report)?)))
+                Ok(Out::Surveyed(Box::new(read_all_values(master, report)?)))
             }),
-            InterbusJob::Programs(wanted) => self.ask(context, tell, |master, steps| {
+            InterbusJob::Programs(wanted) => self.run_reading_job(context, tell, |master, steps| {
                 let report = &mut |done, total, what| steps(done, total, JobStep::Program(what));
                 let (programs, shift) = read_programs(master, &wanted, report)?;
                 Ok(Out::Programs(programs, shift))
             }),
             InterbusJob::Identify => {
-                self.ask(context, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?))))
+                self.run_reading_job(context, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?))))
             }
-            InterbusJob::Status => self.ask(context, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?)))),
+            InterbusJob::Status => {
+                self.run_reading_job(context, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?))))
+            }
             InterbusJob::Check => {
                 let (store, is_virtual) = (context.store.clone(), context.is_virtual);
                 let wear = |identity: &Identity| Limits {
@@ -121,17 +133,20 @@ impl Device for Interbus {
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,
                 };
-                self.ask(context, tell, |master, steps| {
+                self.run_reading_job(context, tell, |master, steps| {
                     let report = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
                     Ok(Out::Check(check_device(master, wear, report)?))
                 })
             }
-            InterbusJob::Read(item) => self.ask(context, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
-            InterbusJob::ReadOut(what) => {
-                self.ask(context, tell, |master, _| Ok(Out::ReadOut(what, read_single_value(master, what)?)))
+            InterbusJob::Read(item) => {
+                self.run_reading_job(context, tell, |master, _| Ok(Out::Item(read_item(master, item)?)))
             }
-            InterbusJob::Select(mode) => self.ask(context, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
-            InterbusJob::Save { programs } => self.ask(context, tell, |master, steps| {
+            InterbusJob::ReadOut(what) => self
+                .run_reading_job(context, tell, |master, _| Ok(Out::ReadOut(what, read_single_value(master, what)?))),
+            InterbusJob::Select(mode) => {
+                self.run_reading_job(context, tell, |master, _| Ok(Out::Selected(select(master, mode)?)))
+            }
+            InterbusJob::Save { programs } => self.run_reading_job(context, tell, |master, steps| {
                 let report = &mut |done, total, what| match what {
                     SaveStep::ReadOut(what) => steps(done, total, JobStep::ReadOut(what)),
                     SaveStep::Program(what) => steps(done, total, JobStep::Program(what)),
@@ -139,13 +154,13 @@ impl Device for Interbus {
                 Ok(Out::Saved(Box::new(save(master, programs, report)?)))
             }),
             InterbusJob::LeadBack => {
-                self.ask(context, tell, |master, _| Ok(Out::LedBack(master.end_foreign_operation()?)))
+                self.run_reading_job(context, tell, |master, _| Ok(Out::LedBack(master.end_foreign_operation()?)))
             }
         }
     }
 
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<WordReading, JobError> {
-        Ok(self.master(context, |_| {}).reading()?)
+        Ok(self.create_master(context, |_| {}).read_in_word()?)
     }
 
     fn read_watched(
@@ -167,7 +182,7 @@ type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 impl Interbus {
     /// Runs a job that only reads or that returns the encoder to its mode. Except for reading the IN word, these jobs
     /// briefly replace the position.
-    fn ask(
+    fn run_reading_job(
         &mut self,
         context: &mut SessionContext,
         tell: ProgressSink<'_>,
@@ -175,7 +190,7 @@ impl Interbus {
     ) -> Result<InterbusOutput, JobError> {
         let tell = std::cell::RefCell::new(tell);
         let mut master =
-            self.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+            self.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
         let mut steps =
             |done, total, what| (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: what }));
         Ok(ask(&mut master, &mut steps)?)

@@ -18,7 +18,7 @@ use crate::worker::{OpenError, Session};
 ///
 /// # Errors
 /// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
-pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
@@ -39,7 +39,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     // The connection to a gateway has no character format.
     let wire = open_byte_stream(url, FORMAT, &clock, || {
         let gateway = Gateway::new(&config);
-        motor = Some(gateway.shaft());
+        motor = Some(gateway.shaft_motor());
         Ok(connect_simulated(gateway, &clock))
     })?;
     Ok(Session::for_gateway(wire, clock, station, store, motor))
@@ -75,7 +75,7 @@ mod tests {
             "modbus:plc:1502?unit=0&input=0&output=2048&order=high-first&handshake=500",
             "replay:words.trace?unit=1",
         ] {
-            assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
+            assert!(check_link(&text.parse().unwrap()).is_ok(), "{text}");
         }
         for (text, why) in [
             (
@@ -98,7 +98,7 @@ mod tests {
             ("sim:?order=first", "`order=first`"),
             ("sim:?what=1", "a virtual"),
         ] {
-            let error = check(&text.parse().unwrap()).unwrap_err().to_string();
+            let error = check_link(&text.parse().unwrap()).unwrap_err().to_string();
             assert!(error.starts_with(why), "{text}: {error}");
         }
     }

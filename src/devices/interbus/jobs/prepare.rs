@@ -10,7 +10,7 @@ use crate::devices::interbus::protocol::ProgramNumber;
 use crate::worker::commit::cycles_seen;
 use crate::worker::{JobReport, Progress, SessionContext};
 
-pub(super) fn prepare(
+pub(super) fn prepare_plan(
     encoder: &mut Interbus,
     context: &mut SessionContext,
     change: &Change,
@@ -19,7 +19,7 @@ pub(super) fn prepare(
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
     let mut master =
-        encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+        encoder.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
     let report = &mut |done, total, program| {
         (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: JobStep::Program(program) }));
     };
@@ -44,7 +44,7 @@ pub(super) fn prepare(
             };
             device = state(&needed)?;
             let mut wanted = Image { shift: None, ..device.image.clone() };
-            wanted.put(*item, *value);
+            wanted.set_value(*item, *value);
             restore_from_plan(plan_edits(&device.image, &wanted)?)
         }
         Change::Preset { value } => {
@@ -79,7 +79,7 @@ pub(super) fn prepare(
 
 /// Returns the programs that must be read for an image. Any program provides the window shift.
 fn programs_to_read_for(wanted: &Image) -> Vec<ProgramNumber> {
-    let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
+    let known: Vec<ProgramNumber> = wanted.known_programs().map(|(number, _)| number).collect();
     match wanted.shift {
         Some(_) if known.is_empty() => ProgramNumber::all().take(1).collect(),
         _ => known,

@@ -80,20 +80,20 @@ pub enum CheckFinding {
 }
 
 /// Number of IN word readings used to measure the reply time of the gateway.
-const LOOKS: u32 = 20;
+const READING_COUNT: u32 = 20;
 /// Permissible temperature of the electronics in tenths of a degree Celsius. The manual states no limits (`U`).
-const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
+const TEMPERATURE_RANGE: std::ops::RangeInclusive<i32> = -400..=850;
 
 /// Runs the check. `wear` is called after the encoder has been identified.
 ///
 /// # Errors
 /// Returns an error if the gateway does not reply or the check is cancelled. Errors of the handshake are findings.
-pub fn check(
+pub fn check_encoder(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> MemoryWear,
     progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
 ) -> Result<Vec<InterbusStepResult>, Error> {
-    let (mut lines, is_free) = look(master)?;
+    let (mut lines, is_free) = check_in_word(master)?;
     if !is_free {
         // A further request would disturb another master or be written in the wrong word order.
         return Ok(lines);
@@ -120,17 +120,17 @@ pub fn check(
 }
 
 /// Reads only the IN word several times. Also returns whether further requests are possible.
-fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
+fn check_in_word(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
-    for _ in 0..LOOKS {
+    for _ in 0..READING_COUNT {
         let begun = master.now();
-        word = master.reading()?.word;
+        word = master.read_in_word()?.word;
         slowest = slowest.max(master.now().duration_since(begun));
     }
     let slowest_ms = slowest.as_millis() as u64;
     let answers = InterbusStepResult::new(
         CheckStep::Gateway,
-        vec![(Verdict::Good, CheckFinding::Replies { requested: LOOKS, slowest_ms })],
+        vec![(Verdict::Good, CheckFinding::Replies { requested: READING_COUNT, slowest_ms })],
     );
     let (order, fits) = match master.swapped_word_order(word)? {
         Some(swapped) => ((Verdict::Bad, CheckFinding::OrderSwapped { input: word, swapped }), false),
@@ -162,8 +162,8 @@ fn identity(survey: &Survey) -> InterbusStepResult {
     ];
     match identity.gear() {
         Ok(gear) => {
-            findings.push((Verdict::Good, CheckFinding::Gear { steps: gear.steps(), turns: gear.turns() }));
-            let (preset, last) = (survey.parameters.preset, gear.steps() - 1);
+            findings.push((Verdict::Good, CheckFinding::Gear { steps: gear.total_steps(), turns: gear.turns() }));
+            let (preset, last) = (survey.parameters.preset, gear.total_steps() - 1);
             if preset > last {
                 findings.push((Verdict::Attention, CheckFinding::PresetBeyond { preset, last }));
             }
@@ -177,7 +177,7 @@ fn identity(survey: &Survey) -> InterbusStepResult {
 }
 
 fn temperature(tenths: i32) -> InterbusStepResult {
-    let verdict = if TEMPERATURES.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
+    let verdict = if TEMPERATURE_RANGE.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
     InterbusStepResult::new(CheckStep::Temperature, vec![(verdict, CheckFinding::Temperature(tenths))])
 }
 

@@ -11,18 +11,18 @@ pub trait ProcessData {
     ///
     /// # Errors
     /// Returns an error if the exchange fails or is cancelled.
-    fn cycle(&mut self, out: u32) -> Result<u32, Error>;
+    fn run_cycle(&mut self, out: u32) -> Result<u32, Error>;
 
     /// Reads the IN word. The OUT word is left unchanged.
     ///
     /// # Errors
-    /// Returns the same errors as [`cycle`](Self::cycle).
+    /// Returns the same errors as [`run_cycle`](Self::run_cycle).
     fn input(&mut self) -> Result<u32, Error>;
 
     /// Reads the present OUT word. Returns `None` if the gateway cannot read it.
     ///
     /// # Errors
-    /// Returns the same errors as [`cycle`](Self::cycle).
+    /// Returns the same errors as [`run_cycle`](Self::run_cycle).
     fn output(&mut self) -> Result<Option<u32>, Error>;
 
     fn now(&self) -> Moment;

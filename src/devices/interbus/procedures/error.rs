@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::LeftState;
-use crate::devices::interbus::protocol::{Command, ErrorWord, GearError, Refused, Reply, StartupMode};
+use crate::devices::interbus::protocol::{Command, ErrorWord, ForbiddenCommandError, GearError, Reply, StartupMode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
@@ -94,13 +94,13 @@ impl Exception {
     }
 
     /// Returns whether the request may succeed if it is repeated.
-    pub(super) const fn passes(self) -> bool {
+    pub(super) const fn is_temporary(self) -> bool {
         !matches!(self.0, 1..=3)
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Damage {
+pub enum ReplyDamage {
     /// The received bytes are not a Modbus/TCP frame.
     #[error("the received bytes are not a Modbus/TCP frame (number of bytes: {bytes})")]
     NoFrame { bytes: usize },
@@ -156,7 +156,7 @@ pub enum Error {
         requested: RequestedItem,
         tries: u32,
         /// Damage of the last reply.
-        cause: Damage,
+        cause: ReplyDamage,
     },
     /// The gateway keeps sending although the line must be silent.
     #[error("the gateway sends data that was not requested")]
@@ -167,9 +167,9 @@ pub enum Error {
     Cancelled,
     /// The word was not sent. In its present mode, the encoder would interpret it as another command.
     #[error(transparent)]
-    Illegal(#[from] Refused),
+    Illegal(#[from] ForbiddenCommandError),
     /// The encoder refused the command with an error word.
-    #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), word(*error), error.meaning(), error.remedy())]
+    #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), to_word(*error), error.meaning(), error.remedy())]
     Refused { sent: Command, error: ErrorWord },
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
@@ -223,7 +223,7 @@ pub enum Error {
     },
 }
 
-fn word(error: ErrorWord) -> u32 {
+fn to_word(error: ErrorWord) -> u32 {
     Reply::Error(error).emit()
 }
 

@@ -11,7 +11,7 @@ use rmodbus::{ModbusProto, guess_response_frame_len};
 
 use super::LinkParameters;
 use super::data::ProcessData;
-use super::error::{Damage, Exception, RequestedItem};
+use super::error::{Exception, ReplyDamage, RequestedItem};
 use super::station::Station;
 use super::{Error, KnownState};
 use crate::bits::MaskedBytes;
@@ -21,20 +21,20 @@ use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
 /// Number of unanswered attempts after which a gateway counts as lost.
-const SILENCES: u32 = 3;
-const TRIES: u32 = 5;
+const MAX_UNANSWERED: u32 = 3;
+const MAX_ATTEMPTS: u32 = 5;
 /// Pause after a refusal before the request is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
 /// Required silence after bytes that are not a frame. The next bytes start a new frame.
-const QUIET: Duration = Duration::from_millis(50);
+const RESYNC_SILENCE: Duration = Duration::from_millis(50);
 /// Interval at which cancellation is checked.
-const SLICE: Duration = Duration::from_millis(50);
+const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Number of bytes before the function code of a frame. They are its number, protocol, length and unit.
 const HEADER: usize = 7;
 /// Length of the shortest frame, which is a refusal, in bytes.
-const SHORTEST: usize = HEADER + 2;
+const MIN_FRAME_LEN: usize = HEADER + 2;
 /// Bit that is set in the function code of a refusal.
-const REFUSED: u8 = 0x80;
+const EXCEPTION_BIT: u8 = 0x80;
 
 /// A gateway with one encoder, for the duration of one job.
 pub struct Gateway<'a> {
@@ -56,12 +56,12 @@ struct State<'a> {
 
 enum ExchangeError {
     Silence,
-    Damage(Damage),
+    Damage(ReplyDamage),
     Exception(Exception),
 }
 
 /// A complete frame. The error contains bytes that do not form a frame, and their damage.
-type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
+type FrameResult = Result<Vec<u8>, (ReplyDamage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
     /// Creates the gateway of a station. Also returns the known state of the encoder behind it.
@@ -77,7 +77,7 @@ impl<'a> Gateway<'a> {
 
     /// Sends a request and returns the registers of its reply. The request is repeated after errors that may be
     /// temporary.
-    fn ask(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
+    fn send_request(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -96,18 +96,18 @@ impl<'a> Gateway<'a> {
             }
             match trouble {
                 ExchangeError::Silence => {
-                    if *self.state.silent || tries >= SILENCES {
+                    if *self.state.silent || tries >= MAX_UNANSWERED {
                         *self.state.silent = true;
                         return Err(Error::NoReply { requested, tries });
                     }
                 }
                 ExchangeError::Damage(cause) => {
-                    if tries >= TRIES {
+                    if tries >= MAX_ATTEMPTS {
                         return Err(Error::Damaged { requested, tries, cause });
                     }
                 }
                 ExchangeError::Exception(exception) => {
-                    if !exception.passes() || tries >= TRIES {
+                    if !exception.is_temporary() || tries >= MAX_ATTEMPTS {
                         return Err(Error::Exception { requested, exception });
                     }
                     self.line.wait(BUSY_PAUSE)?;
@@ -122,7 +122,7 @@ impl<'a> Gateway<'a> {
         // The number 0 is skipped, since it is used by devices that ignore the number.
         *self.state.next = number.checked_add(1).unwrap_or(1);
         let Some((request, bytes)) = self.request(requested, number) else {
-            return Ok(Err(ExchangeError::Damage(Damage::Registers)));
+            return Ok(Err(ExchangeError::Damage(ReplyDamage::Registers)));
         };
         let sent_at = self.line.now();
         self.state.line.mark_sent(sent_at);
@@ -135,7 +135,7 @@ impl<'a> Gateway<'a> {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&frame));
                         if self.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
-                            let judged = judge(&request, requested, frame);
+                            let judged = parse_reply(&request, requested, frame);
                             if !matches!(judged, Err(ExchangeError::Damage(_))) {
                                 self.state.line.mark_replied();
                                 self.state.line.record_answer_start(now);
@@ -146,7 +146,7 @@ impl<'a> Gateway<'a> {
                     Some(Err((damage, bytes))) => {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&bytes));
-                        self.line.wait_for_silence(self.state.line, QUIET)?;
+                        self.line.wait_for_silence(self.state.line, RESYNC_SILENCE)?;
                         return Ok(Err(ExchangeError::Damage(damage)));
                     }
                     None => break,
@@ -157,7 +157,7 @@ impl<'a> Gateway<'a> {
                 return Ok(Err(ExchangeError::Silence));
             }
             self.line.check_cancel()?;
-            self.line.receive((now + SLICE).min(deadline), self.state.waiting)?;
+            self.line.receive((now + CANCEL_CHECK_INTERVAL).min(deadline), self.state.waiting)?;
         }
     }
 
@@ -167,27 +167,27 @@ impl<'a> Gateway<'a> {
 
     /// Removes the next complete frame from the received bytes. If they do not form a frame, all of them are removed
     /// and returned as an error.
-    fn next_frame(&mut self) -> Option<Whole> {
+    fn next_frame(&mut self) -> Option<FrameResult> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
             return None;
         }
         let length = guess_response_frame_len(waiting, ModbusProto::TcpUdp).map(usize::from);
         match length {
-            Ok(length) if length >= SHORTEST => {
+            Ok(length) if length >= MIN_FRAME_LEN => {
                 (waiting.len() >= length).then(|| Ok(waiting.drain(..length).collect()))
             }
             _ => {
                 let bytes = std::mem::take(waiting);
-                Some(Err((Damage::NoFrame { bytes: bytes.len() }, bytes)))
+                Some(Err((ReplyDamage::NoFrame { bytes: bytes.len() }, bytes)))
             }
         }
     }
 
     fn read(&mut self, requested: RequestedItem) -> Result<u32, Error> {
-        match *self.ask(requested)?.as_slice() {
-            [first, second] => Ok(self.link.order.word([first, second])),
-            _ => Err(Error::Damaged { requested, tries: 1, cause: Damage::Registers }),
+        match *self.send_request(requested)?.as_slice() {
+            [first, second] => Ok(self.link.order.combine([first, second])),
+            _ => Err(Error::Damaged { requested, tries: 1, cause: ReplyDamage::Registers }),
         }
     }
 }
@@ -206,25 +206,25 @@ fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) ->
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub enum GatewayFault {
     /// The frame is not a valid reply to the request.
-    Broken(Damage),
+    Broken(ReplyDamage),
     Refused(Exception),
 }
 
 /// Returns the fault of a frame in the trace that followed the given request. The result is `None` if the frame answers
 /// this request or, according to its number, an earlier one.
-pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
-    let broken = |damage| Some(Fault::Broken(damage));
+pub fn find_fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<GatewayFault> {
+    let broken = |damage| Some(GatewayFault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
-    if received.len() < SHORTEST || length != Ok(received.len()) {
-        return broken(Damage::NoFrame { bytes: received.len() });
+    if received.len() < MIN_FRAME_LEN || length != Ok(received.len()) {
+        return broken(ReplyDamage::NoFrame { bytes: received.len() });
     }
     let (number, unit, requested) = request_in_frame(sent, order)?;
     let (request, _) = request(requested, unit, number, order)?;
-    match judge(&request, requested, received.to_vec()) {
+    match parse_reply(&request, requested, received.to_vec()) {
         Err(ExchangeError::Damage(damage)) => broken(damage),
-        Err(ExchangeError::Exception(exception)) => Some(Fault::Refused(exception)),
+        Err(ExchangeError::Exception(exception)) => Some(GatewayFault::Refused(exception)),
         Ok(_) | Err(ExchangeError::Silence) => None,
     }
 }
@@ -236,29 +236,38 @@ fn request_in_frame(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Requested
     let requested = match (function, word_in_frame(true, sent, order)) {
         (4, _) => RequestedItem::Input { register },
         (3, _) => RequestedItem::Output { register },
-        (_, Some(Carried::Out(word))) => RequestedItem::Write { register, word },
+        (_, Some(FrameWord::Out(word))) => RequestedItem::Write { register, word },
         _ => return None,
     };
     Some((u16::from_be_bytes([number_high, number_low]), unit, requested))
 }
 
 /// Parses the reply to a request. The number of the reply is ignored.
-fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
-    let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
+fn parse_reply(
+    request: &ModbusRequest,
+    requested: RequestedItem,
+    mut frame: Vec<u8>,
+) -> Result<Vec<u16>, ExchangeError> {
+    let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(ReplyDamage::Registers)) };
     // The number in a recorded reply belongs to the recorded request.
     frame.splice(..2, request.tr_id.to_be_bytes());
     let (unit, function) = (frame.get(HEADER - 1).copied(), frame.get(HEADER).copied());
-    let (Some(unit), Some(function)) = (unit, function) else { return Err(ExchangeError::Damage(Damage::Registers)) };
+    let (Some(unit), Some(function)) = (unit, function) else {
+        return Err(ExchangeError::Damage(ReplyDamage::Registers));
+    };
     if unit != request.unit_id {
-        return Err(ExchangeError::Damage(Damage::Unit { requested: request.unit_id, got: unit }));
+        return Err(ExchangeError::Damage(ReplyDamage::Unit { requested: request.unit_id, got: unit }));
     }
     // Refusals are parsed here, because the crate changes the codes 0Ah and 0Bh and takes every other function for a
     // refusal.
-    if function == requested.function_code() | REFUSED {
+    if function == requested.function_code() | EXCEPTION_BIT {
         return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }
     if function != requested.function_code() {
-        return Err(ExchangeError::Damage(Damage::Function { requested: requested.function_code(), got: function }));
+        return Err(ExchangeError::Damage(ReplyDamage::Function {
+            requested: requested.function_code(),
+            got: function,
+        }));
     }
     let body = frame.get(HEADER + 1..).unwrap_or_default();
     let mut registers: Vec<u16> = Vec::new();
@@ -271,15 +280,15 @@ fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) 
             body == [high, low, 0, 2] && request.parse_ok(&frame).is_ok()
         }
     };
-    if fits { Ok(registers) } else { Err(ExchangeError::Damage(Damage::Registers)) }
+    if fits { Ok(registers) } else { Err(ExchangeError::Damage(ReplyDamage::Registers)) }
 }
 
 impl ProcessData for Gateway<'_> {
-    fn cycle(&mut self, out: u32) -> Result<u32, Error> {
+    fn run_cycle(&mut self, out: u32) -> Result<u32, Error> {
         if self.written != Some(out) {
             // The word may have been written even if its reply is lost.
             self.written = None;
-            self.ask(RequestedItem::Write { register: self.link.output, word: out })?;
+            self.send_request(RequestedItem::Write { register: self.link.output, word: out })?;
             self.written = Some(out);
         }
         self.line.wait(self.link.cycle)?;
@@ -313,20 +322,20 @@ impl ProcessData for Gateway<'_> {
 
 /// The process data word of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carried {
+pub enum FrameWord {
     Out(u32),
     In(u32),
 }
 
 /// Returns the process data word of a frame in the trace, or `None` if the frame contains none.
-pub fn word_in_frame(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
+pub fn word_in_frame(sent: bool, frame: &[u8], order: WordOrder) -> Option<FrameWord> {
     match (sent, frame.get(HEADER..)?) {
-        (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),
-        (false, [4, 4, a, b, c, d]) => Some(Carried::In(word(order, [*a, *b, *c, *d]))),
+        (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(FrameWord::Out(word_from_bytes(order, [*a, *b, *c, *d]))),
+        (false, [4, 4, a, b, c, d]) => Some(FrameWord::In(word_from_bytes(order, [*a, *b, *c, *d]))),
         _ => None,
     }
 }
 
-fn word(order: WordOrder, [a, b, c, d]: [u8; 4]) -> u32 {
-    order.word([u16::from_be_bytes([a, b]), u16::from_be_bytes([c, d])])
+fn word_from_bytes(order: WordOrder, [a, b, c, d]: [u8; 4]) -> u32 {
+    order.combine([u16::from_be_bytes([a, b]), u16::from_be_bytes([c, d])])
 }

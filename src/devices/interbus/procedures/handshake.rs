@@ -37,7 +37,7 @@ pub(super) fn is_echo(command: Command, input: u32) -> bool {
 }
 
 impl WordReply {
-    pub fn of(command: Command, input: u32) -> Self {
+    pub fn from_words(command: Command, input: u32) -> Self {
         if is_echo(command, input) && !matches!(command, Command::Normal | Command::Run) {
             return WordReply::Echoed;
         }

@@ -79,7 +79,10 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
 ///
 /// # Errors
 /// Returns the same errors as [`identify`].
-pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOutNumber)) -> Result<Survey, Error> {
+pub fn read_all_values(
+    master: &mut Master<'_>,
+    progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
+) -> Result<Survey, Error> {
     master.run_guarded(|master| read_survey(master, progress))
 }
 
@@ -89,14 +92,14 @@ pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOu
 /// Returns the same errors as [`identify`].
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     // This is the word that a machine receives, since nothing has been requested yet.
-    let mut reading = master.reading()?;
+    let mut reading = master.read_in_word()?;
     let error = match reading.reply() {
         Reply::Error(error) => Some(error),
         _ => None,
     };
     master.run_guarded(|master| {
         let identity = read_identity(master, &mut Vec::new())?;
-        let Measured { minutes, tenths } = read_measurements(master)?;
+        let DeviceMeasurements { minutes, tenths } = read_measurements(master)?;
         (reading.mode, reading.gear) = (Some(identity.mode), identity.gear().ok());
         let Identity { mode, flags, .. } = identity;
         Ok(Status { reading, error, mode, flags, operating_minutes: minutes, temperature_tenths: tenths })
@@ -130,8 +133,8 @@ pub fn read_programs(
 /// the handshake or the exchange.
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
     master.run_guarded(|master| {
-        master.go(mode)?;
-        master.stay_in_current_mode();
+        master.switch_to_mode(mode)?;
+        master.keep_current_mode();
         Ok(master.mode().unwrap_or(mode))
     })
 }
@@ -178,7 +181,7 @@ pub(super) fn read_survey(
         }
     }
     let value = |number: u16| {
-        let found = values.iter().find(|(read_out, _)| read_out.number() == number);
+        let found = values.iter().find(|(read_out, _)| read_out.to_u16() == number);
         found.map_or(Value::default(), |(_, value)| *value)
     };
     let parameters = Parameters {
@@ -239,7 +242,7 @@ pub(super) fn read_image(
     wanted: &[ProgramNumber],
     progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<Image, Error> {
-    let mut image = Image::of(parameters);
+    let mut image = Image::from_parameters(parameters);
     if wanted.is_empty() {
         return Ok(image);
     }
@@ -264,13 +267,13 @@ pub(super) fn programs(
     let mut read = Vec::new();
     for (done, number) in (0..).zip(wanted) {
         progress(done, total, *number);
-        master.go(StartupMode::Cams(*number))?;
+        master.switch_to_mode(StartupMode::Cams(*number))?;
         read.push((*number, read_program(master)?));
     }
     if selects_first {
         // Every program contains the shift, so the first one is selected.
         if let Some(first) = ProgramNumber::new(1) {
-            master.go(StartupMode::Cams(first))?;
+            master.switch_to_mode(StartupMode::Cams(first))?;
         }
     }
     Ok((read, read_shift(master)?))
@@ -278,7 +281,7 @@ pub(super) fn programs(
 
 pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
     // There are eight cams, so the upper byte is 0. See reference 6.9.
-    let mask = master.ask(Command::ReadActivation)?.get() as u8;
+    let mask = master.request_value(Command::ReadActivation)?.get() as u8;
     let mut program = Program { mask, ..Program::default() };
     for (cam, place) in CamNumber::all().zip(&mut program.cams) {
         *place = Some(read_cam(master, cam)?);
@@ -287,27 +290,27 @@ pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
 }
 
 pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, Error> {
-    let start = master.ask(Command::ReadCamStart(cam))?;
-    Ok(Cam { start, stop: master.ask(Command::ReadCamStop(cam))? })
+    let start = master.request_value(Command::ReadCamStart(cam))?;
+    Ok(Cam { start, stop: master.request_value(Command::ReadCamStop(cam))? })
 }
 
 /// Reads the window shift. A cam program must be selected.
 pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> {
-    let value = master.ask(Command::ReadShift)?.get();
+    let value = master.request_value(Command::ReadShift)?.get();
     let read = Command::ReadShift.emit();
     let shift = u8::try_from(value).ok().and_then(WindowShift::new).ok_or(ImplausibleValue::Value { read, value })?;
     master.remember_window_shift(shift);
     Ok(shift)
 }
 
-pub(super) struct Measured {
+pub(super) struct DeviceMeasurements {
     pub(super) minutes: u32,
     pub(super) tenths: i32,
 }
 
-pub(super) fn read_measurements(master: &mut Master<'_>) -> Result<Measured, Error> {
+pub(super) fn read_measurements(master: &mut Master<'_>) -> Result<DeviceMeasurements, Error> {
     let minutes = operating_time_minutes(master.read_out(ReadOutNumber::OPERATING_TIME)?);
-    Ok(Measured { minutes, tenths: temperature_tenths(master.read_out(ReadOutNumber::TEMPERATURE)?) })
+    Ok(DeviceMeasurements { minutes, tenths: temperature_tenths(master.read_out(ReadOutNumber::TEMPERATURE)?) })
 }
 
 fn operating_time_minutes(value: Value) -> u32 {

@@ -8,8 +8,8 @@ mod stability;
 
 use std::time::Duration;
 
-use notes::Notes;
-use stability::{CycleResult, LEAST_PATIENCE, StabilityTimer};
+use notes::JournalNotes;
+use stability::{CycleResult, MIN_HANDSHAKE_TIMEOUT, StabilityTimer};
 
 use super::data::ProcessData;
 use super::error::{ExpectedWord, RequestedItem};
@@ -49,7 +49,7 @@ pub struct Master<'a> {
     /// Time at which the encoder was last known to be in its initial state.
     rested: Option<Moment>,
     reported: Option<(u32, WordReply)>,
-    notes: Notes<'a>,
+    notes: JournalNotes<'a>,
 }
 
 impl<'a> Master<'a> {
@@ -57,20 +57,20 @@ impl<'a> Master<'a> {
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
-        Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
+        Master { recorded, ..Master::from_parts(Box::new(gateway), known, patience) }
     }
 
     /// Creates a master for one job from the given process data.
-    pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
+    pub fn for_job(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
-        Master::with(Box::new(data), &mut station.known, patience)
+        Master::from_parts(Box::new(data), &mut station.known, patience)
     }
 
-    fn with(data: Box<dyn ProcessData + 'a>, known: &'a mut KnownState, patience: Duration) -> Self {
+    fn from_parts(data: Box<dyn ProcessData + 'a>, known: &'a mut KnownState, patience: Duration) -> Self {
         Master {
             data,
             known,
-            patience: patience.max(LEAST_PATIENCE),
+            patience: patience.max(MIN_HANDSHAKE_TIMEOUT),
             recorded: false,
             tell: None,
             is: None,
@@ -84,7 +84,7 @@ impl<'a> Master<'a> {
             input: 0,
             rested: None,
             reported: None,
-            notes: Notes::default(),
+            notes: JournalNotes::default(),
         }
     }
 
@@ -126,13 +126,13 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
-    pub fn reading(&mut self) -> Result<WordReading, Error> {
+    pub fn read_in_word(&mut self) -> Result<WordReading, Error> {
         let word = self.data.input()?;
         let KnownState { mode, gear, shift, .. } = *self.known;
         Ok(WordReading { at: self.data.now(), word, mode, gear, shift })
     }
 
-    pub(super) fn standing(&self) -> LeftState {
+    pub(super) fn left_state(&self) -> LeftState {
         let out = self.out.map_or(0, Command::emit);
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
@@ -155,11 +155,11 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Returns [`Error::UnknownReadOut`] if the value does not exist, and otherwise the same errors as
     /// [`set`](Self::set).
-    pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
+    pub(super) fn request_value(&mut self, command: Command) -> Result<Value, Error> {
         self.wait_until_value_cleared()?;
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
-        self.until(command, ExpectedWord::Value, self.patience, |CycleResult { word, same, .. }| {
+        self.repeat_until(command, ExpectedWord::Value, self.patience, |CycleResult { word, same, .. }| {
             match Reply::parse(word) {
                 Reply::ReadOut(value) if same.is_stable() => Some(Ok(value)),
                 Reply::UnknownReadOut(_) if same.is_stable() => Some(Err(Error::UnknownReadOut { command })),
@@ -174,9 +174,9 @@ impl<'a> Master<'a> {
     /// Reads a value from the encoder.
     ///
     /// # Errors
-    /// Returns the same errors as [`ask`](Self::ask).
+    /// Returns the same errors as [`request_value`](Self::request_value).
     pub(super) fn read_out(&mut self, read_out: ReadOutNumber) -> Result<Value, Error> {
-        let value = self.ask(Command::ReadOut(read_out))?;
+        let value = self.request_value(Command::ReadOut(read_out))?;
         if read_out == ReadOutNumber::SERIAL_NUMBER {
             self.note_serial_number(value.get());
         }
@@ -189,7 +189,7 @@ impl<'a> Master<'a> {
     /// Returns [`Error::Refused`] if the encoder keeps sending an error, or [`Error::TimeOut`] if it does not run.
     /// Other errors come from the exchange.
     pub(super) fn run(&mut self) -> Result<(), Error> {
-        self.running(Command::Run, self.patience)?;
+        self.return_to_running(Command::Run, self.patience)?;
         self.parameterising = false;
         Ok(())
     }
@@ -199,14 +199,14 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Returns the same errors as [`run`](Self::run).
     pub(super) fn return_to_operation(&mut self) -> Result<(), Error> {
-        self.running(Command::Normal, self.patience)
+        self.return_to_running(Command::Normal, self.patience)
     }
 
-    fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
+    fn return_to_running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
         self.ensure_legal(command)?;
         let (mut runs, found) = (StabilityTimer::new(self.recorded), self.found_error);
-        self.until(command, ExpectedWord::Run, patience, |CycleResult { now, word, same }| {
-            runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
+        self.repeat_until(command, ExpectedWord::Run, patience, |CycleResult { now, word, same }| {
+            runs.update(matches!(Reply::parse(word), Reply::Run { .. }), now);
             (runs.is_stable() || Some(word) == found && same.is_settled()).then_some(Ok(()))
         })
     }
@@ -221,18 +221,22 @@ impl<'a> Master<'a> {
         self.return_to_operation()?;
         self.ensure_legal(Command::Preset)?;
         let (mut sent, mut there) = (StabilityTimer::new(self.recorded), StabilityTimer::new(self.recorded));
-        let fired =
-            self.until(Command::Preset, ExpectedWord::Preset, self.patience, |CycleResult { now, word, .. }| {
-                sent.go_on(true, now);
-                there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
+        let fired = self.repeat_until(
+            Command::Preset,
+            ExpectedWord::Preset,
+            self.patience,
+            |CycleResult { now, word, .. }| {
+                sent.update(true, now);
+                there.update(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
                 (sent.is_settled() && there.is_stable()).then_some(Ok(()))
-            });
+            },
+        );
         self.run_uncancellable(Self::return_to_operation).and(fired)
     }
 
     /// Sends a command in every cycle until `judge` returns a result. `judge` receives the IN word and the time for
     /// which the word has been unchanged. The function also records how long the encoder is busy.
-    fn until<T>(
+    fn repeat_until<T>(
         &mut self,
         command: Command,
         awaited: ExpectedWord,
@@ -244,15 +248,15 @@ impl<'a> Master<'a> {
         let (mut last, mut same, mut cycles) = (None, StabilityTimer::new(self.recorded), 0);
         let mut at_work = StabilityTimer::new(self.recorded);
         loop {
-            let word = self.cycle(command)?;
+            let word = self.run_cycle(command)?;
             let now = self.data.now();
             cycles += 1;
             if last != Some(word) {
                 same = StabilityTimer::new(self.recorded);
             }
-            same.go_on(true, now);
+            same.update(true, now);
             last = Some(word);
-            at_work.go_on(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
+            at_work.update(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
             self.known.processing = self.known.processing.max(at_work.stable_duration());
             if let Some(ended) = judge(CycleResult { now, word, same }) {
                 return ended;
@@ -263,9 +267,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    fn cycle(&mut self, command: Command) -> Result<u32, Error> {
+    fn run_cycle(&mut self, command: Command) -> Result<u32, Error> {
         let before = self.out.replace(command);
-        self.input = match self.data.cycle(command.emit()) {
+        self.input = match self.data.run_cycle(command.emit()) {
             Err(error) if is_write_refused(&error) => {
                 self.out = before;
                 return Err(error);
@@ -277,7 +281,7 @@ impl<'a> Master<'a> {
                 ended?
             }
         };
-        let (out, input, reply) = (command.emit(), self.input, WordReply::of(command, self.input));
+        let (out, input, reply) = (command.emit(), self.input, WordReply::from_words(command, self.input));
         // A moving shaft changes the position in every cycle, which is not reported repeatedly.
         if self.reported != Some((out, reply))
             && let Some(tell) = &mut self.tell
@@ -340,5 +344,5 @@ impl<'a> Master<'a> {
 
 /// Returns whether the gateway refused to write the word. After any other exception, the word may have been written.
 fn is_write_refused(error: &Error) -> bool {
-    matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
+    matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.is_temporary())
 }

@@ -21,10 +21,12 @@ mod station;
 pub mod write;
 
 pub use data::ProcessData;
-pub use error::{Damage, Error, Exception, ExpectedWord, ImplausibleValue, RequestedItem};
-pub use gateway::{Carried, Fault, Gateway, fault, word_in_frame};
+pub use error::{Error, Exception, ExpectedWord, ImplausibleValue, ReplyDamage, RequestedItem};
+pub use gateway::{FrameWord, Gateway, GatewayFault, find_fault, word_in_frame};
 pub use handshake::{Handshake, LeftState, WordReply};
-pub use identify::{Identity, Status, Survey, identify, read_programs, read_single_value, read_status, select, survey};
+pub use identify::{
+    Identity, Status, Survey, identify, read_all_values, read_programs, read_single_value, read_status, select,
+};
 pub use journal::{Journal, ModeSwitch};
 pub use master::Master;
 pub use reading::{TurnPosition, WordReading};

@@ -46,7 +46,7 @@ impl WordReading {
             (Some(StartupMode::Velocity), _) => None,
             (Some(StartupMode::Cams(_)), Reply::Run { .. }) => {
                 let (gear, shift) = (self.gear?, self.shift?);
-                let bits = u32::BITS - (gear.steps() - 1).leading_zeros();
+                let bits = u32::BITS - (gear.total_steps() - 1).leading_zeros();
                 let whole = shift.get() == 0 && bits <= 17;
                 whole.then(|| self.cams().map(|cams| cams.position_bits(shift)))?
             }
@@ -84,9 +84,9 @@ impl WordReading {
 
     /// Returns the position as turns and steps. The result is `None` if the position or the gear is unknown, or if the
     /// position is beyond the measuring range.
-    pub fn place(&self) -> Option<TurnPosition> {
+    pub fn turn_position(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
-        let (all, turns) = (u64::from(gear.steps()), u64::from(gear.turns()));
+        let (all, turns) = (u64::from(gear.total_steps()), u64::from(gear.turns()));
         if position >= all {
             return None;
         }
@@ -148,7 +148,7 @@ mod tests {
     /// With 1000 steps over 3 turns, turn 1 begins at 333.3, so its first step is 334.
     #[test]
     fn a_position_is_split_into_turns_and_steps() {
-        let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).place();
+        let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).turn_position();
         assert_eq!(place(333).map(|own| (own.turns, own.steps)), Some((0, 333)));
         assert_eq!(place(334).map(|own| (own.turns, own.steps)), Some((1, 0)));
         assert_eq!(place(999).map(|own| (own.turns, own.steps)), Some((2, 332)));

@@ -3,7 +3,9 @@
 use super::identify::{direction_from_read_out, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
 use super::{Error, Identity, Master, Survey};
-use crate::devices::interbus::profile::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
+use crate::devices::interbus::profile::{
+    DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, RecordedValues,
+};
 use crate::devices::interbus::protocol::{Command, Parameter, ProgramNumber, ReadOutNumber, ReadOutValue, StartupMode};
 use crate::profile::UnknownValues;
 
@@ -19,8 +21,8 @@ impl Identity {
 
 impl Survey {
     /// Returns the values that a profile records but cannot restore.
-    pub fn recorded(&self) -> Recorded {
-        Recorded {
+    pub fn recorded_values(&self) -> RecordedValues {
+        RecordedValues {
             software_version: Some(self.identity.software_version),
             operating_minutes: Some(self.operating_minutes),
             temperature_tenths: Some(self.temperature_tenths),
@@ -47,7 +49,7 @@ pub fn save(
         let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
         let of_program = &mut |done, total, program| progress(done, total, SaveStep::Program(program));
         let image = read_image(master, survey.parameters, &wanted, of_program)?;
-        Ok(InterbusProfile::of(survey.identity.profile(), image, survey.recorded()))
+        Ok(InterbusProfile::new(survey.identity.profile(), image, survey.recorded_values()))
     })
 }
 
@@ -84,7 +86,7 @@ pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error
     master.run_guarded(|master| {
         if let Some(program) = item.program() {
             master.record_program_reads(1)?;
-            master.go(StartupMode::Cams(program))?;
+            master.switch_to_mode(StartupMode::Cams(program))?;
         }
         if let Some(parameter) = item.parameter() {
             let number = read_parameter(master, parameter)?;
@@ -98,7 +100,7 @@ pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error
                 let (_, shift) = programs(master, &[], &mut |_, _, _| {})?;
                 ItemValue::Number(shift.get().into())
             }
-            Item::CamMask(_) => ItemValue::Mask(master.ask(Command::ReadActivation)?.get() as u8),
+            Item::CamMask(_) => ItemValue::Mask(master.request_value(Command::ReadActivation)?.get() as u8),
             Item::Cam(_, cam) => ItemValue::Cam(read_cam(master, cam)?),
             item => {
                 let read_out =

@@ -18,7 +18,7 @@ parameters! {
         pub input: u16 = 0, "input" => INPUT, "connect.input";
         /// First of the two holding registers that contain the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
-        pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
+        pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
         /// Time limit for an echo, a value or a position (`U`). See reference 4.
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
         /// Pause before each reading of the IN word, which is about the cycle time of a gateway.

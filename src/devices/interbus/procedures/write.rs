@@ -19,7 +19,7 @@ use crate::devices::interbus::protocol::{
 };
 use crate::profile::{ConfirmedPlan, Write};
 
-pub type Interrupted = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
+pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
 
 /// The state of an encoder after a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,9 +31,9 @@ pub enum EndState {
 }
 
 /// Time for which the shaft must stand still before a preset.
-const WATCHED: Duration = Duration::from_millis(300);
+const STANDSTILL_TIME: Duration = Duration::from_millis(300);
 /// Interval between two readings of the position at standstill.
-const LOOK: Duration = Duration::from_millis(20);
+const READING_INTERVAL: Duration = Duration::from_millis(20);
 
 pub struct EncoderWriter<'w, 'm> {
     pub master: Master<'m>,
@@ -49,16 +49,16 @@ impl Write for EncoderWriter<'_, '_> {
 
     fn confirm_base(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
         let Self { master, identity } = self;
-        master.run_guarded(|master| confirm(master, plan, identity))
+        master.run_guarded(|master| confirm_identity(master, plan, identity))
     }
 
     fn begin(&mut self) -> Result<(), Error> {
-        self.master.begin()
+        self.master.enter()
     }
 
     fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut WrittenChanges) -> Result<(), Error> {
-        perform(&mut self.master, op, done)?;
-        done.count_operation(op.weight());
+        execute(&mut self.master, op, done)?;
+        done.count_operation(op.change_count());
         Ok(())
     }
 
@@ -68,7 +68,7 @@ impl Write for EncoderWriter<'_, '_> {
         ended: Result<(), Error>,
         _: &mut WrittenChanges,
     ) -> Result<(), Error> {
-        self.master.end(ended)
+        self.master.finish(ended)
     }
 
     fn end_state(&mut self, cause: &Error) -> EndState {
@@ -79,7 +79,7 @@ impl Write for EncoderWriter<'_, '_> {
     }
 }
 
-fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) -> Result<(), Error> {
+fn confirm_identity(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) -> Result<(), Error> {
     let changed = |item: String| Err(Error::Changed { item });
     if master.read_out(ReadOutNumber::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
         return changed("the encoder itself".to_owned());
@@ -93,7 +93,7 @@ fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) ->
     }
     master.record_program_reads(plan.base.programs.len())?;
     for (number, program) in &plan.base.programs {
-        master.go(StartupMode::Cams(*number))?;
+        master.switch_to_mode(StartupMode::Cams(*number))?;
         if read_program(master)? != *program {
             return changed(format!("cam program {}", number.get()));
         }
@@ -110,7 +110,7 @@ fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) ->
     Ok(())
 }
 
-fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Result<(), Error> {
+fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Result<(), Error> {
     match op {
         Op::Parameterise(changes) => parameterise(master, changes, done)?,
         Op::Program(change) => program(master, change, done)?,
@@ -119,9 +119,9 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
             done.verified += 1;
         }
         Op::Default => {
-            master.go(StartupMode::K3)?;
+            master.switch_to_mode(StartupMode::K3)?;
             done.write_cycles += 1;
-            master.set(Command::Set(Parameter::Default, Value::default()))?;
+            master.send_setting(Command::Set(Parameter::Default, Value::default()))?;
             master.run()?;
             master.return_to_operation()?;
             // The factory settings have another gear, which has not been read yet.
@@ -133,19 +133,19 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
 
 /// Sets all changed parameters in a single parameterisation and stores them with 80000000h.
 fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut WrittenChanges) -> Result<(), Error> {
-    master.go(StartupMode::K3)?;
+    master.switch_to_mode(StartupMode::K3)?;
     done.write_cycles += 1;
     for change in changes {
         let code = u32::from(change.parameter.row().code) << Value::BITS;
         let value = Value::new(change.to).ok_or(ImplausibleValue::Value { read: code, value: change.to })?;
-        master.set(Command::Set(change.parameter, value))?;
+        master.send_setting(Command::Set(change.parameter, value))?;
     }
     master.run()?;
     master.return_to_operation()?;
     for change in changes {
         let item = || change.parameter.name().to_owned();
         let reads = read_back(master, change.parameter)?;
-        check(item, change.to, reads)?;
+        check_value(item, change.to, reads)?;
         done.verified += 1;
     }
     let of_gear = |change: &ParameterChange| matches!(change.parameter, Parameter::Steps | Parameter::Turns);
@@ -174,14 +174,14 @@ pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> R
     Ok(master.read_out(ReadOutNumber::new(number))?.get())
 }
 
-fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), Error> {
+fn check_value(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), Error> {
     if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
 }
 
 /// Selects a cam program and changes it. The changes are stored with 80000000h and read back.
 fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenChanges) -> Result<(), Error> {
     let number = change.program;
-    master.go(StartupMode::Cams(number))?;
+    master.switch_to_mode(StartupMode::Cams(number))?;
     done.write_cycles += 1;
     for CamChange { cam, edge, to, .. } in &change.cams {
         let (command, question) = match edge {
@@ -192,14 +192,14 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenCh
             Reply::Busy { .. } => {
                 master.set_and_verify(command, question, *to, || format!("{} {edge}", Item::Cam(number, *cam)))?;
             }
-            _ => master.set(command)?,
+            _ => master.send_setting(command)?,
         }
     }
     if let Some((_, to)) = change.mask {
-        master.set(Command::Activate(to.into()))?;
+        master.send_setting(Command::Activate(to.into()))?;
     }
     if let Some((_, to)) = change.shift {
-        master.set(Command::Shift(to))?;
+        master.send_setting(Command::Shift(to))?;
     }
     master.run()?;
     let mut cams: Vec<&CamChange> = change.cams.iter().collect();
@@ -207,17 +207,17 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenCh
         let reads = read_cam(master, first.cam)?;
         for own in cams.extract_if(.., |own| own.cam == first.cam) {
             let item = || format!("{} {}", Item::Cam(number, own.cam), own.edge);
-            check(item, own.to.get(), own.edge.of(reads).get())?;
+            check_value(item, own.to.get(), own.edge.position_in(reads).get())?;
         }
         done.verified += 1;
     }
     if let Some((_, to)) = change.mask {
-        let reads = master.ask(Command::ReadActivation)?.get();
-        check(|| Item::CamMask(number).to_string(), to.into(), reads)?;
+        let reads = master.request_value(Command::ReadActivation)?.get();
+        check_value(|| Item::CamMask(number).to_string(), to.into(), reads)?;
         done.verified += 1;
     }
     if let Some((_, to)) = change.shift {
-        check(|| Item::Shift.to_string(), to.get().into(), read_shift(master)?.get().into())?;
+        check_value(|| Item::Shift.to_string(), to.get().into(), read_shift(master)?.get().into())?;
         done.verified += 1;
     }
     Ok(())
@@ -228,7 +228,7 @@ fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
     // One step is tolerated.
-    master.trigger_preset(|position| apart(position, value, gear) <= 1)
+    master.trigger_preset(|position| shortest_distance(position, value, gear) <= 1)
 }
 
 /// Checks that the shaft stands still by reading its position for a short time. The encoder keeps sending the position
@@ -238,13 +238,13 @@ fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
 /// Returns [`Error::Moving`] if the shaft moves, [`Error::NotRunning`] if there is no position, or an error of the
 /// handshake or the exchange.
 fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
-    master.go(StartupMode::K3)?;
+    master.switch_to_mode(StartupMode::K3)?;
     master.return_to_operation()?;
     let gear = master.gear();
-    let until = master.now() + WATCHED;
+    let until = master.now() + STANDSTILL_TIME;
     let mut first = None;
     while master.now() < until {
-        let reading = master.reading()?;
+        let reading = master.read_in_word()?;
         let Some(position) = reading.position() else {
             let input = reading.word;
             return Err(Error::NotRunning { input });
@@ -253,7 +253,7 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
         if !is_near(position, from, gear) {
             return Err(Error::Moving { from, to: position });
         }
-        master.wait(LOOK)?;
+        master.wait(READING_INTERVAL)?;
     }
     Ok(())
 }
@@ -261,12 +261,12 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
 /// Returns whether two positions may belong to a shaft at standstill. They may differ by one step. If a turn has many
 /// steps, they may differ by a thousandth of a turn.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
-    let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));
-    apart(position, other, gear) <= most
+    let most = gear.map_or(1, |gear| (gear.total_steps() / gear.turns() / 1000).max(1));
+    shortest_distance(position, other, gear) <= most
 }
 
 /// Returns the shorter distance between two positions on the measuring range, in steps.
-fn apart(position: u32, other: u32, gear: Option<Gear>) -> u32 {
+fn shortest_distance(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
-    gear.map_or(apart, |gear| apart.min(gear.steps().saturating_sub(apart)))
+    gear.map_or(apart, |gear| apart.min(gear.total_steps().saturating_sub(apart)))
 }

@@ -23,7 +23,7 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     }
     check_unchanged_cams_in_range(device, wanted)?;
     let mut programs = Vec::new();
-    for (number, to) in wanted.known() {
+    for (number, to) in wanted.known_programs() {
         let item = Item::CamMask(number);
         let from = device.program(number).ok_or(PlanError::NotRead { item })?;
         let change = ProgramChange {
@@ -44,7 +44,7 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
         match programs.first_mut() {
             Some(change) => change.shift = Some((from, to)),
             None => {
-                let (program, own) = device.known().next().ok_or_else(not_read)?;
+                let (program, own) = device.known_programs().next().ok_or_else(not_read)?;
                 plan.base.programs.push((program, *own));
                 programs.push(ProgramChange { program, cams: Vec::new(), mask: None, shift: Some((from, to)) });
             }
@@ -61,7 +61,7 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
 /// # Errors
 /// Returns an error if the value exceeds the measuring range.
 pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, PlanError> {
-    Parameter::Preset.check(value, device.gear()?)?;
+    Parameter::Preset.check_value(value, device.gear()?)?;
     let change = ParameterChange { parameter: Parameter::Preset, from: device.preset, to: value };
     let base = Base { parameters: Some(*device), ..Base::default() };
     Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
@@ -96,7 +96,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     for parameter in order {
         let (Some(from), Some(to)) = (device.value(parameter), wanted.value(parameter)) else { continue };
         // Unchanged values are checked as well, since another gear may have other limits.
-        parameter.check(to, gear)?;
+        parameter.check_value(to, gear)?;
         if from != to {
             changes.push(ParameterChange { parameter, from, to });
         }
@@ -111,7 +111,7 @@ fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) 
         let item = Item::Cam(number, cam);
         let from = from.cam(cam).ok_or(PlanError::NotRead { item })?;
         for edge in Edge::BOTH {
-            let (from, to) = (edge.of(from), edge.of(to));
+            let (from, to) = (edge.position_in(from), edge.position_in(to));
             if from != to {
                 check_edge(item, edge, to, steps)?;
                 changes.push(CamChange { cam, edge, from, to });
@@ -132,7 +132,7 @@ fn check_unchanged_cams_in_range(device: &Image, wanted: &Image) -> Result<(), P
         for cam in CamNumber::all().filter(|cam| mask >> cam.get() & 1 != 0) {
             let Some(will_be) = own.and_then(|own| own.cam(cam)).or_else(|| now.cam(cam)) else { continue };
             for edge in Edge::BOTH {
-                check_edge(Item::Cam(number, cam), edge, edge.of(will_be), wanted.parameters.steps)?;
+                check_edge(Item::Cam(number, cam), edge, edge.position_in(will_be), wanted.parameters.steps)?;
             }
         }
     }
@@ -149,7 +149,7 @@ impl Edge {
     pub const BOTH: [Edge; 2] = [Edge::Start, Edge::Stop];
 
     /// Returns the position of this edge of a cam.
-    pub const fn of(self, cam: Cam) -> Value {
+    pub const fn position_in(self, cam: Cam) -> Value {
         match self {
             Edge::Start => cam.start,
             Edge::Stop => cam.stop,

@@ -59,7 +59,7 @@ impl Direction {
     }
 
     /// Returns the keyword used on the command line and in profiles.
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             Direction::Clockwise => "cw",
             Direction::Counterclockwise => "ccw",
@@ -69,7 +69,7 @@ impl Direction {
 
 impl fmt::Display for Direction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.word())
+        f.write_str(self.keyword())
     }
 }
 
@@ -114,7 +114,7 @@ impl Parameters {
 
 impl Image {
     /// Creates an image that contains only parameters.
-    pub const fn of(parameters: Parameters) -> Self {
+    pub const fn from_parameters(parameters: Parameters) -> Self {
         Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
     }
 
@@ -129,7 +129,7 @@ impl Image {
     }
 
     /// Returns the known programs with their numbers.
-    pub fn known(&self) -> impl Iterator<Item = (ProgramNumber, &Program)> {
+    pub fn known_programs(&self) -> impl Iterator<Item = (ProgramNumber, &Program)> {
         ProgramNumber::all().filter_map(|number| Some((number, self.program(number)?)))
     }
 }
@@ -152,10 +152,13 @@ mod tests {
     fn a_program_is_stored_at_its_number() {
         let parameters =
             Parameters { steps: 255, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-        let mut image = Image::of(parameters);
+        let mut image = Image::from_parameters(parameters);
         let last = ProgramNumber::new(8).unwrap();
         *image.program_mut(last).unwrap() = Some(Program { mask: 0x93, ..Program::default() });
-        assert_eq!(image.known().map(|(number, own)| (number.get(), own.mask)).collect::<Vec<_>>(), [(8, 0x93)]);
+        assert_eq!(
+            image.known_programs().map(|(number, own)| (number.get(), own.mask)).collect::<Vec<_>>(),
+            [(8, 0x93)]
+        );
         assert_eq!(image.programs.iter().position(Option::is_some), Some(7));
     }
 }

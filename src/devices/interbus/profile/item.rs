@@ -74,7 +74,7 @@ const ITEMS: &str = "steps, revolutions, direction, preset, zero-shift, shift, c
 
 impl Item {
     /// Items without a program or cam number, in comparison order.
-    const PLAIN: [Item; 8] = [
+    const UNNUMBERED: [Item; 8] = [
         Item::Steps,
         Item::Revolutions,
         Item::Direction,
@@ -87,13 +87,13 @@ impl Item {
 
     /// Returns all writable items in comparison order. The parameters and the shift come first, then the mask and cams
     /// of each program.
-    pub fn writable() -> impl Iterator<Item = Item> {
-        let plain = Item::PLAIN.into_iter().filter(|item| item.is_writable());
-        plain.chain(ProgramNumber::all().flat_map(Item::of_program))
+    pub fn all_writable() -> impl Iterator<Item = Item> {
+        let plain = Item::UNNUMBERED.into_iter().filter(|item| item.is_writable());
+        plain.chain(ProgramNumber::all().flat_map(Item::items_of_program))
     }
 
     /// Returns the mask and the cams of a program.
-    pub fn of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
+    pub fn items_of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
 
@@ -168,7 +168,7 @@ impl FromStr for Item {
     type Err = ItemError;
 
     fn from_str(text: &str) -> Result<Self, ItemError> {
-        if let Some(plain) = Item::PLAIN.into_iter().find(|item| item.to_string() == text) {
+        if let Some(plain) = Item::UNNUMBERED.into_iter().find(|item| item.to_string() == text) {
             return Ok(plain);
         }
         let unknown = || ItemError::Unknown(text.to_owned());
@@ -206,7 +206,7 @@ impl fmt::Display for ItemValue {
 
 impl Image {
     /// Returns the value of an item, or `None` if it is unknown or measured.
-    pub fn item(&self, item: Item) -> Option<ItemValue> {
+    pub fn value_of(&self, item: Item) -> Option<ItemValue> {
         let number = ItemValue::Number;
         let Parameters { steps, revolutions, direction, preset, zero_shift } = self.parameters;
         Some(match item {
@@ -224,7 +224,7 @@ impl Image {
 
     /// Sets the value of an item. Returns `false` if the item cannot have the value. An unknown program is created with
     /// a mask of 0.
-    pub fn put(&mut self, item: Item, value: ItemValue) -> bool {
+    pub fn set_value(&mut self, item: Item, value: ItemValue) -> bool {
         let parameters = &mut self.parameters;
         match (item, value) {
             (Item::Steps, ItemValue::Number(steps)) => parameters.steps = steps,
@@ -254,7 +254,7 @@ impl Image {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_profiles::{edges, image};
+    use super::super::test_profiles::{cam_between, image};
     use super::*;
 
     #[test]
@@ -287,11 +287,17 @@ mod tests {
     #[test]
     fn items_round_trip_through_an_image() {
         // Five parameters, the shift, eight programs with a mask and eight cams.
-        assert_eq!(Item::writable().count(), 5 + 1 + 8 * 9);
+        assert_eq!(Item::all_writable().count(), 5 + 1 + 8 * 9);
         let full = image();
-        let mut copy = Image::of(Parameters { steps: 1, revolutions: 2, preset: 3, zero_shift: 4, ..full.parameters });
-        for item in Item::writable() {
-            assert!(copy.put(item, full.item(item).unwrap()), "{item}");
+        let mut copy = Image::from_parameters(Parameters {
+            steps: 1,
+            revolutions: 2,
+            preset: 3,
+            zero_shift: 4,
+            ..full.parameters
+        });
+        for item in Item::all_writable() {
+            assert!(copy.set_value(item, full.value_of(item).unwrap()), "{item}");
         }
         assert_eq!(copy, full);
         for (item, value) in [
@@ -299,7 +305,7 @@ mod tests {
             (Item::Shift, ItemValue::Number(26)),
             (Item::Temperature, ItemValue::TenthsOfDegree(0)),
         ] {
-            assert!(!copy.put(item, value), "{item}");
+            assert!(!copy.set_value(item, value), "{item}");
         }
         assert_eq!(copy, full);
     }
@@ -307,7 +313,7 @@ mod tests {
     #[test]
     fn values_are_printed_as_they_are_typed() {
         let said = |value: ItemValue| value.to_string();
-        assert_eq!(said(ItemValue::Cam(edges(3500, 40))), "3500..40");
+        assert_eq!(said(ItemValue::Cam(cam_between(3500, 40))), "3500..40");
         assert_eq!(said(ItemValue::Mask(0x0B)), "0x0B");
         assert_eq!(said(ItemValue::Direction(Direction::Counterclockwise)), "ccw");
         assert_eq!(said(ItemValue::TenthsOfDegree(-3)), "-0.3");

@@ -25,12 +25,12 @@ pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
 pub use note::ChangeStep;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
-pub use record::{CamNames, InterbusProfile, MountingMark, ProfileIdentity, Recorded, UnknownEntries};
+pub use record::{CamNames, InterbusProfile, MountingMark, ProfileIdentity, RecordedValues, UnknownEntries};
 pub use restore::{
     DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, programs_to_read,
 };
-pub use scale::{Outside, Placed, Scale, ScaleError, Unit};
+pub use scale::{OutsideRangeError, RoundedPosition, Scale, ScaleError, Unit};
 pub use table::{
-    CamTable, Column, Filled, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableProblemKind,
-    TableRow, emit_table,
+    CamTable, Column, ImportedProgram, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem,
+    TableProblemKind, TableRow, emit_table,
 };

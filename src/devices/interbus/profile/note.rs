@@ -23,7 +23,7 @@ impl Op {
             Op::FirePreset { value } => vec![ChangedItem::new_value("position", value)],
             Op::Default => vec![ChangedItem::new_value("default", "all parameters as delivered")],
             op => {
-                let steps = op.steps().into_iter();
+                let steps = op.change_steps().into_iter();
                 steps.map(|step| ChangedItem::new(step.name, Some(step.from), Some(step.to))).collect()
             }
         }
@@ -31,7 +31,7 @@ impl Op {
 
     /// Returns the individual changes of parameters, masks and cam edges. The result is empty for operations without
     /// such values.
-    pub fn steps(&self) -> Vec<ChangeStep> {
+    pub fn change_steps(&self) -> Vec<ChangeStep> {
         let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
             name,
             from: from.to_string(),

@@ -100,30 +100,30 @@ impl Operation for Op {
 impl Op {
     /// Returns the changed items. A cam is listed once even if both edges change. Firing the preset and restoring the
     /// factory settings return no items.
-    pub fn items(&self) -> Vec<Item> {
+    pub fn affected_items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
                 changes.iter().filter_map(|change| Item::from_parameter(change.parameter)).collect()
             }
-            Op::Program(change) => change.items(),
+            Op::Program(change) => change.affected_items(),
             Op::FirePreset { .. } | Op::Default => Vec::new(),
         }
     }
 
     /// Returns the names of the changed items. The command `read` accepts them if they are readable.
-    pub fn item(&self) -> String {
+    pub fn item_names(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
             Op::Default => "default".to_owned(),
-            op => op.items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+            op => op.affected_items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
         }
     }
 
     /// Returns the number of changes as a comparison counts them.
-    pub fn weight(&self) -> u64 {
+    pub fn change_count(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,
-            op => op.items().len() as u64,
+            op => op.affected_items().len() as u64,
         }
     }
 }
@@ -134,7 +134,7 @@ impl ProgramChange {
         self.cams.is_empty() && self.mask.is_none() && self.shift.is_none()
     }
 
-    fn items(&self) -> Vec<Item> {
+    fn affected_items(&self) -> Vec<Item> {
         let mut items: Vec<Item> = self.mask.iter().map(|_| Item::CamMask(self.program)).collect();
         items.extend(self.cams.iter().map(|change| Item::Cam(self.program, change.cam)));
         items.extend(self.shift.iter().map(|_| Item::Shift));

@@ -19,7 +19,7 @@ pub struct InterbusProfile {
     /// Values that depend on the mounting. They are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
     /// Values that change without a write or cannot be written. They are neither compared nor restored.
-    pub recorded: Recorded,
+    pub recorded: RecordedValues,
     /// Entries that this version does not know. They are preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
@@ -37,7 +37,7 @@ pub struct ProfileIdentity {
 
 /// Values that change without a write or cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Recorded {
+pub struct RecordedValues {
     /// Software version, read-out 7.
     pub software_version: Option<u32>,
     /// Operating time in minutes, read-out 8.
@@ -72,7 +72,7 @@ pub struct UnknownEntries {
 
 impl InterbusProfile {
     /// Creates a profile from the values of an encoder and marks the mounting values.
-    pub fn of(identity: ProfileIdentity, image: Image, recorded: Recorded) -> Self {
+    pub fn new(identity: ProfileIdentity, image: Image, recorded: RecordedValues) -> Self {
         let mut profile = InterbusProfile {
             identity,
             image,
@@ -101,7 +101,7 @@ impl InterbusProfile {
 
     /// Returns the settings that the profile contains, in comparison order.
     pub fn items(&self) -> impl Iterator<Item = Item> {
-        Item::writable().filter(|item| self.image.item(*item).is_some())
+        Item::all_writable().filter(|item| self.image.value_of(*item).is_some())
     }
 }
 

@@ -22,7 +22,7 @@ pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 /// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
 /// together with a program. If the profile contains only the shift, the first program is read.
 pub fn programs_to_read(profile: &InterbusProfile) -> Vec<ProgramNumber> {
-    let of_cams = profile.image.known().map(|(number, _)| number);
+    let of_cams = profile.image.known_programs().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
     match profile.image.shift {
         Some(_) if all.is_empty() => ProgramNumber::all().take(1).collect(),
@@ -41,11 +41,11 @@ pub fn plan_restore(
 ) -> Result<Restore, PlanError> {
     check_allowed(profile, &device.identity, options)?;
     let is_other = !is_same_device(profile, &device.identity);
-    let mut wanted = Image::of(device.image.parameters);
+    let mut wanted = Image::from_parameters(device.image.parameters);
     let (mut unchanged, mut missing) = (0, Vec::new());
     let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
     for item in profile.items() {
-        let (Some(to), Some(from)) = (profile.image.item(item), device.image.item(item)) else {
+        let (Some(to), Some(from)) = (profile.image.value_of(item), device.image.value_of(item)) else {
             missing.push(item.to_string());
             continue;
         };
@@ -54,7 +54,7 @@ pub fn plan_restore(
         } else if is_other && profile.depends_on_mounting(item) {
             if options.with_mounting { &mut mounting_written } else { &mut mounting_left }.push(item);
         }
-        wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });
+        wanted.set_value(item, if mounting_left.last() == Some(&item) { from } else { to });
     }
     let plan = plan_edits(&device.image, &wanted).map_err(|error| match error {
         PlanError::OutOfRange(refused) => match Item::from_parameter(refused.parameter) {
@@ -81,7 +81,7 @@ pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Resu
 /// unknown.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<TypeMismatch> {
     let (profile, device) = profile.flags.zip(device.flags)?;
-    let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());
+    let what = |flags: Flags| (flags.counts_turns(), flags.steps_minus_one());
     (what(profile) != what(device)).then_some(TypeMismatch { profile, device })
 }
 

@@ -23,7 +23,7 @@ pub struct Scale {
 
 /// A machine position that was rounded to encoder steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct RoundedPosition {
     /// Nearest encoder step.
     pub step: u32,
     /// Rounding error in the unit of the scale.
@@ -33,7 +33,7 @@ pub struct Placed {
 /// The requested position is outside the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{value} is not within {least} to {most}")]
-pub struct Outside {
+pub struct OutsideRangeError {
     /// Requested position in the unit of the scale.
     pub value: f64,
     /// First position of the measuring range in the unit of the scale.
@@ -48,11 +48,11 @@ pub struct Outside {
 pub struct ScaleError;
 
 /// Maximum number of decimals that are displayed.
-const MOST_DECIMALS: usize = 6;
+const MAX_DECIMALS: usize = 6;
 /// Tolerance within which two computed numbers count as equal.
-const SAME: f64 = 1e-9;
+const EQUALITY_TOLERANCE: f64 = 1e-9;
 /// Upper limit for the steps in a unit and for the units in a range.
-const MOST: f64 = 1e12;
+const MAX_SCALE_VALUE: f64 = 1e12;
 
 impl Default for Scale {
     /// Returns a scale in encoder steps that starts at 0.
@@ -81,7 +81,7 @@ impl Scale {
     ///
     /// # Errors
     /// Returns [`ScaleError`] if `steps_in_turn` is not above 0.
-    pub fn degrees(steps_in_turn: f64, zero: u32) -> Result<Self, ScaleError> {
+    pub fn in_degrees(steps_in_turn: f64, zero: u32) -> Result<Self, ScaleError> {
         Scale::new(Unit::Degrees, steps_in_turn, zero)
     }
 
@@ -90,7 +90,7 @@ impl Scale {
     ///
     /// # Errors
     /// Returns [`ScaleError`] if `steps_in_one` is not above 0.
-    pub fn millimetres(steps_in_one: f64, zero: u32) -> Result<Self, ScaleError> {
+    pub fn in_millimetres(steps_in_one: f64, zero: u32) -> Result<Self, ScaleError> {
         Scale::new(Unit::Millimetres, steps_in_one, zero)
     }
 
@@ -105,7 +105,7 @@ impl Scale {
             Unit::Degrees => steps / 360.0,
             Unit::Millimetres => steps,
         };
-        let is_scale = steps.is_finite() && steps > 1.0 / MOST && steps < MOST;
+        let is_scale = steps.is_finite() && steps > 1.0 / MAX_SCALE_VALUE && steps < MAX_SCALE_VALUE;
         if is_scale { Ok(Scale { unit, steps, zero }) } else { Err(ScaleError) }
     }
 
@@ -132,7 +132,7 @@ impl Scale {
             Unit::Millimetres => false,
             Unit::Degrees => {
                 let turns = f64::from(range) / (self.steps * 360.0);
-                turns > 0.5 && (turns - turns.round()).abs() < SAME * turns.max(1.0)
+                turns > 0.5 && (turns - turns.round()).abs() < EQUALITY_TOLERANCE * turns.max(1.0)
             }
         }
     }
@@ -140,11 +140,11 @@ impl Scale {
     /// Converts an encoder step to the unit of the scale.
     pub fn value(&self, step: u32, range: u32) -> f64 {
         let from_zero = f64::from(step) - f64::from(self.zero);
-        self.round(from_zero, range) / self.steps
+        self.round_to_step(from_zero, range) / self.steps
     }
 
     /// Returns the length of the measuring range in the unit of the scale.
-    pub fn span(&self, range: u32) -> f64 {
+    pub fn range_length(&self, range: u32) -> f64 {
         f64::from(range) / self.steps
     }
 
@@ -152,13 +152,13 @@ impl Scale {
     /// measuring range. Positions in steps must always be within it.
     ///
     /// # Errors
-    /// Returns [`OutsideLimits`] with the limits if the position is outside the measuring range.
-    pub fn place(&self, value: f64, range: u32) -> Result<Placed, Outside> {
+    /// Returns [`OutsideRangeError`] with the limits if the position is outside the measuring range.
+    pub fn round_position(&self, value: f64, range: u32) -> Result<RoundedPosition, OutsideRangeError> {
         let outside = || {
             let first = if self.wraps_around(range) { 0.0 } else { self.value(0, range) };
-            Outside { value, least: first, most: first + self.span(range) - 1.0 / self.steps }
+            OutsideRangeError { value, least: first, most: first + self.range_length(range) - 1.0 / self.steps }
         };
-        if range == 0 || !value.is_finite() || value.abs() > MOST {
+        if range == 0 || !value.is_finite() || value.abs() > MAX_SCALE_VALUE {
             return Err(outside());
         }
         let from_zero = value * self.steps;
@@ -171,23 +171,23 @@ impl Scale {
         let step = if self.wraps_around(range) { nearest.rem_euclid(f64::from(range)) } else { nearest };
         if (0.0..f64::from(range)).contains(&step) {
             // The step is below the range, which has at most 25 bits.
-            Ok(Placed { step: step as u32, off })
+            Ok(RoundedPosition { step: step as u32, off })
         } else {
             Err(outside())
         }
     }
 
     /// Returns the number of decimals that distinguish adjacent steps.
-    pub fn decimals(&self) -> usize {
+    pub fn decimal_places(&self) -> usize {
         let one = 1.0 / self.steps;
         let tells = |decimals: &usize| {
             let shown = one * 10_f64.powi(*decimals as i32);
-            shown >= 2.0 || (shown - shown.round()).abs() < SAME && shown > 0.5
+            shown >= 2.0 || (shown - shown.round()).abs() < EQUALITY_TOLERANCE && shown > 0.5
         };
-        (0..MOST_DECIMALS).find(tells).unwrap_or(MOST_DECIMALS)
+        (0..MAX_DECIMALS).find(tells).unwrap_or(MAX_DECIMALS)
     }
 
-    fn round(&self, from_zero: f64, range: u32) -> f64 {
+    fn round_to_step(&self, from_zero: f64, range: u32) -> f64 {
         if self.wraps_around(range) && range > 0 { from_zero.rem_euclid(f64::from(range)) } else { from_zero }
     }
 }
@@ -198,8 +198,8 @@ mod tests {
 
     #[test]
     fn degrees_and_millimetres_become_the_nearest_step() {
-        let degrees = |steps, zero| Scale::degrees(steps, zero).unwrap();
-        let millimetres = |steps, zero| Scale::millimetres(steps, zero).unwrap();
+        let degrees = |steps, zero| Scale::in_degrees(steps, zero).unwrap();
+        let millimetres = |steps, zero| Scale::in_millimetres(steps, zero).unwrap();
         // Scale, range, value, step, how far off: 8192/360 = 22.7556; 10° are 227.56 steps, 228 steps 10.01953°.
         for (scale, range, value, step, off) in [
             (degrees(8192.0, 0), 8192, 10.0, 228, 0.019_531_25),
@@ -214,13 +214,16 @@ mod tests {
             (Scale::default(), 1000, 999.0, 999, 0.0),
             (Scale::new(Unit::Steps, 0.0, 900).unwrap(), 1000, 250.0, 150, 0.0),
         ] {
-            let placed = scale.place(value, range).unwrap();
+            let placed = scale.round_position(value, range).unwrap();
             assert_eq!(placed.step, step, "{scale:?} {value}");
             assert!((placed.off - off).abs() < 1e-9, "{scale:?} {value}: {}", placed.off);
             let shown = scale.value(step, range);
-            let apart =
-                (shown - value - off).rem_euclid(if scale.wraps_around(range) { scale.span(range) } else { 1e9 });
-            assert!(apart < 1e-6 || apart > scale.span(range) - 1e-6, "{scale:?} {value}: {shown}");
+            let apart = (shown - value - off).rem_euclid(if scale.wraps_around(range) {
+                scale.range_length(range)
+            } else {
+                1e9
+            });
+            assert!(apart < 1e-6 || apart > scale.range_length(range) - 1e-6, "{scale:?} {value}: {shown}");
         }
     }
 
@@ -229,26 +232,26 @@ mod tests {
         for (scale, range, value, least, most) in [
             (Scale::default(), 1000, 1000.0, 0.0, 999.0),
             (Scale::new(Unit::Steps, 1.0, 10).unwrap(), 1000, -1.0, 0.0, 999.0),
-            (Scale::millimetres(10.0, 500).unwrap(), 10_000, 950.0, -50.0, 949.9),
-            (Scale::degrees(1000.0, 0).unwrap(), 2500, 900.0, 0.0, 899.64),
+            (Scale::in_millimetres(10.0, 500).unwrap(), 10_000, 950.0, -50.0, 949.9),
+            (Scale::in_degrees(1000.0, 0).unwrap(), 2500, 900.0, 0.0, 899.64),
             (Scale::default(), 1000, f64::NAN, 0.0, 999.0),
-            (Scale::degrees(1000.0, 0).unwrap(), 1000, f64::INFINITY, 0.0, 359.64),
+            (Scale::in_degrees(1000.0, 0).unwrap(), 1000, f64::INFINITY, 0.0, 359.64),
         ] {
-            let outside = scale.place(value, range).unwrap_err();
+            let outside = scale.round_position(value, range).unwrap_err();
             assert!((outside.least - least).abs() < 1e-9 && (outside.most - most).abs() < 1e-9, "{outside}");
         }
         for steps in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert_eq!(Scale::degrees(steps, 0), Err(ScaleError), "{steps}");
+            assert_eq!(Scale::in_degrees(steps, 0), Err(ScaleError), "{steps}");
         }
     }
 
     #[test]
     fn decimals_distinguish_adjacent_steps() {
         for (steps, decimals) in [(360.0, 0), (3600.0, 1), (8192.0, 2), (720.0, 1), (180.0, 0), (33_554_432.0, 6)] {
-            assert_eq!(Scale::degrees(steps, 0).unwrap().decimals(), decimals, "{steps}");
+            assert_eq!(Scale::in_degrees(steps, 0).unwrap().decimal_places(), decimals, "{steps}");
         }
-        assert_eq!(Scale::default().decimals(), 0);
-        assert_eq!(Scale::millimetres(10.0, 0).unwrap().decimals(), 1);
-        assert_eq!(Scale::millimetres(0.5, 0).unwrap().decimals(), 0);
+        assert_eq!(Scale::default().decimal_places(), 0);
+        assert_eq!(Scale::in_millimetres(10.0, 0).unwrap().decimal_places(), 1);
+        assert_eq!(Scale::in_millimetres(0.5, 0).unwrap().decimal_places(), 0);
     }
 }

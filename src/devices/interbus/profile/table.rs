@@ -13,7 +13,7 @@ mod tests;
 
 pub use emit::emit as emit_table;
 
-use super::{CamNames, Outside, Scale, Unit};
+use super::{CamNames, OutsideRangeError, Scale, Unit};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
@@ -119,7 +119,7 @@ pub enum TableProblemKind {
         /// Column of the edge.
         column: Column,
         /// Requested position and the limits, in the unit of the scale.
-        outside: Outside,
+        outside: OutsideRangeError,
     },
     /// All eight cams of the program are in use.
     #[error("program {} has no cam left: it has eight", .0.get())]
@@ -182,7 +182,7 @@ pub enum Column {
 
 /// A program imported from a table. Only its cams are active. The edges of other cams are left unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Filled {
+pub struct ImportedProgram {
     /// The program.
     pub program: ProgramNumber,
     /// Cams by number. Cams that the table does not contain are `None`.
@@ -215,12 +215,12 @@ impl TableOptions {
 
 impl CamTable {
     /// Returns the programs that the table contains.
-    pub fn filled(&self) -> Vec<Filled> {
+    pub fn to_programs(&self) -> Vec<ImportedProgram> {
         let own = |program| self.rows.iter().filter(move |row| row.program == program);
         ProgramNumber::all()
             .filter(|program| own(*program).next().is_some())
             .map(|program| {
-                let mut filled = Filled { program, cams: Default::default(), names: Default::default() };
+                let mut filled = ImportedProgram { program, cams: Default::default(), names: Default::default() };
                 for row in own(program) {
                     let at = usize::from(row.cam.get());
                     if let Some((cam, name)) = filled.cams.get_mut(at).zip(filled.names.get_mut(at)) {
@@ -234,7 +234,7 @@ impl CamTable {
     }
 
     /// Returns the rows in which at least one edge was rounded.
-    pub fn rounded(&self) -> impl Iterator<Item = &TableRow> {
+    pub fn rounded_rows(&self) -> impl Iterator<Item = &TableRow> {
         self.rows.iter().filter(|row| row.start.is_rounded() || row.stop.is_rounded())
     }
 

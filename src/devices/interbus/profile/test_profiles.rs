@@ -1,6 +1,6 @@
 //! Profiles for tests.
 
-use super::{Direction, Image, InterbusProfile, Item, ItemValue, Op, Parameters, ProfileIdentity, Recorded};
+use super::{Direction, Image, InterbusProfile, Item, ItemValue, Op, Parameters, ProfileIdentity, RecordedValues};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
 };
@@ -17,18 +17,18 @@ pub(super) fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-pub(super) fn edges(start: u32, stop: u32) -> Cam {
+pub(super) fn cam_between(start: u32, stop: u32) -> Cam {
     Cam { start: value(start), stop: value(stop) }
 }
 
-pub(super) fn item(text: &str) -> Item {
+pub(super) fn parse_item(text: &str) -> Item {
     text.parse().unwrap()
 }
 
-pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
+pub(super) fn image_with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
     let mut image = image.clone();
     for (name, value) in items {
-        assert!(image.put(item(name), *value), "{name}");
+        assert!(image.set_value(parse_item(name), *value), "{name}");
     }
     image
 }
@@ -38,13 +38,13 @@ pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
 pub(super) fn image() -> Image {
     let parameters =
         Parameters { steps: 3600, revolutions: 1, direction: Direction::Clockwise, preset: 500, zero_shift: 0 };
-    let mut image = Image::of(parameters);
+    let mut image = Image::from_parameters(parameters);
     image.shift = WindowShift::new(0);
     for number in ProgramNumber::all() {
         let mut own = Program { mask: 0xFF, ..Program::default() };
         for cam in CamNumber::all() {
             let start = 100 * u32::from(cam.get()) + u32::from(number.get());
-            own.set_cam(cam, Some(edges(start, start + 49)));
+            own.set_cam(cam, Some(cam_between(start, start + 49)));
         }
         *image.program_mut(number).unwrap() = Some(own);
     }
@@ -57,7 +57,7 @@ pub(super) fn identity(serial_number: &str) -> ProfileIdentity {
 }
 
 pub(super) fn profile(serial_number: &str) -> InterbusProfile {
-    let recorded = Recorded {
+    let recorded = RecordedValues {
         software_version: Some(0x102),
         operating_minutes: Some(10_000),
         temperature_tenths: Some(-100),
@@ -65,10 +65,10 @@ pub(super) fn profile(serial_number: &str) -> InterbusProfile {
         preset_flag: Some(0),
         unknown: Default::default(),
     };
-    InterbusProfile::of(identity(serial_number), image(), recorded)
+    InterbusProfile::new(identity(serial_number), image(), recorded)
 }
 
 /// Returns the changes of an operation as the logbook describes them.
-pub(super) fn note(op: &Op) -> String {
+pub(super) fn logbook_note(op: &Op) -> String {
     op.changed_items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

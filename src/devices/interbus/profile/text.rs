@@ -2,7 +2,7 @@
 
 use super::{
     CamNames, Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Parameters,
-    ProfileIdentity, Recorded, UnknownEntries,
+    ProfileIdentity, RecordedValues, UnknownEntries,
 };
 use crate::devices::interbus::protocol::{
     self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
@@ -25,7 +25,7 @@ impl Profile for InterbusProfile {
             None => ProfileIdentity::default(),
         };
         let mut unknown = UnknownEntries::default();
-        let mut image = Image::of(read_parameters(entries.take_structure("parameters")?, &mut unknown)?);
+        let mut image = Image::from_parameters(read_parameters(entries.take_structure("parameters")?, &mut unknown)?);
         image.shift = entries.take_optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
         let mut names = CamNames::default();
         for entries in entries.take_structures("programs")? {
@@ -48,17 +48,17 @@ impl Profile for InterbusProfile {
         if self.identity != ProfileIdentity::default() {
             self.identity.write(writer);
         }
-        if self.recorded != Recorded::default() {
+        if self.recorded != RecordedValues::default() {
             self.recorded.write(writer);
         }
         MountingMark::write_all(&self.mounting, MOUNTING_COMMENT, writer);
         self.write_parameters(writer);
         if let Some(shift) = self.image.shift {
-            number(writer, "shift", shift.get(), "of the position under its window in cam mode");
+            write_number(writer, "shift", shift.get(), "of the position under its window in cam mode");
         }
-        if self.image.known().next().is_some() {
+        if self.image.known_programs().next().is_some() {
             writer.open("programs", '[');
-            for (number, program) in self.image.known() {
+            for (number, program) in self.image.known_programs() {
                 self.write_program(writer, number, program);
             }
             writer.close(']');
@@ -67,8 +67,8 @@ impl Profile for InterbusProfile {
 
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
-        for item in Item::writable() {
-            comparison.compare_item(item.to_string(), self.image.item(item), other.image.item(item));
+        for item in Item::all_writable() {
+            comparison.compare_item(item.to_string(), self.image.value_of(item), other.image.value_of(item));
         }
         comparison
     }
@@ -78,18 +78,18 @@ impl InterbusProfile {
     fn write_parameters(&self, writer: &mut Writer) {
         let Parameters { steps, revolutions, direction, preset, zero_shift } = self.image.parameters;
         writer.open("parameters", '(');
-        number(writer, "steps", steps, "over all turns: the measuring range");
-        number(writer, "revolutions", revolutions, "");
-        writer.text("direction", direction.word());
-        number(writer, "preset", preset, "stored, never fired by a restore");
-        number(writer, "zero_shift", zero_shift, "");
+        write_number(writer, "steps", steps, "over all turns: the measuring range");
+        write_number(writer, "revolutions", revolutions, "");
+        writer.text("direction", direction.keyword());
+        write_number(writer, "preset", preset, "stored, never fired by a restore");
+        write_number(writer, "zero_shift", zero_shift, "");
         writer.write_unknown(&self.unknown.parameters);
         writer.close(')');
     }
 
     fn write_program(&self, writer: &mut Writer, at: ProgramNumber, program: &Program) {
         writer.open("", '(');
-        number(writer, "program", at.get(), "");
+        write_number(writer, "program", at.get(), "");
         name(writer, self.names.program(at));
         let active = CamNumber::all().filter(|cam| program.is_on(*cam)).map(|cam| cam.get().to_string());
         let active = active.collect::<Vec<_>>().join(", ");
@@ -119,39 +119,39 @@ impl ProfileIdentity {
         writer.open("identity", '(');
         writer.text("serial_number", &self.serial_number);
         if let Some(flags) = self.flags {
-            number(writer, "flags", flags.value().get(), flags.type_name());
+            write_number(writer, "flags", flags.value().get(), flags.type_name());
         }
         writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
 
-impl Recorded {
+impl RecordedValues {
     fn write(&self, writer: &mut Writer) {
         writer.write_comment("recorded, neither compared nor restored");
         writer.open("recorded", '(');
         if let Some(version) = self.software_version {
-            number(writer, "software_version", version, "");
+            write_number(writer, "software_version", version, "");
         }
         if let Some(minutes) = self.operating_minutes {
-            number(writer, "operating_minutes", minutes, "");
+            write_number(writer, "operating_minutes", minutes, "");
         }
         if let Some(tenths) = self.temperature_tenths {
             let celsius = format!("{:.1} °C", f64::from(tenths) / 10.0);
             writer.entry("temperature_tenths", &tenths.to_string(), &celsius);
         }
         if let Some(mode) = self.mode {
-            number(writer, "startup_mode", mode.emit(), "");
+            write_number(writer, "startup_mode", mode.emit(), "");
         }
         if let Some(flag) = self.preset_flag {
-            number(writer, "preset_flag", flag, "");
+            write_number(writer, "preset_flag", flag, "");
         }
         writer.write_unknown(&self.unknown);
         writer.close(')');
     }
 }
 
-fn number(writer: &mut Writer, name: &str, value: impl Into<u32>, comment: &str) {
+fn write_number(writer: &mut Writer, name: &str, value: impl Into<u32>, comment: &str) {
     writer.entry(name, &value.into().to_string(), comment);
 }
 
@@ -224,8 +224,8 @@ fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
     }
 }
 
-fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
-    Ok(Recorded {
+fn read_recorded(mut entries: Entries) -> Result<RecordedValues, ProfileError> {
+    Ok(RecordedValues {
         software_version: entries.take_optional("software_version", AllowedValues::Whole)?,
         operating_minutes: entries.take_optional("operating_minutes", AllowedValues::Whole)?,
         temperature_tenths: entries.take_optional("temperature_tenths", AllowedValues::Whole)?,

@@ -32,7 +32,7 @@ pub struct Program {
 
 impl CamNumber {
     /// All cam numbers in ascending order.
-    pub const EACH: [CamNumber; Program::CAMS] = [
+    pub const ALL: [CamNumber; Program::CAMS] = [
         CamNumber(0),
         CamNumber(1),
         CamNumber(2),
@@ -45,7 +45,7 @@ impl CamNumber {
 
     /// Returns all cam numbers in ascending order.
     pub fn all() -> impl Iterator<Item = CamNumber> {
-        CamNumber::EACH.into_iter()
+        CamNumber::ALL.into_iter()
     }
 
     /// Creates a cam number, or returns `None` if the number is above 7.
@@ -83,13 +83,13 @@ impl ProgramNumber {
 
 impl Cam {
     /// Returns whether the cam wraps around the end of the measuring range.
-    pub fn wraps(self) -> bool {
+    pub fn wraps_around(self) -> bool {
         self.start > self.stop
     }
 
     /// Returns whether the cam is on at a position.
     pub fn is_on(self, position: Value) -> bool {
-        if self.wraps() {
+        if self.wraps_around() {
             position >= self.start || position <= self.stop
         } else {
             position >= self.start && position <= self.stop

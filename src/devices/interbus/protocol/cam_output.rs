@@ -61,7 +61,7 @@ impl WindowShift {
 
 impl CamOutput {
     /// Returns the word that an encoder sends at a position with the given outputs.
-    pub const fn at(position: Value, outputs: u8, shift: WindowShift) -> Self {
+    pub const fn at_position(position: Value, outputs: u8, shift: WindowShift) -> Self {
         let window = (position.get() & shift.mask()) >> shift.0;
         CamOutput { outputs, window, stray: 0 }
     }

@@ -65,37 +65,37 @@ pub fn devices_with_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
 
 /// Word of a K1 or K2 encoder. The position is right-justified, and the bits above it should be 0 but are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Single {
+pub enum SingleWord {
     /// 12 position bits of a single-turn encoder in a 16-bit word.
     K1(u16),
     /// Up to 25 position bits in a 32-bit word.
     K2(u32),
 }
 
-impl Single {
+impl SingleWord {
     /// Creates the word of a K1 encoder.
     pub const fn parse_k1(word: u16) -> Self {
-        Single::K1(word)
+        SingleWord::K1(word)
     }
 
     /// Creates the word of a K2 encoder.
     pub const fn parse_k2(word: u32) -> Self {
-        Single::K2(word)
+        SingleWord::K2(word)
     }
 
     /// Returns the word with the position in its lowest bits.
     pub const fn emit(self) -> u32 {
         match self {
-            Single::K1(word) => word as u32,
-            Single::K2(word) => word,
+            SingleWord::K1(word) => word as u32,
+            SingleWord::K2(word) => word,
         }
     }
 
     /// Returns the position in steps.
     pub const fn position(self) -> Value {
         match self {
-            Single::K1(word) => Value::from_word((word & 0x0FFF) as u32),
-            Single::K2(word) => Value::from_word(word),
+            SingleWord::K1(word) => Value::from_word((word & 0x0FFF) as u32),
+            SingleWord::K2(word) => Value::from_word(word),
         }
     }
 

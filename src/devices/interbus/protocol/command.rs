@@ -52,7 +52,7 @@ pub enum Command {
 /// as none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
-pub struct Refused {
+pub struct ForbiddenCommandError {
     /// The intended command.
     pub command: Command,
     /// Present mode of the encoder.
@@ -86,7 +86,7 @@ impl Command {
             Command::FrabaPreset => FRABA_PRESET,
             Command::Set(parameter, value) => u32::from(parameter.row().code) << Value::BITS | value.get(),
             Command::Velocity(on) => MASK | u32::from(on),
-            Command::ReadOut(read_out) => READ_OUT | u32::from(read_out.number()),
+            Command::ReadOut(read_out) => READ_OUT | u32::from(read_out.to_u16()),
             Command::Cams(program) => CAMS | program.map_or(0, |program| u32::from(program.get())),
             Command::Activate(mask) => MASK | u32::from(mask),
             Command::Shift(shift) => SHIFT | u32::from(shift.get()),
@@ -102,7 +102,7 @@ impl Command {
 
     /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::UnknownValues`] if the manual
     /// does not define the word.
-    pub fn readings(word: u32) -> Vec<Command> {
+    pub fn all_meanings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =
             [Command::decode_non_cam_command(word), Command::parse_cam_word(word)].into_iter().flatten().collect();
         // Both decoders accept the selection of a program, which has the same meaning in all modes.
@@ -116,22 +116,25 @@ impl Command {
     /// Parses a word as an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// Returns [`Refused`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
+    /// Returns [`RejectedParameter`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
     /// any.
-    pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, Refused> {
-        let readings = Command::readings(word);
+    pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, ForbiddenCommandError> {
+        let readings = Command::all_meanings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
             Some(command) => Ok(*command),
-            None => Err(Refused { command: readings.first().copied().unwrap_or(Command::Unknown(word)), mode }),
+            None => Err(ForbiddenCommandError {
+                command: readings.first().copied().unwrap_or(Command::Unknown(word)),
+                mode,
+            }),
         }
     }
 
     /// Checks that an encoder in the given mode interprets the command as intended.
     ///
     /// # Errors
-    /// Returns [`Refused`] if the command must not be sent in this mode.
-    pub fn ensure_legal(self, mode: EncoderMode) -> Result<(), Refused> {
-        if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
+    /// Returns [`RejectedParameter`] if the command must not be sent in this mode.
+    pub fn ensure_legal(self, mode: EncoderMode) -> Result<(), ForbiddenCommandError> {
+        if self.is_legal_in(mode) { Ok(()) } else { Err(ForbiddenCommandError { command: self, mode }) }
     }
 
     /// Returns whether the command may be sent in a mode. A word remains on the process data until the next one, so a

@@ -60,7 +60,7 @@ impl Gear {
     }
 
     /// Returns the measuring range, which is the number of position steps over all turns.
-    pub const fn steps(self) -> u32 {
+    pub const fn total_steps(self) -> u32 {
         self.steps
     }
 
@@ -70,20 +70,20 @@ impl Gear {
     }
 
     /// Returns the number of disc steps after which the position repeats.
-    pub const fn range(self) -> u32 {
+    pub const fn total_disc_steps(self) -> u32 {
         STEPS_PER_TURN * self.turns
     }
 
     /// Converts disc steps to position steps with `raw · steps / (8192 · turns)`, rounded down. The result does not
     /// wrap, so the complete range yields all steps. The manual does not state the formula (`U`).
     pub const fn scaled_value(self, raw: u32) -> u64 {
-        raw as u64 * self.steps as u64 / self.range() as u64
+        raw as u64 * self.steps as u64 / self.total_disc_steps() as u64
     }
 
     /// Returns the position that the encoder sends for a disc position. This is the
     /// [`scaled_value`](Self::scaled_value) within the range (`U`).
     pub const fn position(self, raw: u32) -> Value {
         // The result is less than `steps`, which has 25 bits.
-        Value::from_word(self.scaled_value(raw % self.range()) as u32)
+        Value::from_word(self.scaled_value(raw % self.total_disc_steps()) as u32)
     }
 }

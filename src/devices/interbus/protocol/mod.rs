@@ -9,7 +9,7 @@
 //! IN   error, invalid   parameterisation        manufacturer  parameter or error code  position, value
 //! ```
 //!
-//! The same OUT word has different meanings in different modes. [`Command::readings`] returns all of them, and
+//! The same OUT word has different meanings in different modes. [`Command::all_meanings`] returns all of them, and
 //! [`Command::in_mode`] returns the meaning in one [`EncoderMode`].
 
 #![warn(missing_docs)]
@@ -40,8 +40,8 @@ pub const GUARANTEED_STORES: u32 = 500;
 
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};
 pub use cam_output::{CamBit, CamOutput, CamOutputError, WindowShift};
-pub use class::{Class, Interface, Single, devices_with_id, id_code};
-pub use command::{Command, Refused};
+pub use class::{Class, Interface, SingleWord, devices_with_id, id_code};
+pub use command::{Command, ForbiddenCommandError};
 pub use compiled::CompiledPrograms;
 pub use gear::{Gear, GearError, STEPS_PER_TURN, TURNS};
 pub use leds::{LEDS, LedRow, LedState, Leds};

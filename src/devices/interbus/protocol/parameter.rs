@@ -102,11 +102,11 @@ impl Parameter {
     }
 
     /// Returns the valid values for an encoder with the given gear.
-    pub const fn range(self, gear: Gear) -> RangeInclusive<u32> {
+    pub const fn valid_range(self, gear: Gear) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
             Limit::StepsOfTurns => 1..=Gear::max_steps(gear.turns()),
-            Limit::WithinRange => 0..=gear.steps() - 1,
+            Limit::WithinRange => 0..=gear.total_steps() - 1,
         }
     }
 
@@ -123,8 +123,8 @@ impl Parameter {
     ///
     /// # Errors
     /// Returns [`OutOfRange`] with the limits for this gear.
-    pub fn check(self, value: u32, gear: Gear) -> Result<Value, OutOfRange> {
-        let range = self.range(gear);
+    pub fn check_value(self, value: u32, gear: Gear) -> Result<Value, OutOfRange> {
+        let range = self.valid_range(gear);
         let (low, high) = (*range.start(), *range.end());
         let refused = OutOfRange { parameter: self, value, low, high };
         Value::new(value).filter(|_| range.contains(&value)).ok_or(refused)

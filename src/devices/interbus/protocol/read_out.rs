@@ -100,7 +100,7 @@ impl ReadOutNumber {
     }
 
     /// Returns the number of the read-out.
-    pub const fn number(self) -> u16 {
+    pub const fn to_u16(self) -> u16 {
         self.0
     }
 
@@ -120,7 +120,7 @@ impl ReadOutNumber {
             ReadOutNumber::OPERATING_TIME => ReadOutValue::Minutes(value.get() * 10),
             ReadOutNumber::STARTUP_MODE => ReadOutValue::StartupMode(StartupMode::parse(value)),
             ReadOutNumber::FLAGS => ReadOutValue::Flags(Flags(value)),
-            ReadOutNumber::TEMPERATURE => ReadOutValue::TenthsOfDegree(signed(value)),
+            ReadOutNumber::TEMPERATURE => ReadOutValue::TenthsOfDegree(to_signed(value)),
             _ => ReadOutValue::Plain(value.get()),
         }
     }
@@ -128,9 +128,9 @@ impl ReadOutNumber {
 
 /// Returns the value as a signed number of 25 bits. If bit 24 is clear and the value is above 7FFFh, it is a signed
 /// number of 16 bits. The manual does not specify how negative values are sent (`U`). See reference 3.
-const fn signed(value: Value) -> i32 {
+const fn to_signed(value: Value) -> i32 {
     let number = value.get();
-    if number >> (Value::BITS - 1) == 0 && number > 0x7FFF { number as u16 as i16 as i32 } else { value.signed() }
+    if number >> (Value::BITS - 1) == 0 && number > 0x7FFF { number as u16 as i16 as i32 } else { value.to_signed() }
 }
 
 impl StartupMode {
@@ -174,13 +174,13 @@ impl Flags {
     }
 
     /// Returns whether the encoder counts turns, which is bit 1.
-    pub const fn multiturn(self) -> bool {
+    pub const fn counts_turns(self) -> bool {
         self.0.get() & 2 != 0
     }
 
     /// Returns the English name of the encoder type that the flags indicate.
     pub const fn type_name(self) -> &'static str {
-        match (self.multiturn(), self.steps_minus_one()) {
+        match (self.counts_turns(), self.steps_minus_one()) {
             (true, false) => "multiturn",
             (false, false) => "single turn",
             (true, true) => "multiturn, steps less one",
@@ -189,7 +189,7 @@ impl Flags {
     }
 
     /// Returns all other flags. Their meaning is unknown.
-    pub const fn unknown(self) -> u32 {
+    pub const fn unknown_bits(self) -> u32 {
         self.0.get() & !3
     }
 }

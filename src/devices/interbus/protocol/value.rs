@@ -25,7 +25,7 @@ impl Value {
     }
 
     /// Returns the value as a signed number with the sign in bit 24. Speeds use this form (`U`). See reference 6.13.
-    pub const fn signed(self) -> i32 {
+    pub const fn to_signed(self) -> i32 {
         let above = u32::BITS - Value::BITS;
         (self.0 << above) as i32 >> above
     }

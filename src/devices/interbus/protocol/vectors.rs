@@ -20,7 +20,7 @@ fn shift(number: u8) -> WindowShift {
     WindowShift::new(number).unwrap()
 }
 
-fn set(parameter: Parameter, number: u32) -> Command {
+fn set_command(parameter: Parameter, number: u32) -> Command {
     Command::Set(parameter, value(number))
 }
 
@@ -37,20 +37,20 @@ fn published_commands_match() {
         ("run", Command::Run, 0x8000_0000, Parameterisation),
         ("preset", Command::Preset, 0x4000_0000, Position),
         ("FRABA preset", Command::FrabaPreset, 0x6000_0000, Position),
-        ("steps 255", set(P::Steps, 255), 0x0200_00FF, Position),
-        ("steps 360", set(P::Steps, 360), 0x0200_0168, Parameterisation),
-        ("steps 4096", set(P::Steps, 4096), 0x0200_1000, Position),
-        ("steps 8192", set(P::Steps, 8192), 0x0200_2000, Position),
-        ("all steps", set(P::Steps, 0x1FF_FFFF), 0x03FF_FFFF, Position),
-        ("turns 1", set(P::Turns, 1), 0x0400_0001, Parameterisation),
-        ("turns 4096", set(P::Turns, 4096), 0x0400_1000, Position),
-        ("clockwise", set(P::Direction, 3), 0x0600_0003, Position),
-        ("counterclockwise", set(P::Direction, 4), 0x0600_0004, Position),
-        ("preset 0", set(P::Preset, 0), 0x0800_0000, Position),
-        ("preset 1000", set(P::Preset, 1000), 0x0800_03E8, Position),
-        ("preset 123456", set(P::Preset, 123_456), 0x0801_E240, Position),
-        ("zero shift 0", set(P::ZeroShift, 0), 0x0A00_0000, Position),
-        ("default", set(P::Default, 0), 0x0E00_0000, Position),
+        ("steps 255", set_command(P::Steps, 255), 0x0200_00FF, Position),
+        ("steps 360", set_command(P::Steps, 360), 0x0200_0168, Parameterisation),
+        ("steps 4096", set_command(P::Steps, 4096), 0x0200_1000, Position),
+        ("steps 8192", set_command(P::Steps, 8192), 0x0200_2000, Position),
+        ("all steps", set_command(P::Steps, 0x1FF_FFFF), 0x03FF_FFFF, Position),
+        ("turns 1", set_command(P::Turns, 1), 0x0400_0001, Parameterisation),
+        ("turns 4096", set_command(P::Turns, 4096), 0x0400_1000, Position),
+        ("clockwise", set_command(P::Direction, 3), 0x0600_0003, Position),
+        ("counterclockwise", set_command(P::Direction, 4), 0x0600_0004, Position),
+        ("preset 0", set_command(P::Preset, 0), 0x0800_0000, Position),
+        ("preset 1000", set_command(P::Preset, 1000), 0x0800_03E8, Position),
+        ("preset 123456", set_command(P::Preset, 123_456), 0x0801_E240, Position),
+        ("zero shift 0", set_command(P::ZeroShift, 0), 0x0A00_0000, Position),
+        ("default", set_command(P::Default, 0), 0x0E00_0000, Position),
         ("velocity start", Command::Velocity(true), 0x2040_0001, Position),
         ("velocity stop", Command::Velocity(false), 0x2040_0000, Velocity),
         ("serial number", Command::ReadOut(ReadOutNumber::SERIAL_NUMBER), 0x2021_0000, Reading),
@@ -78,7 +78,7 @@ fn published_commands_match() {
     for (label, command, word, mode) in cases {
         assert_eq!(format!("{:08X}", command.emit()), format!("{word:08X}"), "{label}");
         assert_eq!(Command::in_mode(word, mode), Ok(command), "{label}");
-        assert!(Command::readings(word).contains(&command), "{label}");
+        assert!(Command::all_meanings(word).contains(&command), "{label}");
     }
     assert_eq!(ReadOutNumber::chip_register(16), None);
 }
@@ -144,10 +144,10 @@ fn read_outs_have_their_units() {
     assert_eq!([mode(3), mode(0xA)], [program(1), program(8)]);
     assert_eq!([mode(0xB), mode(0x10)], [0xB, 0x10].map(|number| StartupMode::Unknown(value(number))));
     let flags = Flags::new(value(0b110));
-    assert_eq!((flags.steps_minus_one(), flags.multiturn(), flags.unknown()), (false, true, 4));
+    assert_eq!((flags.steps_minus_one(), flags.counts_turns(), flags.unknown_bits()), (false, true, 4));
     let names: Vec<&str> = READ_OUTS.iter().map(|row| row.name).collect();
     assert_eq!((names[3], names[10], names[11]), ("complement", "flags", "temperature"));
-    let numbers: Vec<u16> = READ_OUTS.iter().map(|row| row.read_out.number()).collect();
+    let numbers: Vec<u16> = READ_OUTS.iter().map(|row| row.read_out.to_u16()).collect();
     assert_eq!(numbers, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0xA, 0xC]);
     assert_eq!((ReadOutNumber::new(0x5D).register(), ReadOutNumber::new(0xC).register()), (Some(5), None));
 }
@@ -157,18 +157,18 @@ fn read_outs_have_their_units() {
 fn contradictions_in_the_manual_are_resolved() {
     assert_eq!(id_code(Class::K3, Interface::Standard), 55, "1: 37h");
     assert_eq!(Command::Preset.emit(), 0x4000_0000, "2: fired by bit 30");
-    assert_eq!(Command::in_mode(0x0A00_03E8, Position), Ok(set(P::ZeroShift, 1000)), "2: which 0A does not");
+    assert_eq!(Command::in_mode(0x0A00_03E8, Position), Ok(set_command(P::ZeroShift, 1000)), "2: which 0A does not");
     assert_eq!(Command::Activate(8).emit(), 0x2040_0008, "4: not 20200008");
-    assert_eq!(Command::readings(0x2020_0008), [Command::Unknown(0x2020_0008)], "4");
-    assert_eq!(Command::readings(0x2020_0030), [Command::Unknown(0x2020_0030)], "5: 40, not 30");
+    assert_eq!(Command::all_meanings(0x2020_0008), [Command::Unknown(0x2020_0008)], "4");
+    assert_eq!(Command::all_meanings(0x2020_0030), [Command::Unknown(0x2020_0030)], "5: 40, not 30");
     for stop in [Command::Normal, Command::Run] {
         assert_eq!(stop.emit() >> 16 & 1, 0, "6: bit 16 ends a read-out");
         assert!(stop.is_legal_in(Reading), "6");
     }
-    assert_eq!(Reply::echo_of(set(P::Steps, 255)).emit(), 0xC200_00FF, "8: not C2000100");
-    assert_ne!(Reply::parse(0xC200_0100), Reply::echo_of(set(P::Steps, 255)), "8");
+    assert_eq!(Reply::echo_of(set_command(P::Steps, 255)).emit(), 0xC200_00FF, "8: not C2000100");
+    assert_ne!(Reply::parse(0xC200_0100), Reply::echo_of(set_command(P::Steps, 255)), "8");
     assert_eq!(CamNumber::new(8), None, "9: eight cams");
-    assert_eq!(Command::readings(0x5000_0000), [Command::Unknown(0x5000_0000)], "9");
+    assert_eq!(Command::all_meanings(0x5000_0000), [Command::Unknown(0x5000_0000)], "9");
     assert_eq!(P::Default.row().code << 1, 0x0E, "10");
     assert!(matches!(Reply::parse(0xC000_0000), Reply::Busy { .. }), "11: processing");
     assert!(matches!(Reply::parse(0xC200_00FF), Reply::Echo { .. }), "11: received");
@@ -185,16 +185,16 @@ fn the_mode_determines_the_meaning_of_a_word() {
         (0x2040_0000, Command::Velocity(false), Command::Activate(0)),
     ];
     for (word, outside, inside) in shared {
-        assert_eq!(Command::readings(word), [outside, inside]);
+        assert_eq!(Command::all_meanings(word), [outside, inside]);
         assert_eq!(Command::in_mode(word, Position), Ok(outside));
         assert_eq!(Command::in_mode(word, Cams), Ok(inside));
-        assert_eq!(outside.ensure_legal(Cams), Err(Refused { command: outside, mode: Cams }));
-        assert_eq!(inside.ensure_legal(Position), Err(Refused { command: inside, mode: Position }));
+        assert_eq!(outside.ensure_legal(Cams), Err(ForbiddenCommandError { command: outside, mode: Cams }));
+        assert_eq!(inside.ensure_legal(Position), Err(ForbiddenCommandError { command: inside, mode: Position }));
     }
     let refused = Command::in_mode(0x4600_0015, Position).unwrap_err().to_string();
     assert_eq!(refused, "46000015 (start of a cam) is not legal in position mode");
     for (command, legal) in [
-        (set(P::Steps, 255), &[Position, Parameterisation][..]),
+        (set_command(P::Steps, 255), &[Position, Parameterisation][..]),
         (Command::Preset, &[Position]),
         (start, &[Position, Velocity]),
         (program(1), &[Position, Cams]),
@@ -211,7 +211,7 @@ fn the_mode_determines_the_meaning_of_a_word() {
 /// Reference 4 and 5: the echo of a cam is an assumption.
 #[test]
 fn the_mode_determines_the_echo() {
-    assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Parameterisation), Some(set(P::Steps, 255)));
+    assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Parameterisation), Some(set_command(P::Steps, 255)));
     assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Cams), Some(Command::CamStart(cam(1), value(255))));
     assert_eq!(Reply::parse(0xE600_0213).echoed_command(Cams), Some(Command::CamStop(cam(3), value(0x213))));
     assert_eq!(Reply::parse(0xE040_0008).echoed_command(Cams), Some(Command::Activate(8)));
@@ -220,7 +220,7 @@ fn the_mode_determines_the_echo() {
     // The worked example.
     let example = [(P::Steps, 255, 0xC200_00FF), (P::Turns, 1, 0xC400_0001), (P::Direction, 3, 0xC600_0003)];
     for (parameter, number, word) in example {
-        assert_eq!(Reply::echo_of(set(parameter, number)).emit(), word);
+        assert_eq!(Reply::echo_of(set_command(parameter, number)).emit(), word);
     }
 }
 
@@ -228,7 +228,7 @@ fn the_mode_determines_the_echo() {
 #[test]
 fn published_cam_outputs_match() {
     for (word, at) in [(0x01CD_EF20, 0), (0x01AB_CD20, 8), (0x00BC_DE20, 4), (0x0000_0020, 25)] {
-        let output = CamOutput::at(value(0x1AB_CDEF), 1 << 5, shift(at));
+        let output = CamOutput::at_position(value(0x1AB_CDEF), 1 << 5, shift(at));
         assert_eq!(format!("{:08X}", output.emit()), format!("{word:08X}"), "shift {at}");
         assert_eq!(CamOutput::parse(word), Ok(output));
         assert_eq!(output.position_bits(shift(at)), 0x1AB_CDEF & shift(at).mask());
@@ -254,9 +254,9 @@ fn classes_have_their_id_codes() {
     assert_eq!(devices_with_id(0xB3).collect::<Vec<_>>(), [(Class::K3, Loop2)]);
     assert_eq!((devices_with_id(54).count(), devices_with_id(0).count()), (4, 0));
     assert_eq!(Class::ALL.map(Class::bytes), [(2, 0), (4, 0), (4, 4)]);
-    let (k1, k2) = (Single::parse_k1(0x1FFF), Single::parse_k2(0x0312_3456));
+    let (k1, k2) = (SingleWord::parse_k1(0x1FFF), SingleWord::parse_k2(0x0312_3456));
     assert_eq!(
-        (Single::parse_k1(0x0FFF).position(), k1.position(), k1.unexpected_bits()),
+        (SingleWord::parse_k1(0x0FFF).position(), k1.position(), k1.unexpected_bits()),
         (value(4095), value(4095), 0x1000)
     );
     assert_eq!((k2.position(), k2.unexpected_bits()), (value(0x112_3456), 0x0200_0000));
@@ -297,7 +297,7 @@ fn the_gear_rounds_down() {
     assert_eq!(Gear::new(1, 4097), Err(GearError::Turns { turns: 4097 }));
     assert!(Gear::new(0, 1).is_err() && Gear::new(1, 0).is_err());
     let all = Gear::new(0x1FF_FFFF, 4096).unwrap();
-    assert_eq!(all.position(all.range() - 1), value(0x1FF_FFFE));
+    assert_eq!(all.position(all.total_disc_steps() - 1), value(0x1FF_FFFE));
     assert!(Gear::new(0x200_0000, 4096).is_err());
 }
 
@@ -314,12 +314,12 @@ fn parameter_limits_are_checked() {
         (P::ZeroShift, 0, 3599),
         (P::Default, 0, 0),
     ] {
-        assert_eq!(parameter.range(gear), low..=high, "{parameter:?}");
-        assert_eq!(parameter.check(high, gear), Ok(value(high)));
+        assert_eq!(parameter.valid_range(gear), low..=high, "{parameter:?}");
+        assert_eq!(parameter.check_value(high, gear), Ok(value(high)));
         let refused = OutOfRange { parameter, value: high + 1, low, high };
-        assert_eq!(parameter.check(high + 1, gear), Err(refused));
+        assert_eq!(parameter.check_value(high + 1, gear), Err(refused));
     }
-    let refused = P::Preset.check(3600, gear).unwrap_err();
+    let refused = P::Preset.check_value(3600, gear).unwrap_err();
     assert_eq!(refused.to_string(), "preset: 3600 is not within 0 to 3599");
     for (row, code) in PARAMETERS.iter().zip([1, 2, 3, 4, 5, 7]) {
         assert_eq!((row.code, row.parameter.row().code), (code, code));
@@ -356,7 +356,7 @@ fn arbitrary_programs() -> impl Strategy<Value = [Program; 8]> {
 proptest! {
     #[test]
     fn every_word_round_trips(word: u32) {
-        for command in Command::readings(word) {
+        for command in Command::all_meanings(word) {
             prop_assert_eq!(command.emit(), word);
         }
         prop_assert_eq!(Reply::parse(word).emit(), word);
@@ -374,21 +374,21 @@ proptest! {
     #[test]
     fn words_near_the_manuals_round_trip(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
         let word = high << 16 | u32::from(low);
-        for command in Command::readings(word) {
+        for command in Command::all_meanings(word) {
             prop_assert_eq!(command.emit(), word);
         }
     }
 
     #[test]
     fn a_word_has_one_meaning_per_mode(word: u32, mode in prop::sample::select(EncoderMode::ALL.to_vec())) {
-        let legal = Command::readings(word).into_iter().filter(|command| command.is_legal_in(mode)).count();
+        let legal = Command::all_meanings(word).into_iter().filter(|command| command.is_legal_in(mode)).count();
         prop_assert!(legal <= 1);
     }
 
     /// The window by the reference's formula.
     #[test]
     fn the_window_matches_its_formula(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
-        let output = CamOutput::at(value(position), outputs, shift(at));
+        let output = CamOutput::at_position(value(position), outputs, shift(at));
         let window = (u64::from(position) << 8 >> at) & 0x01FF_FF00;
         prop_assert_eq!(u64::from(output.emit()), window | u64::from(outputs));
         prop_assert_eq!(output.position_bits(shift(at)), position & shift(at).mask());

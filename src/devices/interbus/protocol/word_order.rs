@@ -24,7 +24,7 @@ pub enum WordOrder {
 
 impl WordOrder {
     /// Names of the word orders in the address of a connection.
-    pub const WORDS: Keywords<WordOrder> =
+    pub const KEYWORDS: Keywords<WordOrder> =
         Keywords(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 
     /// Splits a word into its two registers.
@@ -37,7 +37,7 @@ impl WordOrder {
     }
 
     /// Combines two registers into a word.
-    pub const fn word(self, [first, second]: [u16; 2]) -> u32 {
+    pub const fn combine(self, [first, second]: [u16; 2]) -> u32 {
         let (high, low) = match self {
             WordOrder::HighFirst => (first, second),
             WordOrder::LowFirst => (second, first),
@@ -54,7 +54,7 @@ mod tests {
     fn words_convert_in_either_register_order() {
         for (order, registers) in [(WordOrder::HighFirst, [0xC200, 0x00FF]), (WordOrder::LowFirst, [0x00FF, 0xC200])] {
             assert_eq!(order.registers(0xC200_00FF), registers);
-            assert_eq!(order.word(registers), 0xC200_00FF);
+            assert_eq!(order.combine(registers), 0xC200_00FF);
         }
     }
 }

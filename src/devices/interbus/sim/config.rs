@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::memory::{Memory, PLACES};
+use super::memory::{DISC_POSITIONS, Memory};
 use crate::devices::interbus::protocol::{
     Class, Gear, INPUT, OUTPUT, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, TURNS, UNIT, Value, WordOrder,
 };
@@ -29,7 +29,7 @@ parameters! {
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         /// Initial shaft position in disc steps.
-        pub(super) position: u32 = 0x12_3456, "position" => WholeNumbers(Quantity::PlaceOfDisc, 0..=PLACES - 1);
+        pub(super) position: u32 = 0x12_3456, "position" => WholeNumbers(Quantity::PlaceOfDisc, 0..=DISC_POSITIONS - 1);
         pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
         /// Operating time in units of ten minutes.
         pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
@@ -56,7 +56,7 @@ parameters! {
         pub(super) unit: u8 = 1, "unit" => UNIT;
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
-        pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
+        pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
         /// Share of requests that are refused with exception 0Bh.
         pub(super) exceptions: f64 = 0.0, "exception" => DecimalNumbers(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
@@ -92,19 +92,19 @@ impl Config {
         if let Some(turns) = self.revolutions.take() {
             let range = WholeNumbers(Quantity::Turns, 1..=TURNS);
             let turns = range.parse_value("revolutions", &turns)?;
-            let steps = memory.gear.steps().min(STEPS_PER_TURN.saturating_mul(turns));
+            let steps = memory.gear.total_steps().min(STEPS_PER_TURN.saturating_mul(turns));
             let gear = Gear::new(steps, turns);
             memory.gear = gear.map_err(|_| RejectedParameter::new("revolutions", turns, range.allowed_values()))?;
         }
         if let Some(steps) = self.steps.take() {
-            let range = Parameter::Steps.range(memory.gear);
+            let range = Parameter::Steps.valid_range(memory.gear);
             let allowed = AllowedValues::StepsOfTurns { low: *range.start(), high: *range.end() };
             let gear = parse_whole(&steps).and_then(|steps| Gear::new(steps, memory.gear.turns()).ok());
             memory.gear = gear.ok_or_else(|| RejectedParameter::new("steps", steps, allowed))?;
         }
         if let Some(preset) = self.preset.take() {
             memory.preset =
-                WholeNumbers(Quantity::Steps, 0..=memory.gear.steps() - 1).parse_value("preset", &preset)?;
+                WholeNumbers(Quantity::Steps, 0..=memory.gear.total_steps() - 1).parse_value("preset", &preset)?;
         }
         (memory.counterclockwise, memory.zero_shift) = (self.counterclockwise, self.zero_shift);
         if self.demonstration {
@@ -180,7 +180,8 @@ mod tests {
 
     #[test]
     fn an_omitted_half_of_the_gear_takes_its_maximum() {
-        let gear = |query: &str| read(query).map(|config| (config.memory.gear.steps(), config.memory.gear.turns()));
+        let gear =
+            |query: &str| read(query).map(|config| (config.memory.gear.total_steps(), config.memory.gear.turns()));
         assert_eq!(gear("steps=360"), Ok((360, 4096)));
         assert_eq!(gear("revolutions=2"), Ok((16384, 2)));
     }

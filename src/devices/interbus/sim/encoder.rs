@@ -20,7 +20,7 @@ mod read_out;
 use std::time::Duration;
 
 use super::config::Config;
-use super::memory::{Eeprom, Ended, Memory, Stored};
+use super::memory::{Eeprom, Memory, StoreOutcome, StoredSettings};
 use super::shaft::Shaft;
 use crate::devices::interbus::protocol::{
     Class, Code, Command, EncoderMode, Gear, Parameter, ProgramNumber, StartupMode, Value,
@@ -40,7 +40,7 @@ pub struct Encoder {
     activity: Activity,
     memory: Memory,
     eeprom: Eeprom,
-    unstored: Option<Stored>,
+    unstored: Option<StoredSettings>,
     power: bool,
     /// OUT word of the master, which remains in effect until the master changes it.
     out: u32,
@@ -89,7 +89,7 @@ struct PreviousInWord {
 
 /// Reason why a word is refused. See reference 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fault {
+enum WordFault {
     WrongData,
     UnknownCode,
     BeyondRange,
@@ -102,12 +102,12 @@ const BUSY: u32 = 0xC000_0000;
 /// Prefix of the echo of a word.
 const ECHO: u32 = 0xC000_0000;
 
-impl Fault {
-    const fn word(self) -> u32 {
+impl WordFault {
+    const fn error_word(self) -> u32 {
         match self {
-            Fault::WrongData => 0x8200_0000,
-            Fault::UnknownCode => 0x8400_0000,
-            Fault::BeyondRange => 0x9800_0004,
+            WordFault::WrongData => 0x8200_0000,
+            WordFault::UnknownCode => 0x8400_0000,
+            WordFault::BeyondRange => 0x9800_0004,
         }
     }
 }
@@ -157,8 +157,8 @@ impl Encoder {
 
     /// Sets the shaft position in disc steps. A turn has 8192 of them.
     pub fn set_shaft_position(&mut self, now: Moment, place: i32) {
-        self.settle(now);
-        self.shaft.put(now, place);
+        self.update(now);
+        self.shaft.set_position(now, place);
     }
 
     pub const fn memory(&self) -> &Memory {
@@ -170,8 +170,8 @@ impl Encoder {
         &self.eeprom.kept
     }
 
-    pub const fn stores(&self) -> u32 {
-        self.eeprom.stores()
+    pub const fn store_count(&self) -> u32 {
+        self.eeprom.store_count()
     }
 
     /// Returns the mode reported by read-out 9.
@@ -190,7 +190,7 @@ impl Encoder {
         }
     }
 
-    pub const fn out(&self) -> u32 {
+    pub const fn out_word(&self) -> u32 {
         self.out
     }
 
@@ -227,12 +227,13 @@ impl Encoder {
 
     /// Sets the OUT word at `now`.
     pub fn write(&mut self, now: Moment, word: u32) {
-        self.settle(now);
+        self.update(now);
         let before = std::mem::replace(&mut self.out, word);
         if word == before || !self.power || self.class != Class::K3 {
             return;
         }
-        self.old = PreviousInWord { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
+        self.old =
+            PreviousInWord { word: self.in_word(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
         match Command::in_mode(word, self.mode()) {
             Ok(command) => self.apply_command(now, command, before),
             Err(_) => self.handle_illegal_word(now, word),
@@ -241,11 +242,11 @@ impl Encoder {
 
     /// Returns the IN word at `now`, or `None` if the power is off.
     pub fn read(&mut self, now: Moment) -> Option<u32> {
-        self.settle(now);
+        self.update(now);
         if !self.power {
             return None;
         }
-        let word = self.shown(now);
+        let word = self.in_word(now);
         self.old.cycles = self.old.cycles.saturating_sub(1);
         Some(word)
     }
@@ -263,8 +264,8 @@ impl Encoder {
             Command::Preset => {}
             Command::FrabaPreset => self.trigger_preset(now),
             Command::Set(parameter, value) => {
-                let taken = self.take(parameter, value).map(|()| Stored::Parameters);
-                self.set(now, taken);
+                let taken = self.set_parameter(parameter, value).map(|()| StoredSettings::Parameters);
+                self.complete_setting(now, taken);
             }
             Command::Velocity(on) => {
                 self.mode = if on { StartupMode::Velocity } else { StartupMode::K3 };
@@ -290,33 +291,33 @@ impl Encoder {
     fn handle_illegal_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
-            (0b000, _) if Code::from_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),
-            (0b010 | 0b011, _) if of_cams => self.set(now, Err(Fault::UnknownCode)),
-            (_, 0x2010) if of_cams => self.set(now, Err(Fault::WrongData)),
+            (0b000, _) if Code::from_word(word).get() != 0 => self.complete_setting(now, Err(WordFault::UnknownCode)),
+            (0b010 | 0b011, _) if of_cams => self.complete_setting(now, Err(WordFault::UnknownCode)),
+            (_, 0x2010) if of_cams => self.complete_setting(now, Err(WordFault::WrongData)),
             (_, 0x2020) if of_cams => self.show(None),
             _ => {}
         }
     }
 
     /// Completes a word that sets a value. The IN word is then its echo or an error.
-    fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
+    fn complete_setting(&mut self, now: Moment, taken: Result<StoredSettings, WordFault>) {
         let word = match taken {
             Ok(_) => self.out | ECHO,
-            Err(fault) => fault.word(),
+            Err(fault) => fault.error_word(),
         };
         self.unstored = taken.ok().or(self.unstored);
         self.enter_activity(Activity::Setting, InWordContent::Word(word));
         self.busy_until = now + self.busy;
     }
 
-    fn take(&mut self, parameter: Parameter, value: Value) -> Result<(), Fault> {
+    fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), WordFault> {
         let less = u32::from(self.identity.steps_minus_one);
         let (number, gear) = (value.get(), self.memory.gear);
-        let geared = |steps, turns| Gear::new(steps, turns).map_err(|_| Fault::WrongData);
-        let within = || parameter.check(number, gear).map(Value::get).map_err(|_| Fault::WrongData);
+        let geared = |steps, turns| Gear::new(steps, turns).map_err(|_| WordFault::WrongData);
+        let within = || parameter.check_value(number, gear).map(Value::get).map_err(|_| WordFault::WrongData);
         match parameter {
             Parameter::Steps => self.memory.gear = geared(number + less, gear.turns())?,
-            Parameter::Turns => self.memory.gear = geared(gear.steps(), number)?,
+            Parameter::Turns => self.memory.gear = geared(gear.total_steps(), number)?,
             Parameter::Direction => self.memory.counterclockwise = within()? == 4,
             Parameter::Preset => (self.memory.preset, self.memory.armed) = (within()?, true),
             Parameter::ZeroShift => self.memory.zero_shift = within()?,
@@ -331,26 +332,26 @@ impl Encoder {
 
     /// Handles the rising edge of the run command, which returns to operation.
     fn run(&mut self) {
-        self.store();
+        self.store_memory();
         self.enter_activity(Activity::Running, InWordContent::Live);
     }
 
-    fn store(&mut self) {
+    fn store_memory(&mut self) {
         let Some(what) = self.unstored.take() else { return };
         match self.eeprom.store(&self.memory, what) {
-            Ended::Kept => {}
-            Ended::Worn => self.memory = self.eeprom.kept.clone(),
-            Ended::Died => self.disconnect(),
+            StoreOutcome::Kept => {}
+            StoreOutcome::Worn => self.memory = self.eeprom.kept.clone(),
+            StoreOutcome::Died => self.disconnect(),
         }
     }
 
-    fn shown(&self, now: Moment) -> u32 {
+    fn in_word(&self, now: Moment) -> u32 {
         let old = &self.old;
         match self.content {
             _ if old.cycles > 0 && now < old.until => old.word,
             _ if now < self.busy_until => BUSY,
             InWordContent::Word(word) => word,
-            InWordContent::Live => self.live(now),
+            InWordContent::Live => self.running_in_word(now),
         }
     }
 
@@ -359,7 +360,7 @@ impl Encoder {
         (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
 
-    fn settle(&mut self, now: Moment) {
+    fn update(&mut self, now: Moment) {
         let rpm = self.motor.rpm();
         if rpm != self.shaft.rpm() {
             self.shaft.set_rpm(now, rpm);
@@ -369,7 +370,7 @@ impl Encoder {
     /// Selects the given cam program, or position mode for `None`. If the present program was changed, it is stored
     /// first.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
-        self.store();
+        self.store_memory();
         if !self.power {
             return;
         }

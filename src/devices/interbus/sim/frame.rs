@@ -41,32 +41,32 @@ pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
 }
 
 /// Returns the reply to a complete frame.
-pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -> Vec<u8> {
-    match carry_out(request, unit, registers) {
+pub(super) fn reply_to(request: &[u8], unit: u8, registers: &mut impl Registers) -> Vec<u8> {
+    match execute_request(request, unit, registers) {
         Ok(reply) => reply,
-        Err(exception) => refuse(request, exception),
+        Err(exception) => exception_reply(request, exception),
     }
 }
 
-pub(super) fn refuse(request: &[u8], exception: Exception) -> Vec<u8> {
+pub(super) fn exception_reply(request: &[u8], exception: Exception) -> Vec<u8> {
     let [high, low, _, _, _, _, unit, function, ..] = *request else { return Vec::new() };
     vec![high, low, 0, 0, 0, 3, unit, function | 0x80, exception as u8]
 }
 
-fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result<Vec<u8>, Exception> {
+fn execute_request(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result<Vec<u8>, Exception> {
     let [_, _, _, _, _, _, own, function, ref rest @ ..] = *request else { return Err(Exception::Value) };
     if own != unit {
         return Err(Exception::NoAnswer);
     }
     let function = ModbusFunction::try_from(function).map_err(|_| Exception::Function)?;
-    let data = check(function, rest)?;
+    let data = check_request(function, rest)?;
     let mut reply = Vec::new();
     let mut frame = ModbusFrame::new(unit, request, ModbusProto::TcpUdp, &mut reply).with_broadcast_units(&[]);
     frame.parse().map_err(|_| Exception::Value)?;
     let (first, count) = (frame.reg, frame.count);
     let done = match function {
-        ModbusFunction::GetInputs => fill(&mut frame, &registers.inputs(first, count)?),
-        ModbusFunction::GetHoldings => fill(&mut frame, &registers.holding_registers(first, count)?),
+        ModbusFunction::GetInputs => fill_reply(&mut frame, &registers.inputs(first, count)?),
+        ModbusFunction::GetHoldings => fill_reply(&mut frame, &registers.holding_registers(first, count)?),
         _ => {
             registers.write(first, &data)?;
             frame.process_external_write(Ok(()))
@@ -77,7 +77,7 @@ fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result
 }
 
 /// Checks the length of the data after the function code. Returns the values to be written.
-fn check(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
+fn check_request(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
     let words = |bytes: &[u8]| bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
     match (function, rest) {
         (ModbusFunction::GetInputs | ModbusFunction::GetHoldings, [_, _, high, low]) => {
@@ -103,7 +103,7 @@ fn check(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
     }
 }
 
-fn fill(frame: &mut ModbusFrame<'_, Vec<u8>>, registers: &[u16]) -> Result<(), rmodbus::ErrorKind> {
+fn fill_reply(frame: &mut ModbusFrame<'_, Vec<u8>>, registers: &[u16]) -> Result<(), rmodbus::ErrorKind> {
     if let Read::Words(read) = frame.get_external_read()? {
         read.buf
             .iter_mut()

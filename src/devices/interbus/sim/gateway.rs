@@ -15,7 +15,7 @@ use crate::sim::line::TransitQueue;
 use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::Moment;
 
-/// A client's connection to a virtual gateway. [`connection`](Self::connection) adds another client.
+/// A client's connection to a virtual gateway. [`new_connection`](Self::new_connection) adds another client.
 #[derive(Clone)]
 pub struct Gateway {
     shared: Arc<Mutex<Shared>>,
@@ -53,11 +53,11 @@ impl Gateway {
     }
 
     /// Returns another connection to the same gateway and its encoders.
-    pub fn connection(&self) -> Self {
+    pub fn new_connection(&self) -> Self {
         Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: TransitQueue::default() }
     }
 
-    pub fn shaft(&self) -> Motor {
+    pub fn shaft_motor(&self) -> Motor {
         self.with_encoder(|encoder| encoder.motor())
     }
 
@@ -98,7 +98,7 @@ impl Registers for GatewayRegisters<'_> {
 
 impl Shared {
     /// Handles a request. Returns the reply that the host receives, or `None` if there is none.
-    fn take(&mut self, request: &[u8]) -> Option<Vec<u8>> {
+    fn handle_request(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
@@ -106,17 +106,17 @@ impl Shared {
         }
         // `f64()` is below 1, so a share of 1 always matches and 0 never does.
         let reply = if self.rng.f64() < self.exceptions {
-            frame::refuse(request, Exception::NoAnswer)
+            frame::exception_reply(request, Exception::NoAnswer)
         } else {
             let unit = self.unit;
-            frame::answer(request, unit, &mut GatewayRegisters(self))
+            frame::reply_to(request, unit, &mut GatewayRegisters(self))
         };
-        self.carry(reply)
+        self.apply_faults(reply)
     }
 
     /// Applies the configured faults to a reply. A fault that would affect one byte on a serial line affects the whole
     /// reply here, since TCP delivers complete data.
-    fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
+    fn apply_faults(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
         if passage.inserted.is_some() {
@@ -137,7 +137,7 @@ impl ByteDevice for Gateway {
             let mut shared = self.lock();
             shared.now = shared.now.max(now);
             let due = shared.now + Self::REPLY + shared.faults.reply_delay();
-            let reply = shared.take(&request);
+            let reply = shared.handle_request(&request);
             drop(shared);
             if let Some(reply) = reply {
                 self.to_host.insert(due, reply);

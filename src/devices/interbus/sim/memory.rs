@@ -71,7 +71,7 @@ impl Memory {
     /// Adds cam programs for a demonstration. They contain a staircase, nested cams and cams that wrap around the end
     /// of the range. If the range allows it, the example of the manual is added, which is cam 3 from 15 to 213.
     pub(super) fn with_demonstration_programs(mut self) -> Self {
-        let steps = self.gear.steps();
+        let steps = self.gear.total_steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
         let cam = |start: u32, stop: u32| {
             Some(Cam { start: Value::from_word(start), stop: Value::from_word(stop.min(steps - 1)) })
@@ -120,13 +120,13 @@ pub(super) struct Eeprom {
 
 /// The settings that a store writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stored {
+pub(super) enum StoredSettings {
     Parameters,
     Program(ProgramNumber),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ended {
+pub(super) enum StoreOutcome {
     Kept,
     /// The EEPROM is worn out, and its content is lost. The manual guarantees 500 stores and does not mention later
     /// ones (`U`).
@@ -140,7 +140,7 @@ impl Eeprom {
         Eeprom { kept, lost: false, stores, begun: 0, die_in_store }
     }
 
-    pub(super) const fn stores(&self) -> u32 {
+    pub(super) const fn store_count(&self) -> u32 {
         self.stores
     }
 
@@ -150,28 +150,28 @@ impl Eeprom {
 
     /// Stores the settings. If a store fails, the settings that it would have written return to the factory settings
     /// (`U`).
-    pub(super) fn store(&mut self, memory: &Memory, what: Stored) -> Ended {
+    pub(super) fn store(&mut self, memory: &Memory, what: StoredSettings) -> StoreOutcome {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);
         let died = self.die_in_store == Some(self.begun);
         if !died && self.stores <= GUARANTEED_STORES {
             (self.kept, self.lost) = (memory.clone(), false);
-            return Ended::Kept;
+            return StoreOutcome::Kept;
         }
         self.lost = true;
         let delivered = Memory::factory_default();
         match what {
-            Stored::Parameters => {
+            StoredSettings::Parameters => {
                 let Memory { shift, programs, .. } = self.kept.clone();
                 self.kept = Memory { shift, programs, ..delivered };
             }
-            Stored::Program(number) => {
+            StoredSettings::Program(number) => {
                 if let Some(program) = self.kept.program_mut(number) {
                     *program = NONE;
                 }
             }
         }
-        if died { Ended::Died } else { Ended::Worn }
+        if died { StoreOutcome::Died } else { StoreOutcome::Worn }
     }
 }
 
@@ -180,4 +180,4 @@ pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut C
 }
 
 /// Number of shaft positions that an encoder can distinguish, which is all disc steps of all turns.
-pub(super) const PLACES: u32 = STEPS_PER_TURN * TURNS;
+pub(super) const DISC_POSITIONS: u32 = STEPS_PER_TURN * TURNS;

@@ -54,15 +54,15 @@ impl RegisterMap {
 
     /// Reads the present OUT words with function 3.
     pub(super) fn outputs(&self, encoders: &mut EncoderList, first: u16, count: u16) -> Result<Vec<u16>> {
-        self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
+        self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out_word()))
     }
 
     /// Writes complete OUT words with function 16, or halves of them with function 6 or 16.
     pub(super) fn write(&self, encoders: &mut EncoderList, now: Moment, first: u16, values: &[u16]) -> Result<()> {
-        let begin = self.range(encoders, self.output, first, values.len())?;
+        let begin = self.register_offset(encoders, self.output, first, values.len())?;
         let places = begin..begin + values.len();
         for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
-            let mut halves = self.order.registers(encoder.out());
+            let mut halves = self.order.registers(encoder.out_word());
             let written = halves.iter_mut().zip(own..).filter(|(_, place)| places.contains(place));
             let mut written_to = false;
             for (half, place) in written {
@@ -70,7 +70,7 @@ impl RegisterMap {
                 written_to = true;
             }
             if written_to && encoder.has_power() {
-                encoder.write(now, self.order.word(halves));
+                encoder.write(now, self.order.combine(halves));
             } else if written_to {
                 return Err(Exception::NoAnswer);
             }
@@ -86,7 +86,7 @@ impl RegisterMap {
         count: u16,
         mut word: impl FnMut(&mut Encoder) -> Result<u32>,
     ) -> Result<Vec<u16>> {
-        let begin = self.range(encoders, base, first, usize::from(count))?;
+        let begin = self.register_offset(encoders, base, first, usize::from(count))?;
         let places = begin..begin + usize::from(count);
         let mut registers = Vec::new();
         for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
@@ -100,7 +100,7 @@ impl RegisterMap {
     }
 
     /// Returns the offset of a register from the first encoder's register. All of the registers must exist.
-    fn range(&self, encoders: &EncoderList, base: u16, first: u16, count: usize) -> Result<usize> {
+    fn register_offset(&self, encoders: &EncoderList, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }
     }

@@ -24,20 +24,20 @@ impl Shaft {
     }
 
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        (self.place, self.since) = (self.exact(now), now);
+        (self.place, self.since) = (self.exact_position_at(now), now);
         self.rpm = rpm;
     }
 
-    pub(super) fn put(&mut self, now: Moment, place: i32) {
+    pub(super) fn set_position(&mut self, now: Moment, place: i32) {
         (self.place, self.since) = (f64::from(place), now);
     }
 
     /// Returns the shaft position in whole disc steps. It may be negative.
-    pub(super) fn place(&self, at: Moment) -> i64 {
-        self.exact(at).floor() as i64
+    pub(super) fn position_at(&self, at: Moment) -> i64 {
+        self.exact_position_at(at).floor() as i64
     }
 
-    fn exact(&self, at: Moment) -> f64 {
+    fn exact_position_at(&self, at: Moment) -> f64 {
         self.place + at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * f64::from(STEPS_PER_TURN)
     }
 }
@@ -51,10 +51,10 @@ mod tests {
     fn a_turning_shaft_has_the_expected_position() {
         let at = |ms| Moment::START + Duration::from_millis(ms);
         let mut shaft = Shaft::new(100, 60.0);
-        assert_eq!((shaft.place(at(0)), shaft.place(at(1_000))), (100, 8292));
+        assert_eq!((shaft.position_at(at(0)), shaft.position_at(at(1_000))), (100, 8292));
         shaft.set_rpm(at(1_000), -120.0);
-        assert_eq!((shaft.place(at(1_500)), shaft.place(at(2_000))), (100, -8092));
-        shaft.put(at(2_000), 7);
-        assert_eq!(shaft.place(at(2_000)), 7);
+        assert_eq!((shaft.position_at(at(1_500)), shaft.position_at(at(2_000))), (100, -8092));
+        shaft.set_position(at(2_000), 7);
+        assert_eq!(shaft.position_at(at(2_000)), 7);
     }
 }

@@ -13,14 +13,14 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::Body;
 
 impl Encoder {
-    pub(crate) fn act(&mut self, action: InterbusAction, services: &mut Services) {
+    pub(crate) fn handle_action(&mut self, action: InterbusAction, services: &mut Services) {
         match action {
             InterbusAction::Stopped(stopped) => self.set_stopped(stopped),
             InterbusAction::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
             InterbusAction::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
             InterbusAction::Select(mode) => self.submit(InterbusJob::Select(mode), services),
             InterbusAction::Check => self.submit(InterbusJob::Check, services),
-            InterbusAction::Edit(edit) => self.edit(&edit),
+            InterbusAction::Edit(edit) => self.apply_edit(&edit),
             InterbusAction::Plan(change) => self.plan(*change, services),
             InterbusAction::LeadBack => self.submit(InterbusJob::LeadBack, services),
             InterbusAction::AskTable(program) => {
@@ -54,19 +54,19 @@ impl Encoder {
         }
     }
 
-    pub(super) fn edit(&mut self, edit: &Edit) {
+    pub(super) fn apply_edit(&mut self, edit: &Edit) {
         self.refusal = match self.session.is_writing() {
             true => Some(Text::new("session.busy")),
-            false => self.staged.edit(edit).err().map(|error| super::cams::words::refused(&error)),
+            false => self.staged.apply_edit(edit).err().map(|error| super::cams::words::edit_error_text(&error)),
         };
     }
 
     /// Adds the cam names to a profile that was read for saving.
-    pub(super) fn saved(&mut self, mut profile: InterbusProfile, services: &mut Services) {
-        let programs: Vec<_> = profile.image.known().map(|(number, own)| (number, *own)).collect();
+    pub(super) fn save_profile(&mut self, mut profile: InterbusProfile, services: &mut Services) {
+        let programs: Vec<_> = profile.image.known_programs().map(|(number, own)| (number, *own)).collect();
         self.staged.refresh_parameters(profile.image.parameters);
         self.staged.refresh_programs(&programs, profile.image.shift);
-        if let Some(wanted) = self.staged.wanted() {
+        if let Some(wanted) = self.staged.edited_values() {
             profile.names = wanted.names.clone();
         }
         let edits = self.is_dirty().then(|| self.staged.count());

@@ -12,11 +12,11 @@ pub mod table_words;
 mod tests;
 pub mod words;
 
-pub use grid::{Tick, next_grid_line, rounded, ticks};
-pub use moving::{DragTarget, apply_drag, drawn, moved};
-pub use snap::{SnapSettings, snap};
+pub use grid::{Tick, grid_ticks, next_grid_line, round_up_1_2_5};
+pub use moving::{DragTarget, apply_drag, cam_between, move_cam};
+pub use snap::{SnapSettings, snap_distance};
 
-use super::staged::{EditedValues, Mark, StagedEdits};
+use super::staged::{EditFinding, EditedValues, StagedEdits};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
@@ -43,7 +43,7 @@ pub struct Lane {
 
 /// A contiguous range of positions, including both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stretch {
+pub struct PositionRange {
     pub first: u32,
     pub last: u32,
 }
@@ -63,39 +63,40 @@ pub struct OutputState {
 }
 
 /// Minimum number of visible steps.
-const LEAST_SPAN: f64 = 8.0;
+const MIN_SPAN: f64 = 8.0;
 
 impl Chart {
     /// Creates the chart of an edited program, or returns `None` if the program is unknown.
-    pub fn of(staged: &StagedEdits, program: ProgramNumber) -> Option<Self> {
-        let wanted = staged.wanted()?;
+    pub fn from_edits(staged: &StagedEdits, program: ProgramNumber) -> Option<Self> {
+        let wanted = staged.edited_values()?;
         wanted.image.program(program)?;
-        Some(Chart::wanted(staged, wanted, program))
+        Some(Chart::from_values(staged, wanted, program))
     }
 
-    pub fn wanted(staged: &StagedEdits, wanted: &EditedValues, program: ProgramNumber) -> Self {
-        let marks = wanted.marks();
-        let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.refers_to(program, cam));
+    pub fn from_values(staged: &StagedEdits, wanted: &EditedValues, program: ProgramNumber) -> Self {
+        let marks = wanted.findings();
+        let about =
+            |cam, is: fn(&EditFinding) -> bool| marks.iter().any(|mark| is(mark) && mark.refers_to(program, cam));
         let lane = |cam| Lane {
             cam,
             name: wanted.name(program, cam).map(str::to_owned),
             on: wanted.is_on(program, cam),
             edges: wanted.cam(program, cam),
             edited: staged.is_edited(program, cam),
-            beyond: about(cam, |mark| matches!(mark, Mark::Beyond { .. })),
-            clashes: about(cam, |mark| matches!(mark, Mark::Clash { .. })),
+            beyond: about(cam, |mark| matches!(mark, EditFinding::Beyond { .. })),
+            clashes: about(cam, |mark| matches!(mark, EditFinding::Clash { .. })),
         };
-        let lanes = CamNumber::EACH.map(lane);
-        Chart { program, range: wanted.range(), lanes }
+        let lanes = CamNumber::ALL.map(lane);
+        Chart { program, range: wanted.step_count(), lanes }
     }
 
-    pub fn lane(&self, cam: CamNumber) -> Option<&Lane> {
+    pub fn lane_of(&self, cam: CamNumber) -> Option<&Lane> {
         self.lanes.get(usize::from(cam.get()))
     }
 
     /// Returns the chart with one moved cam, for display during a drag.
     #[must_use]
-    pub fn with(&self, cam: CamNumber, to: Cam) -> Self {
+    pub fn with_cam(&self, cam: CamNumber, to: Cam) -> Self {
         let mut chart = self.clone();
         if let Some(lane) = chart.lanes.get_mut(usize::from(cam.get())) {
             lane.edges = Some(to);
@@ -105,7 +106,7 @@ impl Chart {
     }
 
     /// Returns an inactive cam that can be drawn, or `None` if all cams are active.
-    pub fn free(&self) -> Option<CamNumber> {
+    pub fn unused_cam(&self) -> Option<CamNumber> {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
 
@@ -120,29 +121,29 @@ impl Chart {
     }
 
     /// Returns the output indicators at a position. `own` contains the outputs that the encoder reports.
-    pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [OutputState; Program::CAMS] {
+    pub fn output_states(&self, position: Option<u32>, own: Option<u8>) -> [OutputState; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
-        CamNumber::EACH.map(|cam| OutputState { simulated: bit(simulated, cam), own: bit(own, cam) })
+        CamNumber::ALL.map(|cam| OutputState { simulated: bit(simulated, cam), own: bit(own, cam) })
     }
 
     /// Returns an edge of a cam, or `None` if the cam has no edges.
-    pub fn edge(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
-        Some(edge_value(self.lane(cam)?.edges?, edge).get())
+    pub fn edge_position(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
+        Some(edge_value(self.lane_of(cam)?.edges?, edge).get())
     }
 }
 
 impl Lane {
     /// Returns the sections of the measuring range in which the cam is on. There are two if the cam wraps around the
     /// end.
-    pub fn stretches(&self, range: u32) -> Vec<Stretch> {
-        self.edges.map(|cam| stretches(cam, range)).unwrap_or_default()
+    pub fn on_ranges(&self, range: u32) -> Vec<PositionRange> {
+        self.edges.map(|cam| on_ranges(cam, range)).unwrap_or_default()
     }
 }
 
 impl OutputState {
     /// Returns whether the output reported by the encoder differs from that of the program.
-    pub fn differs(self) -> bool {
+    pub fn is_mismatch(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }
 
@@ -156,7 +157,7 @@ impl OutputState {
 }
 
 impl VisibleRange {
-    pub fn whole(range: u32) -> Self {
+    pub fn full(range: u32) -> Self {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
 
@@ -165,7 +166,7 @@ impl VisibleRange {
         self.first
     }
 
-    pub const fn span(&self) -> f64 {
+    pub const fn length(&self) -> f64 {
         self.span
     }
 
@@ -174,7 +175,7 @@ impl VisibleRange {
     }
 
     /// Returns the location of a position in the view. The left end is 0 and the right end is 1.
-    pub fn part(&self, position: f64) -> f64 {
+    pub fn fraction_at(&self, position: f64) -> f64 {
         (position - self.first) / self.span
     }
 
@@ -187,19 +188,19 @@ impl VisibleRange {
     pub fn zoomed(&self, times: f64, around: f64, range: u32) -> Self {
         let most = f64::from(range.max(1));
         let span = if times.is_finite() && times > 0.0 { self.span / times } else { self.span };
-        let span = span.clamp(LEAST_SPAN.min(most), most);
-        let part = self.part(around);
-        VisibleRange { first: around - part * span, span }.within(range)
+        let span = span.clamp(MIN_SPAN.min(most), most);
+        let part = self.fraction_at(around);
+        VisibleRange { first: around - part * span, span }.clamped_to(range)
     }
 
     #[must_use]
     pub fn panned(&self, by: f64, range: u32) -> Self {
-        VisibleRange { first: self.first + by, ..*self }.within(range)
+        VisibleRange { first: self.first + by, ..*self }.clamped_to(range)
     }
 
     /// Returns the view fitted into another range, which may be shorter.
     #[must_use]
-    pub fn within(&self, range: u32) -> Self {
+    pub fn clamped_to(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));
         let span = self.span.min(most);
         VisibleRange { first: self.first.clamp(0.0, most - span), span }
@@ -207,12 +208,12 @@ impl VisibleRange {
 }
 
 /// Returns the sections of the measuring range in which a cam is on.
-pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
+pub fn on_ranges(cam: Cam, range: u32) -> Vec<PositionRange> {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let Some(last) = range.checked_sub(1) else { return Vec::new() };
-    let parts = if cam.wraps() { vec![(0, stop), (start, last)] } else { vec![(start, stop)] };
+    let parts = if cam.wraps_around() { vec![(0, stop), (start, last)] } else { vec![(start, stop)] };
     let within = parts.into_iter().filter(|(first, _)| *first <= last);
-    within.map(|(first, end)| Stretch { first, last: end.min(last) }).collect()
+    within.map(|(first, end)| PositionRange { first, last: end.min(last) }).collect()
 }
 
 pub const fn edge_value(cam: Cam, edge: Edge) -> Value {

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
 use crate::app::connect::target::{host_and_default_port, required_entry, split_host_default_port, validated_link};
-use crate::devices::interbus::jobs::check;
+use crate::devices::interbus::jobs::check_link;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
 use crate::link::{LinkScheme, LinkUrl};
@@ -66,12 +66,12 @@ impl FormModel for InterbusForm {
             InterbusLinkKind::Gateway => (form.host, form.tcp_port) = split_host_default_port(&url.target, PORT),
             InterbusLinkKind::Virtual => {}
         }
-        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.fill_entry(name, value));
         form
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        validated_link(self.parameters().build_link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check_link)
     }
 
     fn set_file(&mut self, file: String) {
@@ -100,7 +100,7 @@ impl InterbusForm {
     }
 
     /// Sets the entry of a parameter. Returns `false` if no entry can show the value.
-    fn take(&mut self, name: &str, value: &str) -> bool {
+    fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;
         is_low_first || self.typed.fill_entry(&self.entries(), name, value)

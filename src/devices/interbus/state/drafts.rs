@@ -30,7 +30,7 @@ impl HasDraft for Encoder {
     }
 
     fn current_edits(&self) -> Edits {
-        self.staged.edits()
+        self.staged.draft_edits()
     }
 
     fn take_edits(&mut self, edits: Edits) {
@@ -47,7 +47,7 @@ impl HasDraft for Encoder {
 
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<InterbusProfile>() else { return };
-        self.staged.saved(profile.image.clone(), profile.names.clone());
+        self.staged.adopt_saved(profile.image.clone(), profile.names.clone());
         self.session.apply_document(file, document);
     }
 }

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::preview::Preview;
 use super::record::Record;
-use super::staged::{EditedValues, Mark, StagedEdits, ValueId};
+use super::staged::{EditFinding, EditedValues, StagedEdits, ValueId};
 use super::table::Import;
-use super::trace::Meaning;
+use super::trace::FrameDecoder;
 use super::{cams, words};
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
@@ -49,11 +49,11 @@ pub struct Encoder {
     pub(super) table_program: ProgramNumber,
     /// Programs that were written and must be read again.
     pub(super) read_after: Vec<ProgramNumber>,
-    pub(super) trace: Meaning,
+    pub(super) trace: FrameDecoder,
 }
 
 impl Encoder {
-    pub(super) fn with(session: Session<Interbus>, staged: StagedEdits) -> Self {
+    pub(super) fn from_session(session: Session<Interbus>, staged: StagedEdits) -> Self {
         Encoder {
             session,
             survey: None,
@@ -70,19 +70,19 @@ impl Encoder {
             refusal: None,
             stopped: false,
             read_after: Vec::new(),
-            trace: Meaning::new(WordOrder::default()),
+            trace: FrameDecoder::new(WordOrder::default()),
         }
     }
 
-    pub fn marks(&self) -> Vec<Mark> {
-        self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
+    pub fn findings(&self) -> Vec<EditFinding> {
+        self.staged.edited_values().map(EditedValues::findings).unwrap_or_default()
     }
 
     /// Returns the marks that every page shows. Marks of the given program come first.
     pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
-        let mut marks: Vec<Mark> = self.marks();
+        let mut marks: Vec<EditFinding> = self.findings();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
-        truncated_list(&cams::words::marks(&marks), Text::clone)
+        truncated_list(&cams::words::finding_texts(&marks), Text::clone)
     }
 
     pub fn profile(&self) -> Option<&InterbusProfile> {
@@ -92,7 +92,7 @@ impl Encoder {
 
     /// Returns the profile with the edits applied, or `None` if this is a connected encoder.
     pub(crate) fn edited_profile(&self) -> Option<InterbusProfile> {
-        let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
+        let (profile, wanted) = (self.profile()?, self.staged.edited_values()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
     }
 
@@ -116,7 +116,7 @@ impl Encoder {
     }
 
     /// Returns the facts that determine the meaning of an IN word.
-    pub fn known(&self) -> WordContext {
+    pub fn word_context(&self) -> WordContext {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => EncoderMode::Velocity,
             Some(StartupMode::Cams(_)) => EncoderMode::Cam,
@@ -136,7 +136,7 @@ impl Encoder {
 
     pub(super) fn word_order(&self) -> WordOrder {
         let Source::Link(url) = &self.session.source else { return WordOrder::default() };
-        url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
+        url.query.read("order", &WordOrder::KEYWORDS).ok().flatten().unwrap_or_default()
     }
 
     /// Returns whether the machine stands still according to the user. A virtual encoder has no machine, so it needs no
@@ -155,25 +155,25 @@ impl Encoder {
     }
 
     /// Returns the number of steps in the edited measuring range.
-    pub fn range(&self) -> u32 {
-        self.staged.wanted().map_or(0, EditedValues::range)
+    pub fn step_count(&self) -> u32 {
+        self.staged.edited_values().map_or(0, EditedValues::step_count)
     }
 
     pub fn read_out(&self, what: ReadOutNumber) -> Option<Value> {
-        self.read_outs.get(&what.number()).copied()
+        self.read_outs.get(&what.to_u16()).copied()
     }
 
     pub(super) fn known_programs(&self) -> Vec<ProgramNumber> {
-        self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
+        self.staged.device().map(|image| image.known_programs().map(|(number, _)| number).collect()).unwrap_or_default()
     }
 
     /// Returns the number of programs that have been read.
     pub fn known_program_count(&self) -> usize {
-        self.staged.device().map_or(0, |image| image.known().count())
+        self.staged.device().map_or(0, |image| image.known_programs().count())
     }
 
     /// Returns the number of stores recorded on this computer. Stores by other programs are not included.
-    pub fn stores(&self) -> Option<u64> {
+    pub fn store_count(&self) -> Option<u64> {
         self.session.cycles
     }
 
@@ -198,11 +198,11 @@ impl Encoder {
         self.session.title = Some(title(&survey.identity));
         self.staged.refresh_parameters(survey.parameters);
         for (read_out, value) in survey.read_outs() {
-            self.read_outs.insert(read_out.number(), value);
+            self.read_outs.insert(read_out.to_u16(), value);
         }
         self.survey = Some(survey);
-        let mode = self.known().mode;
-        self.trace.found(mode);
+        let mode = self.word_context().mode;
+        self.trace.set_mode(mode);
         if first {
             self.load_draft(services);
             self.log_answer(services);
@@ -221,7 +221,7 @@ impl Encoder {
             .text("log.interbus")
             .with("serial", &identity.serial_number)
             .with("version", identity.software_version)
-            .with_text("range", words::range(identity.steps, identity.revolutions));
+            .with_text("range", words::range_text(identity.steps, identity.revolutions));
         services.log_only(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 

@@ -35,7 +35,7 @@ impl Kind for Interbus {
     }
 
     fn job_text(job: &InterbusJob) -> Text {
-        job::words(job)
+        job::job_name(job)
     }
 
     fn writes_memory(job: &InterbusJob) -> bool {
@@ -56,7 +56,7 @@ impl Kind for Interbus {
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {
-        words::job(error)
+        words::job_error_texts(error)
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
@@ -76,15 +76,15 @@ impl Encoder {
 impl SessionEvents for Encoder {
     fn handle_samples(&mut self, samples: Vec<WordReading>, dropped: u64) {
         if let Some(image) = self.staged.device() {
-            self.preview.follow(&image.programs);
+            self.preview.set_programs(&image.programs);
         }
         samples.iter().for_each(|reading| self.preview.compare(reading));
-        self.record.add(samples, dropped);
+        self.record.add_readings(samples, dropped);
     }
 
     fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.trace.shift = self.shift();
-        self.trace.of(frame)
+        self.trace.explain(frame)
     }
 
     fn message_received(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {
@@ -116,9 +116,9 @@ impl SessionEvents for Encoder {
                 self.list_backups(services);
                 self.refresh_word(services);
             }
-            InterbusOutput::Position(reading) => self.record.add(vec![reading], 0),
+            InterbusOutput::Position(reading) => self.record.add_readings(vec![reading], 0),
             InterbusOutput::ReadOut(what, value) => {
-                self.read_outs.insert(what.number(), value);
+                self.read_outs.insert(what.to_u16(), value);
             }
             InterbusOutput::Selected(mode) | InterbusOutput::LedBack(mode) => {
                 if let Some(survey) = &mut self.survey {
@@ -126,8 +126,8 @@ impl SessionEvents for Encoder {
                 }
                 self.refresh_word(services);
             }
-            InterbusOutput::Check(lines) => self.check = Some(words::check(&lines)),
-            InterbusOutput::Saved(profile) => self.saved(*profile, services),
+            InterbusOutput::Check(lines) => self.check = Some(words::check_lines(&lines)),
+            InterbusOutput::Saved(profile) => self.save_profile(*profile, services),
             InterbusOutput::Prepared(prepared) => self.adopt_plan(prepared, services),
             InterbusOutput::Committed(committed) => self.handle_commit_end(*committed, services),
             // Only the command line runs these jobs.

@@ -9,11 +9,11 @@ mod phrases;
 mod write;
 
 use crate::devices::interbus::state::TEXTS;
-pub use check::check;
+pub use check::check_lines;
 pub use entry::entry;
 pub use gateway::{damage_text, exception_text};
 pub use item::{direction, parameter, read_out, startup_mode_text};
-pub use write::{change, op, other_type, plan, wear, weight, written};
+pub use write::{change_text, operation_texts, other_type, plan, severity_of, wear_warning, written_text};
 
 use crate::app::Text;
 use crate::app::explain::{link_error_text, literal_text};
@@ -23,7 +23,7 @@ use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
 /// Returns the sentences that describe why a job ended early. Each may be on a separate line.
-pub fn job(error: &JobError) -> Vec<Text> {
+pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
@@ -36,7 +36,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// Returns why the connection was lost, or `None` if it can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
-    lost(error.device()?).map(link_error_text)
+    lost_link(error.device()?).map(link_error_text)
 }
 
 /// Returns whether the link is open but the gateway does not reply.
@@ -44,10 +44,10 @@ pub fn is_no_response(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 
-fn lost(error: &Error) -> Option<&LinkError> {
+fn lost_link(error: &Error) -> Option<&LinkError> {
     match error {
         Error::Link(error) => Some(error),
-        Error::NotLedBack { cause, .. } => lost(cause),
+        Error::NotLedBack { cause, .. } => lost_link(cause),
         _ => None,
     }
 }
@@ -71,29 +71,31 @@ pub fn encoder(error: &Error) -> Text {
             .with_text("name", gateway::exception_name(*exception))
             .with_text("cause", gateway::exception_text(*exception)),
         Error::Cancelled => Text::new("encoder.cancelled"),
-        Error::Illegal(refused) => TEXTS.text("interbus.illegal").with("word", word(refused.command.emit())),
+        Error::Illegal(refused) => TEXTS.text("interbus.illegal").with("word", format_word(refused.command.emit())),
         Error::Refused { sent, error } => TEXTS
             .text("interbus.refused")
-            .with("word", word(sent.emit()))
-            .with("error", word(Reply::Error(*error).emit()))
-            .with_text("why", refusal(*error)),
-        Error::UnknownReadOut { command } => TEXTS.text("interbus.no_read_out").with("word", word(command.emit())),
+            .with("word", format_word(sent.emit()))
+            .with("error", format_word(Reply::Error(*error).emit()))
+            .with_text("why", error_word_text(*error)),
+        Error::UnknownReadOut { command } => {
+            TEXTS.text("interbus.no_read_out").with("word", format_word(command.emit()))
+        }
         Error::TimeOut { awaited, sent, input, milliseconds } => {
             let text = match Reply::parse(*input) {
                 Reply::Busy { .. } => TEXTS.text("interbus.still_busy"),
                 Reply::Echo { .. } => TEXTS.text("interbus.other_echo"),
                 _ => time_out(*awaited),
             };
-            text.with("sent", word(*sent)).with("input", word(*input)).with("milliseconds", milliseconds)
+            text.with("sent", format_word(*sent)).with("input", format_word(*input)).with("milliseconds", milliseconds)
         }
         Error::OtherMaster { sent, output } => {
-            TEXTS.text("interbus.other_master_out").with("sent", word(*sent)).with("seen", word(*output))
+            TEXTS.text("interbus.other_master_out").with("sent", format_word(*sent)).with("seen", format_word(*output))
         }
-        Error::NotRunning { input } => TEXTS.text("interbus.not_running").with("input", word(*input)),
+        Error::NotRunning { input } => TEXTS.text("interbus.not_running").with("input", format_word(*input)),
         Error::WordOrder { input, swapped } => {
-            TEXTS.text("interbus.word_order").with("input", word(*input)).with("swapped", word(*swapped))
+            TEXTS.text("interbus.word_order").with("input", format_word(*input)).with("swapped", format_word(*swapped))
         }
-        Error::Implausible(why) => implausible(*why),
+        Error::Implausible(why) => implausible_value_text(*why),
         Error::NoMode { wanted, is } => TEXTS
             .text("interbus.no_mode")
             .with_text("wanted", startup_mode_text(*wanted))
@@ -110,7 +112,7 @@ pub fn encoder(error: &Error) -> Text {
         Error::NotLedBack { cause, standing } => TEXTS
             .text("interbus.not_led_back")
             .with_text("cause", encoder(cause))
-            .with_text("standing", self::standing(standing)),
+            .with_text("standing", self::left_state_text(standing)),
     }
 }
 
@@ -124,7 +126,7 @@ fn time_out(awaited: ExpectedWord) -> Text {
 }
 
 /// Returns the reason for an error word and a remedy.
-pub fn refusal(error: ErrorWord) -> Text {
+pub fn error_word_text(error: ErrorWord) -> Text {
     TEXTS.text(match (error.code.get(), error.data.get()) {
         (1, _) => "ib_refused.data",
         (2, _) => "ib_refused.code",
@@ -135,7 +137,7 @@ pub fn refusal(error: ErrorWord) -> Text {
     })
 }
 
-pub fn implausible(why: ImplausibleValue) -> Text {
+pub fn implausible_value_text(why: ImplausibleValue) -> Text {
     match why {
         ImplausibleValue::Gear(GearError::Turns { turns }) => {
             TEXTS.text("interbus.implausible_turns").with("turns", turns)
@@ -145,15 +147,15 @@ pub fn implausible(why: ImplausibleValue) -> Text {
         }
         ImplausibleValue::Direction(code) => TEXTS.text("interbus.implausible_direction").with("code", code),
         ImplausibleValue::Value { read, value } => {
-            TEXTS.text("interbus.implausible_value").with("read", word(read)).with("value", value)
+            TEXTS.text("interbus.implausible_value").with("read", format_word(read)).with("value", value)
         }
     }
 }
 
 /// Returns the possible state of an encoder that could not be returned to operation. The text is part of a sentence.
-fn standing(standing: &LeftState) -> Text {
+fn left_state_text(standing: &LeftState) -> Text {
     let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
-    let state = TEXTS.text(id).with("out", word(standing.out));
+    let state = TEXTS.text(id).with("out", format_word(standing.out));
     match (standing.found, standing.is) {
         (Some(found), Some(is)) if found != is => TEXTS
             .text("ib_standing.other")
@@ -175,7 +177,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     }
 }
 
-fn word(word: u32) -> String {
+fn format_word(word: u32) -> String {
     format!("0x{word:08X}")
 }
 

@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
 
 /// Parses a whole number. Blanks and apostrophes may separate its digits.
-pub fn number(text: &str) -> Result<u32, Text> {
+pub fn parse_number(text: &str) -> Result<u32, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
         Some(hex) => u32::from_str_radix(hex, 16).ok(),
@@ -24,12 +24,12 @@ pub fn number(text: &str) -> Result<u32, Text> {
 /// # Errors
 /// Returns a message if the entry is not a number.
 pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
-    let value = number(text)?;
+    let value = parse_number(text)?;
     Ok(match parameter {
-        Parameter::Steps => Edit::Gear { steps: within(parameter, value, now)?, revolutions: now.revolutions },
-        Parameter::Turns => Edit::Revolutions(within(parameter, value, now)?),
-        Parameter::Preset => Edit::Preset(within(parameter, value, now)?),
-        Parameter::ZeroShift => Edit::ZeroShift(within(parameter, value, now)?),
+        Parameter::Steps => Edit::Gear { steps: check_in_range(parameter, value, now)?, revolutions: now.revolutions },
+        Parameter::Turns => Edit::Revolutions(check_in_range(parameter, value, now)?),
+        Parameter::Preset => Edit::Preset(check_in_range(parameter, value, now)?),
+        Parameter::ZeroShift => Edit::ZeroShift(check_in_range(parameter, value, now)?),
         Parameter::Direction | Parameter::Default => {
             return Err(TEXTS.text("ib_entry.number").with("entry", text.trim()));
         }
@@ -44,7 +44,7 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     if text.trim().is_empty() {
         return Ok(now.preset);
     }
-    within(Parameter::Preset, number(text)?, now)
+    check_in_range(Parameter::Preset, parse_number(text)?, now)
 }
 
 /// Parses the number of steps by which a program is shifted. Negative numbers shift it to earlier positions.
@@ -57,10 +57,10 @@ pub fn offset(text: &str) -> Result<i64, Text> {
 }
 
 /// Formats a position for an entry field in the unit of the scale.
-pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
+pub fn format_position(step: u32, scale: &Scale, range: u32) -> String {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => step.to_string(),
-        _ => format!("{:.*}", scale.decimals(), scale.value(step, range)),
+        _ => format!("{:.*}", scale.decimal_places(), scale.value(step, range)),
     }
 }
 
@@ -71,12 +71,12 @@ pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
 pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
-    let placed = scale.place(value, range).map_err(|error| {
+    let placed = scale.round_position(value, range).map_err(|error| {
         TEXTS
             .text("ib_entry.outside")
-            .with_number("value", error.value, scale.decimals())
-            .with_number("least", error.least, scale.decimals())
-            .with_number("most", error.most, scale.decimals())
+            .with_number("value", error.value, scale.decimal_places())
+            .with_number("least", error.least, scale.decimal_places())
+            .with_number("most", error.most, scale.decimal_places())
             .with("unit", scale.unit().symbol())
     })?;
     Ok(placed.step)
@@ -92,7 +92,7 @@ pub fn default_scale(unit: Unit, zero: u32, range: u32) -> Scale {
 }
 
 /// Returns the number of steps per turn of the machine or per millimetre. The unit *steps* has none.
-pub fn steps_of(scale: &Scale) -> Option<f64> {
+pub fn steps_per_unit(scale: &Scale) -> Option<f64> {
     match scale.unit() {
         Unit::Steps => None,
         Unit::Degrees => Some(scale.steps_per_unit() * 360.0),
@@ -115,19 +115,19 @@ pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
 /// # Errors
 /// Returns a message if the entry is not a position within the measuring range.
 pub fn scale_with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
-    let zero = number(text)?;
+    let zero = parse_number(text)?;
     let last = range.saturating_sub(1);
     if zero > last {
         let text = TEXTS.text("ib_entry.range").with_text("what", TEXTS.text("ib_scale.zero")).with("value", zero);
         return Err(text.with("low", 0).with("high", last));
     }
-    Scale::new(own.unit(), steps_of(own).unwrap_or(1.0), zero)
+    Scale::new(own.unit(), steps_per_unit(own).unwrap_or(1.0), zero)
         .map_err(|_| TEXTS.text("ib_entry.scale").with("entry", text))
 }
 
-fn within(parameter: Parameter, value: u32, now: &Parameters) -> Result<u32, Text> {
+fn check_in_range(parameter: Parameter, value: u32, now: &Parameters) -> Result<u32, Text> {
     let range = match now.gear() {
-        Ok(gear) => parameter.range(gear),
+        Ok(gear) => parameter.valid_range(gear),
         Err(_) => parameter.range_with_any_gear(),
     };
     if range.contains(&value) && Value::new(value).is_some() {
@@ -152,9 +152,9 @@ mod tests {
 
     #[test]
     fn numbers_are_accepted_or_refused_with_their_limits() {
-        assert_eq!(number(" 33 554 431 "), Ok(33_554_431));
-        assert_eq!(number("0x1FF"), Ok(511));
-        assert!(number("-1").is_err() && number("1.5").is_err() && number("").is_err());
+        assert_eq!(parse_number(" 33 554 431 "), Ok(33_554_431));
+        assert_eq!(parse_number("0x1FF"), Ok(511));
+        assert!(parse_number("-1").is_err() && parse_number("1.5").is_err() && parse_number("").is_err());
         let edit = |parameter: Parameter, text: &str| super::parameter(parameter, text, &now());
         assert_eq!(edit(Parameter::Turns, "4096"), Ok(Edit::Revolutions(4096)));
         assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));

@@ -5,7 +5,7 @@ use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
-pub(super) fn words(job: &InterbusJob) -> Text {
+pub(super) fn job_name(job: &InterbusJob) -> Text {
     match job {
         InterbusJob::Hello | InterbusJob::Position => TEXTS.text("ib_job.word"),
         InterbusJob::Survey | InterbusJob::Identify => TEXTS.text("ib_job.survey"),
@@ -16,7 +16,7 @@ pub(super) fn words(job: &InterbusJob) -> Text {
         InterbusJob::ReadOut(what) => Text::new("job.read").with_text("item", words::read_out(*what)),
         InterbusJob::Select(mode) => TEXTS.text("ib_job.select").with_text("mode", words::startup_mode_text(*mode)),
         InterbusJob::Save { .. } => Text::new("job.save"),
-        InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
+        InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
         InterbusJob::Commit(_) => Text::new("job.write"),
         InterbusJob::LeadBack => Text::new("job.lead_back"),
     }

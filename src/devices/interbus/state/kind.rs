@@ -5,7 +5,7 @@ use super::{Encoder, InterbusForm};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::interbus::jobs::{Interbus, check};
+use crate::devices::interbus::jobs::{Interbus, check_link};
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::sim::Config;
@@ -23,7 +23,7 @@ impl DeviceType for Encoder {
     type Tables = ();
 
     fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
-        check(url)
+        check_link(url)
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
@@ -35,7 +35,7 @@ impl DeviceType for Encoder {
     fn create(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
         let staged =
             profile.map(|(profile, ())| StagedEdits::for_profile(profile.image.clone(), profile.names.clone()));
-        Encoder::with(session, staged.unwrap_or_default())
+        Encoder::from_session(session, staged.unwrap_or_default())
     }
 
     fn secret_parameters() -> Vec<&'static str> {

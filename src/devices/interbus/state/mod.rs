@@ -38,10 +38,10 @@ use std::path::PathBuf;
 
 use crate::store::FileError;
 
-pub use staged::{Edit, EditError, EditedValues, Mark, StagedEdits, ValueId};
+pub use staged::{Edit, EditError, EditFinding, EditedValues, StagedEdits, ValueId};
 pub use table::Import;
 
-pub enum Done {
+pub enum TaskResult {
     /// A cam table file was read.
     Read(PathBuf, Result<String, FileError>),
     Written(PathBuf, Result<(), FileError>),

@@ -1,7 +1,7 @@
 //! Implementation of the studio's device traits for INTERBUS encoders.
 
-use super::trace::Meaning;
-use super::{Done, Encoder, InterbusAction, TEXTS};
+use super::trace::FrameDecoder;
+use super::{Encoder, InterbusAction, TEXTS, TaskResult};
 use crate::app::action::OpenedConnection;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasProfile, SessionEvents};
@@ -11,33 +11,33 @@ use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Interbus");
     type Action = InterbusAction;
-    type TaskResult = Done;
+    type TaskResult = TaskResult;
 
     fn connect(&mut self, opened: OpenedConnection<Interbus>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
-        self.record.begin(&opened.began);
+        self.record.begin_session(&opened.began);
         self.motor = opened.aside.clone();
-        self.trace = Meaning::new(self.word_order());
+        self.trace = FrameDecoder::new(self.word_order());
         self.session.attach_connection(opened, services);
         self.submit(InterbusJob::Hello, services);
     }
 
     fn handle_action(&mut self, action: InterbusAction, context: &mut ActionContext<'_>) {
-        Encoder::act(self, action, context.services);
+        Encoder::handle_action(self, action, context.services);
     }
 
-    fn handle_result(&mut self, done: Done, services: &mut Services) {
+    fn handle_result(&mut self, done: TaskResult, services: &mut Services) {
         match done {
-            Done::Read(path, Ok(text)) => {
+            TaskResult::Read(path, Ok(text)) => {
                 let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
                 self.read_table(explain::literal_text(name), text, self.table_program);
             }
-            Done::Written(path, Ok(())) => {
+            TaskResult::Written(path, Ok(())) => {
                 services.log.remove_file_notices(&path);
                 let text = Text::new("session.saved").with("path", path.display());
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
-            Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
+            TaskResult::Read(_, Err(error)) | TaskResult::Written(_, Err(error)) => {
                 self.session.report_rejection(explain::file_error_text(&error), services)
             }
         }

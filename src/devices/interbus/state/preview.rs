@@ -25,20 +25,20 @@ pub struct OutputMismatch {
 
 impl Default for Preview {
     fn default() -> Self {
-        Preview::of([None; ProgramNumber::COUNT])
+        Preview::from_programs([None; ProgramNumber::COUNT])
     }
 }
 
 impl Preview {
-    fn of(programs: [Option<Program>; ProgramNumber::COUNT]) -> Self {
+    fn from_programs(programs: [Option<Program>; ProgramNumber::COUNT]) -> Self {
         let compiled = CompiledPrograms::new(&programs.map(Option::unwrap_or_default));
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
     /// Sets the programs of the encoder. The comparison starts again if they have changed.
-    pub(super) fn follow(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
+    pub(super) fn set_programs(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
-            *self = Preview::of(*programs);
+            *self = Preview::from_programs(*programs);
         }
     }
 
@@ -74,7 +74,7 @@ mod tests {
         let mut programs = [None; ProgramNumber::COUNT];
         programs[1] = Some(program);
         let mut preview = Preview::default();
-        preview.follow(&programs);
+        preview.set_programs(&programs);
         let reading = |number: u8, position: u32, outputs: u32| WordReading {
             at: Moment::START,
             word: position << 8 | outputs,
@@ -90,9 +90,9 @@ mod tests {
         assert_eq!((preview.same, preview.other), (4, 0));
         preview.compare(&reading(2, 214, 8));
         assert_eq!(preview.last, Some(OutputMismatch { position: 214, own: 8, expected: 0 }));
-        preview.follow(&programs);
+        preview.set_programs(&programs);
         assert_eq!(preview.other, 1, "the same programs");
-        preview.follow(&[None; ProgramNumber::COUNT]);
+        preview.set_programs(&[None; ProgramNumber::COUNT]);
         assert_eq!((preview.same, preview.other), (0, 0));
     }
 }

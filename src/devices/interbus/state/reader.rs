@@ -2,7 +2,7 @@
 
 use super::word_meaning::{self, WordContext};
 use crate::app::Text;
-use crate::devices::interbus::protocol::{EncoderMode, ReadOutNumber, Single, WindowShift};
+use crate::devices::interbus::protocol::{EncoderMode, ReadOutNumber, SingleWord, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
 /// Source of a word, which is its direction and the class of the encoder.
@@ -22,7 +22,7 @@ pub enum WordSource {
 impl WordSource {
     pub const ALL: [WordSource; 4] = [WordSource::In, WordSource::Out, WordSource::K1, WordSource::K2];
 
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             WordSource::In => "ib_reader.in",
             WordSource::Out => "ib_reader.out",
@@ -35,7 +35,7 @@ impl WordSource {
         matches!(self, WordSource::In | WordSource::Out)
     }
 
-    const fn digits(self) -> usize {
+    const fn digit_count(self) -> usize {
         match self {
             WordSource::K1 => 4,
             WordSource::In | WordSource::Out | WordSource::K2 => 8,
@@ -69,31 +69,31 @@ pub struct DecodedWord {
 
 impl Reading {
     /// Decodes words that blanks or commas separate. They may have the prefix `0x` or the suffix `h`.
-    pub fn lines(&self, text: &str) -> Vec<DecodedWord> {
+    pub fn decode_words(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
-        words.map(|word| self.line(word)).collect()
+        words.map(|word| self.decode_word(word)).collect()
     }
 
-    fn line(&self, typed: &str) -> DecodedWord {
+    fn decode_word(&self, typed: &str) -> DecodedWord {
         let bare = typed.trim_start_matches("0x").trim_start_matches("0X").trim_end_matches(['h', 'H']);
-        let digits = self.source.digits();
+        let digits = self.source.digit_count();
         let number = Some(bare).filter(|own| own.len() == digits).and_then(|own| u32::from_str_radix(own, 16).ok());
         let Some(number) = number else {
             let why = TEXTS.text("ib_reader.no_word").with("word", typed).with("digits", digits);
             return DecodedWord { word: typed.to_owned(), meaning: Err(why), warning: None };
         };
-        let single = |own: Single| {
+        let single = |own: SingleWord| {
             let position = TEXTS.text("ib_word.position").with("position", own.position().get());
             let bits = || TEXTS.text("ib_word.stray").with("bits", format!("0x{:X}", own.unexpected_bits()));
             (position, (own.unexpected_bits() != 0).then(bits))
         };
         let known = WordContext { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
         let (meaning, warning) = match self.source {
-            WordSource::Out => (word_meaning::out(number, self.mode), None),
+            WordSource::Out => (word_meaning::describe_out_word(number, self.mode), None),
             WordSource::In => (word_meaning::word_text(number, &known), word_meaning::unexpected_bits(number)),
             // A K1 word has four digits.
-            WordSource::K1 => single(Single::parse_k1(number as u16)),
-            WordSource::K2 => single(Single::parse_k2(number)),
+            WordSource::K1 => single(SingleWord::parse_k1(number as u16)),
+            WordSource::K2 => single(SingleWord::parse_k2(number)),
         };
         DecodedWord { word: bare.to_ascii_uppercase(), meaning: Ok(meaning), warning }
     }
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn typed_words_are_decoded_or_refused_with_a_reason() {
         let says = |reading: Reading, text: &str| -> Vec<String> {
-            let lines = reading.lines(text).into_iter();
+            let lines = reading.decode_words(text).into_iter();
             lines.map(|line| line.meaning.unwrap_or_else(|why| why).to_string_in(Language::English)).collect()
         };
         let of = |way| Reading { source: way, ..Reading::default() };
@@ -117,10 +117,10 @@ mod tests {
         assert_eq!(says(of(WordSource::Out), "080003e8h"), ["Preset value := 1000"]);
         assert_eq!(says(of(WordSource::K2), "00FFFFFF"), ["position 16777215"]);
         // Bits 15 to 12 of a K1 word should be 0 (reference 1).
-        assert!(of(WordSource::K1).lines("1FFF").iter().all(|line| line.warning.is_some()));
+        assert!(of(WordSource::K1).decode_words("1FFF").iter().all(|line| line.warning.is_some()));
         for (way, text) in [(WordSource::In, "123"), (WordSource::K1, "00000FFF"), (WordSource::Out, "0200000G")] {
-            assert!(of(way).lines(text).iter().all(|line| line.meaning.is_err()), "{text}");
+            assert!(of(way).decode_words(text).iter().all(|line| line.meaning.is_err()), "{text}");
         }
-        assert!(of(WordSource::In).lines(" \n").is_empty());
+        assert!(of(WordSource::In).decode_words(" \n").is_empty());
     }
 }

@@ -25,16 +25,16 @@ pub struct Record {
 }
 
 impl Record {
-    pub(super) fn begin(&mut self, began: &Zoned) {
+    pub(super) fn begin_session(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin_session(began);
     }
 
     /// Adds new readings. `dropped` is the number of readings that could not be recorded in time.
-    pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
+    pub(super) fn add_readings(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.record_dropped(dropped);
         for reading in readings {
-            self.observe(&reading);
+            self.add_reading(&reading);
             self.last = Some(reading);
         }
     }
@@ -44,7 +44,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    fn observe(&mut self, reading: &WordReading) {
+    fn add_reading(&mut self, reading: &WordReading) {
         let at = reading.at;
         match reading.mode {
             Some(StartupMode::Velocity) => {
@@ -66,14 +66,14 @@ impl Record {
         let is_sent = reading.mode != Some(StartupMode::Velocity);
         let position = reading.position();
         if is_sent && (position.is_some() || !reading.is_valid()) {
-            let is_beyond = reading.gear.zip(position).is_some_and(|(gear, own)| own >= gear.steps());
+            let is_beyond = reading.gear.zip(position).is_some_and(|(gear, own)| own >= gear.total_steps());
             let sighting = PositionSample {
                 at,
                 position: position.map(i64::from),
                 is_bad: position.is_none(),
                 is_warned: reading.unexpected_bits() != 0 || is_beyond,
             };
-            self.track.add_positions(&[sighting], &meaning(reading.gear));
+            self.track.add_positions(&[sighting], &position_scales(reading.gear));
         }
     }
 
@@ -86,17 +86,17 @@ impl Record {
         self.last.as_ref()
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.track.clear_unless_long();
         self.last = None;
     }
 }
 
-fn meaning(gear: Option<Gear>) -> PositionScales {
+fn position_scales(gear: Option<Gear>) -> PositionScales {
     match gear {
         Some(gear) => PositionScales::for_steps_per_turn(
-            Some(gear.steps().into()),
-            f64::from(gear.steps()) / f64::from(gear.turns()),
+            Some(gear.total_steps().into()),
+            f64::from(gear.total_steps()) / f64::from(gear.turns()),
         ),
         None => PositionScales::for_steps(None),
     }

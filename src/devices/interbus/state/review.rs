@@ -3,7 +3,7 @@
 use crate::app::explain::literal_text;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
-use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_ASK, WEAR_LAST, Wear};
+use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_CONFIRMATION, WEAR_LAST, WearAfterPlan};
 use crate::devices::interbus::procedures::write::WrittenChanges;
 use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
@@ -18,7 +18,7 @@ impl Reviewable for Interbus {
     type Written = WrittenChanges;
 
     fn change_title(change: &Change) -> Text {
-        words::change(change)
+        words::change_text(change)
     }
 
     fn permit_flag(change: &mut Change, permit: Permit) -> Option<&mut bool> {
@@ -27,7 +27,7 @@ impl Reviewable for Interbus {
     }
 
     fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
-        words::op(op)
+        words::operation_texts(op)
     }
 
     fn skips_mounting_values(prepared: &Prepared) -> bool {
@@ -41,7 +41,7 @@ impl Reviewable for Interbus {
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(prepared.other_type.map(words::other_type));
-        warnings.extend(words::wear(prepared));
+        warnings.extend(words::wear_warning(prepared));
         if prepared.plan.ops.contains(&Op::Default) {
             warnings.push(TEXTS.text("ib_review.experimental"));
         }
@@ -75,17 +75,20 @@ impl Reviewable for Interbus {
             Some(seen) => TEXTS.text("ib_review.cost").with("stores", stores).with("seen", seen),
             None => TEXTS.text("ib_review.cost_unknown").with("stores", stores),
         }
-        .with("nominal", WEAR_ASK)
+        .with("nominal", WEAR_CONFIRMATION)
         .with("last", WEAR_LAST)
     }
 
     fn reaches_wear_limit(prepared: &Prepared) -> bool {
         // Above the manufacturer's limit, the user has to confirm again. This also applies to a plan that is refused
         // unless forced.
-        matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
+        matches!(
+            prepared.wear_to_report(),
+            Some(WearAfterPlan::Ask(_) | WearAfterPlan::Worn(_) | WearAfterPlan::Unknown)
+        )
     }
 
     fn written_text(written: &WrittenChanges) -> Text {
-        words::written(written)
+        words::written_text(written)
     }
 }

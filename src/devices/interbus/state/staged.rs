@@ -19,7 +19,7 @@ mod tests;
 pub use difference::{ValueDifference, ValueId};
 pub use draft::SavedEdit;
 pub use edit::{Edit, EditError};
-pub use mark::Mark;
+pub use mark::EditFinding;
 
 use crate::app::history::History;
 use crate::app::{EditHistoryParts, SnapshotEdits};
@@ -59,12 +59,12 @@ pub struct StagedEdits {
 
 impl EditedValues {
     /// Creates values without names.
-    pub fn of(image: Image) -> Self {
+    pub fn from_image(image: Image) -> Self {
         EditedValues { image, names: CamNames::default() }
     }
 
     /// Returns the number of steps in the measuring range.
-    pub const fn range(&self) -> u32 {
+    pub const fn step_count(&self) -> u32 {
         self.image.parameters.steps
     }
 
@@ -96,13 +96,13 @@ impl StagedEdits {
 
     /// Sets the content of a saved profile as the base. If it equals the edited values, the states of undo are kept.
     /// Otherwise another program has changed the profile, and only the edits are kept.
-    pub fn saved(&mut self, image: Image, names: CamNames) {
+    pub fn adopt_saved(&mut self, image: Image, names: CamNames) {
         let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
             self.base = Some(now);
             return;
         }
-        let edits = self.edits();
+        let edits = self.draft_edits();
         self.waiting.clear();
         self.history.clear_steps();
         (self.base, self.wanted) = (Some(now.clone()), Some(now));
@@ -114,21 +114,21 @@ impl StagedEdits {
     pub fn refresh(&mut self, read: Image) {
         let known = self.base.take();
         let (names, image) = match &known {
-            Some(known) => (known.names.clone(), merge::over(&known.image, read)),
+            Some(known) => (known.names.clone(), merge::merge_known(&known.image, read)),
             None => (CamNames::default(), read),
         };
         self.base = known;
-        self.rebase(EditedValues { image, names });
+        self.rebase_edits(EditedValues { image, names });
     }
 
     pub fn refresh_parameters(&mut self, parameters: Parameters) {
-        self.refresh(Image::of(parameters));
+        self.refresh(Image::from_parameters(parameters));
     }
 
     /// Adds cam programs and the window shift to the base. It has no effect before the parameters have been read.
     pub fn refresh_programs(&mut self, programs: &[(ProgramNumber, Program)], shift: Option<WindowShift>) {
         let Some(base) = &self.base else { return };
-        let mut image = Image { shift, ..Image::of(base.image.parameters) };
+        let mut image = Image { shift, ..Image::from_parameters(base.image.parameters) };
         for (number, program) in programs {
             if let Some(own) = image.program_mut(*number) {
                 *own = Some(*program);
@@ -142,10 +142,10 @@ impl StagedEdits {
     }
 
     /// Sets the base values and transfers the edits to them.
-    fn rebase(&mut self, now: EditedValues) {
+    fn rebase_edits(&mut self, now: EditedValues) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => {
-                self.history.update_all_states(wanted, |own| merge::rebase(own, before, &now))
+                self.history.update_all_states(wanted, |own| merge::rebase_edits(own, before, &now))
             }
             _ => self.wanted = Some(now.clone()),
         }
@@ -170,7 +170,7 @@ impl StagedEdits {
     }
 
     /// Returns the edited values, or `None` if nothing was read.
-    pub fn wanted(&self) -> Option<&EditedValues> {
+    pub fn edited_values(&self) -> Option<&EditedValues> {
         self.wanted.as_ref()
     }
 
@@ -183,21 +183,21 @@ impl StagedEdits {
     ///
     /// # Errors
     /// Returns the reason if the edit is not possible. Nothing is changed in this case.
-    pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
-        let after = self.tried(edit)?;
-        Ok(self.step(after))
+    pub fn apply_edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
+        let after = self.preview_edit(edit)?;
+        Ok(self.apply_step(after))
     }
 
     /// Returns the values after an edit, which is not applied. They are displayed during a drag.
     ///
     /// # Errors
     /// Returns the reason if the edit is not possible.
-    pub fn tried(&self, edit: &Edit) -> Result<EditedValues, EditError> {
+    pub fn preview_edit(&self, edit: &Edit) -> Result<EditedValues, EditError> {
         let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
-        edit::edited(wanted, edit, self.base_source)
+        edit::apply_edit(wanted, edit, self.base_source)
     }
 
-    fn step(&mut self, after: EditedValues) -> bool {
+    fn apply_step(&mut self, after: EditedValues) -> bool {
         self.wanted.as_mut().is_some_and(|wanted| self.history.apply_step(wanted, after))
     }
 }

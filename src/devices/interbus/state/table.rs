@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::Done;
+use super::TaskResult;
 use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::Text;
@@ -28,7 +28,7 @@ impl Encoder {
         let session = self.session.id;
         services.tasks.run("table", move || {
             let result = read_file(&path);
-            StudioAction::Done(StudioDone::device(session, Done::Read(path, result)))
+            StudioAction::Done(StudioDone::device(session, TaskResult::Read(path, result)))
         });
     }
 
@@ -39,7 +39,7 @@ impl Encoder {
     }
 
     fn options(&self, program: ProgramNumber) -> TableOptions {
-        TableOptions { scale: self.scale, range: self.range(), program }
+        TableOptions { scale: self.scale, range: self.step_count(), program }
     }
 
     /// Parses the table again after the scale or the measuring range has changed.
@@ -59,8 +59,8 @@ impl Encoder {
             return;
         }
         if take {
-            let edit = Edit::Table(import.table.filled());
-            self.edit(&edit);
+            let edit = Edit::Table(import.table.to_programs());
+            self.apply_edit(&edit);
         }
         if !take || self.refusal.is_none() {
             self.import = None;
@@ -68,12 +68,12 @@ impl Encoder {
     }
 
     pub(super) fn save_table(&mut self, path: PathBuf, decimal_comma: bool, services: &Services) {
-        let Some(wanted) = self.staged.wanted() else { return };
+        let Some(wanted) = self.staged.edited_values() else { return };
         let text = emit_table(&wanted.image, &wanted.names, &self.scale, decimal_comma);
         let session = self.session.id;
         services.tasks.run("export", move || {
             let result = write_atomically(&path, text.as_bytes());
-            StudioAction::Done(StudioDone::device(session, Done::Written(path, result)))
+            StudioAction::Done(StudioDone::device(session, TaskResult::Written(path, result)))
         });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::word_meaning::{self, WordContext};
 use crate::app::{FrameExplanation, Text, TraceFault};
-use crate::devices::interbus::procedures::{Carried, Fault, fault, word_in_frame};
+use crate::devices::interbus::procedures::{FrameWord, GatewayFault, find_fault, word_in_frame};
 use crate::devices::interbus::protocol::{Command, EncoderMode, ReadOutNumber, Reply, WindowShift, WordOrder};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
@@ -10,7 +10,7 @@ use crate::link::{Direction, TraceEntry};
 
 /// Decoder for a sequence of frames in the order of their transmission.
 #[derive(Debug)]
-pub(super) struct Meaning {
+pub(super) struct FrameDecoder {
     /// Order of the two halves of a word.
     pub(super) order: WordOrder,
     pub(super) shift: Option<WindowShift>,
@@ -19,18 +19,18 @@ pub(super) struct Meaning {
     requested: Vec<u8>,
 }
 
-impl Meaning {
+impl FrameDecoder {
     /// Creates a decoder for a new link. It assumes position mode.
     pub(super) fn new(order: WordOrder) -> Self {
-        Meaning { order, shift: None, mode: EncoderMode::Position, read_out: None, requested: Vec::new() }
+        FrameDecoder { order, shift: None, mode: EncoderMode::Position, read_out: None, requested: Vec::new() }
     }
 
-    pub(super) fn found(&mut self, mode: EncoderMode) {
+    pub(super) fn set_mode(&mut self, mode: EncoderMode) {
         self.mode = mode;
     }
 
     /// Explains a frame. The explanation is empty if an intact frame contains no word.
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
+    pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
         let Some(bytes) = entry.bytes.to_bytes() else {
             return FrameExplanation::from_error(Text::new("trace.hidden"));
         };
@@ -38,21 +38,21 @@ impl Meaning {
             self.requested.clone_from(&bytes);
             return self.word_meaning_texts(entry.direction, &bytes).into();
         }
-        match fault(&self.requested, &bytes, self.order) {
-            Some(Fault::Broken(damage)) => FrameExplanation::from_error(explained::damage_text(damage)),
-            Some(Fault::Refused(exception)) => FrameExplanation {
+        match find_fault(&self.requested, &bytes, self.order) {
+            Some(GatewayFault::Broken(damage)) => FrameExplanation::from_error(explained::damage_text(damage)),
+            Some(GatewayFault::Refused(exception)) => FrameExplanation {
                 fault: Some(TraceFault::Reported),
                 ..vec![explained::exception_text(exception)].into()
             },
-            None => self.received(&bytes),
+            None => self.explain_received(&bytes),
         }
     }
 
     /// Explains a reply. An error word is marked as an error that the encoder reports.
-    fn received(&mut self, bytes: &[u8]) -> FrameExplanation {
+    fn explain_received(&mut self, bytes: &[u8]) -> FrameExplanation {
         let meaning = self.word_meaning_texts(Direction::Received, bytes);
         let is_error = match word_in_frame(false, bytes, self.order) {
-            Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
+            Some(FrameWord::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
         };
         FrameExplanation { fault: is_error.then_some(TraceFault::Reported), ..meaning.into() }
@@ -60,12 +60,12 @@ impl Meaning {
 
     fn word_meaning_texts(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
         match word_in_frame(direction == Direction::Sent, bytes, self.order) {
-            Some(Carried::Out(word)) => {
+            Some(FrameWord::Out(word)) => {
                 let command = self.command(word);
-                self.follow(command);
+                self.follow_command(command);
                 vec![hex_word_text("ib_trace.out", word), word_meaning::command_text(command)]
             }
-            Some(Carried::In(word)) => {
+            Some(FrameWord::In(word)) => {
                 let known = WordContext { mode: self.mode, read_out: self.read_out, shift: self.shift };
                 vec![hex_word_text("ib_trace.in", word), word_meaning::word_text(word, &known)]
             }
@@ -75,11 +75,11 @@ impl Meaning {
 
     /// Parses an OUT word in the known mode. If it is illegal there, a mode that allows it is assumed.
     fn command(&self, word: u32) -> Command {
-        let readings = || Command::readings(word).into_iter().next();
+        let readings = || Command::all_meanings(word).into_iter().next();
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))
     }
 
-    fn follow(&mut self, command: Command) {
+    fn follow_command(&mut self, command: Command) {
         match command {
             Command::Cams(Some(_)) => self.mode = EncoderMode::Cam,
             Command::Cams(None) | Command::Velocity(false) => self.mode = EncoderMode::Position,
@@ -119,10 +119,10 @@ mod tests {
             ("no frame", "55 AA 55", Some(TraceFault::Broken)),
         ];
         for (label, reply, fault) in cases {
-            let mut meaning = Meaning::new(WordOrder::HighFirst);
+            let mut meaning = FrameDecoder::new(WordOrder::HighFirst);
             let mut said = |direction, text| {
                 let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
-                meaning.of(&TraceEntry { at: Moment::START, direction, bytes })
+                meaning.explain(&TraceEntry { at: Moment::START, direction, bytes })
             };
             assert_eq!(said(Direction::Sent, request).fault, None);
             let told = said(Direction::Received, reply);

@@ -19,14 +19,14 @@ pub struct WordContext {
 
 impl WordContext {
     /// Returns the facts that apply to the replies of a command.
-    pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
+    pub fn for_command(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
         WordContext { mode: mode_of_command(command), read_out, shift }
     }
 }
 
 /// Describes an OUT word, and whether it is illegal in the given mode.
-pub fn out(word: u32, mode: EncoderMode) -> Text {
+pub fn describe_out_word(word: u32, mode: EncoderMode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => command_text(command),
         Err(refused) if matches!(refused.command, Command::Unknown(_)) => TEXTS.text("ib_word.unknown"),
@@ -79,13 +79,13 @@ pub fn word_text(word: u32, known: &WordContext) -> Text {
     let reply = Reply::parse(word);
     match reply {
         Reply::Run { value, .. } => match known.mode {
-            EncoderMode::Velocity => TEXTS.text("ib_word.speed").with("rpm", value.signed()),
+            EncoderMode::Velocity => TEXTS.text("ib_word.speed").with("rpm", value.to_signed()),
             EncoderMode::Cam => outputs(word, known.shift),
             EncoderMode::Position | EncoderMode::Parameterisation | EncoderMode::ReadOut => {
                 TEXTS.text("ib_word.position").with("position", value.get())
             }
         },
-        Reply::Busy { .. } | Reply::Echo { .. } => echo(reply, known.mode),
+        Reply::Busy { .. } | Reply::Echo { .. } => describe_echo(reply, known.mode),
         Reply::ReadOut(value) => match known.read_out {
             Some(read_out) => TEXTS
                 .text("ib_word.value")
@@ -123,7 +123,7 @@ fn error(error: ErrorWord) -> Text {
     TEXTS.text(id).with("word", format!("0x{:08X}", Reply::Error(error).emit()))
 }
 
-fn echo(reply: Reply, mode: EncoderMode) -> Text {
+fn describe_echo(reply: Reply, mode: EncoderMode) -> Text {
     let in_mode = if mode == EncoderMode::Cam { EncoderMode::Cam } else { EncoderMode::Parameterisation };
     match reply.echoed_command(in_mode) {
         Some(command) => TEXTS.text("ib_word.echo").with_text("command", command_text(command)),
@@ -176,7 +176,7 @@ mod tests {
                 "This word is not valid in position mode. In another mode, it is the following command: Cam 3 starts at 21",
             ),
         ] {
-            assert_eq!(english(out(word, mode)), says, "{word:08X}");
+            assert_eq!(english(describe_out_word(word, mode)), says, "{word:08X}");
         }
         for (word, mode, says) in [
             (0x0012_3456, EncoderMode::Position, "position 1193046"),

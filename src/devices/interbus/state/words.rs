@@ -46,31 +46,31 @@ pub fn read_out_value(value: ReadOutValue) -> Text {
             f64::from(minutes) / 60.0,
             1,
         ),
-        ReadOutValue::TenthsOfDegree(tenths) => celsius(tenths),
+        ReadOutValue::TenthsOfDegree(tenths) => temperature_text(tenths),
         ReadOutValue::StartupMode(own) => startup_mode_text(own),
-        ReadOutValue::Flags(own) => flags(own),
+        ReadOutValue::Flags(own) => flags_text(own),
     }
 }
 
 /// Formats a temperature that is given in tenths of a degree Celsius.
-pub fn celsius(tenths: i32) -> Text {
+pub fn temperature_text(tenths: i32) -> Text {
     TEXTS.text("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
 }
 
-pub fn flags(flags: Flags) -> Text {
-    let turns = TEXTS.text(if flags.multiturn() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
+pub fn flags_text(flags: Flags) -> Text {
+    let turns = TEXTS.text(if flags.counts_turns() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
     let mut all = vec![turns];
     if flags.steps_minus_one() {
         all.push(TEXTS.text("ib_flags.steps_minus_one"));
     }
-    if flags.unknown() != 0 {
-        all.push(TEXTS.text("ib_flags.unknown").with("bits", format!("0x{:X}", flags.unknown())));
+    if flags.unknown_bits() != 0 {
+        all.push(TEXTS.text("ib_flags.unknown").with("bits", format!("0x{:X}", flags.unknown_bits())));
     }
     TEXTS.text("ib_flags.all").with_list("flags", all)
 }
 
 /// Returns the meaning of an LED combination and a remedy.
-pub fn lamps(row: &LedRow) -> (Text, Text) {
+pub fn led_texts(row: &LedRow) -> (Text, Text) {
     use crate::devices::interbus::protocol::LedState::{Blinking, On};
     let (meaning, remedy) = match (row.leds.ba, row.leds.rbda) {
         (On, _) => ("ib_leds.run", "ib_leds.run_remedy"),
@@ -89,14 +89,14 @@ pub fn interface(interface: Interface) -> Text {
     })
 }
 
-pub fn range(steps: u32, turns: u32) -> Text {
+pub fn range_text(steps: u32, turns: u32) -> Text {
     let id = if turns == 1 { "ib_card.range_one" } else { "ib_card.range_of" };
     TEXTS.text(id).with("steps", steps).with("turns", turns)
 }
 
 /// Formats the value of a read-out.
 pub fn read_value(what: ReadOutNumber, value: Value) -> Text {
-    match (what.number(), Direction::from_code(value.get())) {
+    match (what.to_u16(), Direction::from_code(value.get())) {
         (0x3, Some(own)) => direction(own),
         // These values are counted numbers or identifiers, so their bits need no explanation.
         (0x0..=0x7, _) => literal_text(value.get()),

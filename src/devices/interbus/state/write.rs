@@ -19,11 +19,11 @@ impl Encoder {
     /// them. If the measuring range becomes shorter, all known programs are included, since their cams must be within
     /// the new range.
     fn edited_image(&self) -> Option<Image> {
-        let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
-        let mut edited = Image::of(wanted.parameters);
+        let (wanted, device) = (&self.staged.edited_values()?.image, self.staged.device()?);
+        let mut edited = Image::from_parameters(wanted.parameters);
         edited.shift = wanted.shift.filter(|shift| device.shift != Some(*shift));
         let shrinks = wanted.parameters.steps < device.parameters.steps;
-        for (number, program) in wanted.known() {
+        for (number, program) in wanted.known_programs() {
             let differs = device.program(number) != Some(program);
             if let Some(own) = edited.program_mut(number).filter(|_| differs || shrinks) {
                 *own = Some(*program);
@@ -72,7 +72,7 @@ impl HasMemory for Encoder {
         (self.survey, self.check, self.refusal) = (None, None, None);
         self.staged.clear();
         self.read_outs.clear();
-        self.record.forget();
+        self.record.clear();
     }
 }
 
@@ -86,7 +86,7 @@ impl HasProfile for Encoder {
     }
 
     fn save_remarks(&self) -> Vec<Text> {
-        truncated_list(&words::marks(&self.marks()), Text::clone)
+        truncated_list(&words::finding_texts(&self.findings()), Text::clone)
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {
@@ -99,7 +99,7 @@ impl HasProfile for Encoder {
         if !missing.is_empty() {
             return Some(Err(missing));
         }
-        let profile = InterbusProfile::of(survey.identity.profile(), base.image.clone(), survey.recorded());
+        let profile = InterbusProfile::new(survey.identity.profile(), base.image.clone(), survey.recorded_values());
         let profile = InterbusProfile { names: base.names.clone(), ..profile };
         let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(profile), remarks)))

@@ -13,7 +13,7 @@ use crate::app::Action;
 use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::cams::Chart;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, empty_placeholder, enabled_button, paragraph, two_columns};
 use crate::ui::{Theme, icons};
 
@@ -27,7 +27,7 @@ pub(super) struct CamsUiState {
 }
 
 impl CamsUiState {
-    pub(super) fn shown(&self) -> ProgramNumber {
+    pub(super) fn displayed_program(&self) -> ProgramNumber {
         self.program.unwrap_or(ProgramNumber::FIRST)
     }
 }
@@ -39,7 +39,7 @@ pub(super) fn page_ui(
     view: &mut CamsUiState,
     actions: &mut Vec<Action>,
 ) {
-    let program = view.shown();
+    let program = view.displayed_program();
     view.program = Some(program);
     bar::bar_ui(ui, theme, encoder, program, view, actions);
     import::import_pasted_table(ui, encoder, program, actions);
@@ -48,7 +48,7 @@ pub(super) fn page_ui(
         import::card_ui(ui, theme, encoder, table, actions);
     }
     ui.add_space(theme.space.between);
-    let Some(chart) = Chart::of(&encoder.staged, program) else {
+    let Some(chart) = Chart::from_edits(&encoder.staged, program) else {
         unread_program_ui(ui, theme, encoder, program, actions);
         return;
     };
@@ -68,22 +68,22 @@ pub(super) fn page_ui(
 fn unread_program_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;
-        if encoder.staged.wanted().is_none() {
-            empty_placeholder(ui, theme, &say(theme, "ib_set.nothing"), None);
+        if encoder.staged.edited_values().is_none() {
+            empty_placeholder(ui, theme, &translate(theme, "ib_set.nothing"), None);
             return;
         }
-        empty_placeholder(ui, theme, &say(theme, "ib_cams.unread"), None);
+        empty_placeholder(ui, theme, &translate(theme, "ib_cams.unread"), None);
         let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
         paragraph(ui, RichText::new(theme.format_text(&cost)).color(theme.palette.warn));
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
-            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_one")).clicked() {
+            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "ib_cams.read_one")).clicked() {
                 actions.push(Action::device(id, Interbus::ReadPrograms(vec![program])));
             }
-            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_all")).clicked() {
+            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "ib_cams.read_all")).clicked() {
                 actions.push(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
             }
         });
-        paragraph(ui, theme.caption(say(theme, "ib_cams.read_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_cams.read_words")));
     });
 }

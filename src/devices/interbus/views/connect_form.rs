@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::app::connect::ConnectDialog as Dialog;
 use crate::devices::interbus::state::{InterbusForm, InterbusLinkKind};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{dropdown, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
@@ -34,12 +34,12 @@ impl TypedConnectForm for InterbusConnectForm {
         ];
         segmented_control(ui, theme, &mut form.kind, ways);
         if form.kind == InterbusLinkKind::Gateway {
-            paragraph(ui, theme.caption(say(theme, "connect.gateway_words")));
+            paragraph(ui, theme.caption(translate(theme, "connect.gateway_words")));
         }
         ui.add_space(theme.space.between);
         match form.kind {
             InterbusLinkKind::Virtual => {
-                entries_ui(ui, theme, say, InterbusForm::virtual_device_entries(), &mut form.typed)
+                entries_ui(ui, theme, translate, InterbusForm::virtual_device_entries(), &mut form.typed)
             }
             InterbusLinkKind::Gateway => {
                 host_and_port_ui(
@@ -61,21 +61,21 @@ impl TypedConnectForm for InterbusConnectForm {
                 register_addresses_ui(ui, theme, form);
             }
             let (_, rest) = InterbusForm::link_entries();
-            entries_ui(ui, theme, say, rest, &mut form.typed);
+            entries_ui(ui, theme, translate, rest, &mut form.typed);
         }
     }
 }
 
 fn register_addresses_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::link_entries();
-    entries_ui(ui, theme, say, registers, &mut form.typed);
+    entries_ui(ui, theme, translate, registers, &mut form.typed);
     order_ui(ui, theme, form);
 }
 
 fn order_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
-    let word = say(theme, "connect.word_order");
+    let word = translate(theme, "connect.word_order");
     entry(ui, theme, &word, |ui| {
         let orders = [(false, "connect.high_first"), (true, "connect.low_first")];
-        dropdown(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(theme, id))));
+        dropdown(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, translate(theme, id))));
     });
 }

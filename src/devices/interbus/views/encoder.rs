@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, StartupMode};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, word_meaning, words};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
     card, card_with_trailing, dropdown, empty_placeholder, enabled_button, encoder_page, entry, folding_card,
@@ -51,29 +51,39 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         let serial = theme.translate("encoder_card.serial");
         if let Some(survey) = &encoder.survey {
             let identity = &survey.identity;
-            ui.label(theme.value(say(theme, "ib_card.class")));
+            ui.label(theme.value(translate(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&identity.serial_number));
-            row(ui, theme, &say(theme, "ib_card.version"), theme.monospace(identity.software_version.to_string()));
-            row(ui, theme, &say(theme, "ib_card.flags"), theme.format_text(&words::flags(identity.flags)));
-            row(ui, theme, &say(theme, "ib_card.mode"), theme.format_text(&explain::startup_mode_text(identity.mode)));
-            let range = words::range(identity.steps, identity.revolutions);
-            row(ui, theme, &say(theme, "ib_card.range"), theme.format_text(&range));
+            row(
+                ui,
+                theme,
+                &translate(theme, "ib_card.version"),
+                theme.monospace(identity.software_version.to_string()),
+            );
+            row(ui, theme, &translate(theme, "ib_card.flags"), theme.format_text(&words::flags_text(identity.flags)));
+            row(
+                ui,
+                theme,
+                &translate(theme, "ib_card.mode"),
+                theme.format_text(&explain::startup_mode_text(identity.mode)),
+            );
+            let range = words::range_text(identity.steps, identity.revolutions);
+            row(ui, theme, &translate(theme, "ib_card.range"), theme.format_text(&range));
             let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
-            row(ui, theme, &say(theme, "ib_card.time"), theme.format_text(&time));
-            let celsius = words::celsius(survey.temperature_tenths);
-            row(ui, theme, &say(theme, "ib_card.temperature"), theme.format_text(&celsius));
+            row(ui, theme, &translate(theme, "ib_card.time"), theme.format_text(&time));
+            let celsius = words::temperature_text(survey.temperature_tenths);
+            row(ui, theme, &translate(theme, "ib_card.temperature"), theme.format_text(&celsius));
         } else if let Some(profile) = encoder.profile() {
-            ui.label(theme.value(say(theme, "ib_card.class")));
+            ui.label(theme.value(translate(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;
-            let range = words::range(parameters.steps, parameters.revolutions);
-            row(ui, theme, &say(theme, "ib_card.range"), theme.format_text(&range));
-            let programs = profile.image.known().count();
-            row(ui, theme, &say(theme, "ib_card.programs"), programs.to_string());
+            let range = words::range_text(parameters.steps, parameters.revolutions);
+            row(ui, theme, &translate(theme, "ib_card.range"), theme.format_text(&range));
+            let programs = profile.image.known_programs().count();
+            row(ui, theme, &translate(theme, "ib_card.programs"), programs.to_string());
         } else {
-            empty_placeholder(ui, theme, &say(theme, "ib_card.nothing"), None);
+            empty_placeholder(ui, theme, &translate(theme, "ib_card.nothing"), None);
         }
     });
 }
@@ -94,31 +104,31 @@ fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {
-                empty_placeholder(ui, theme, &say(theme, "ib_sends.nothing"), None);
+                empty_placeholder(ui, theme, &translate(theme, "ib_sends.nothing"), None);
             }
             Some(reading) => {
-                row(ui, theme, &say(theme, "ib_sends.word"), theme.monospace(format!("0x{:08X}", reading.word)));
-                let meaning = word_meaning::word_text(reading.word, &encoder.known());
-                row(ui, theme, &say(theme, "ib_sends.says"), theme.format_text(&meaning));
+                row(ui, theme, &translate(theme, "ib_sends.word"), theme.monospace(format!("0x{:08X}", reading.word)));
+                let meaning = word_meaning::word_text(reading.word, &encoder.word_context());
+                row(ui, theme, &translate(theme, "ib_sends.says"), theme.format_text(&meaning));
                 if let Some(warning) = word_meaning::unexpected_bits(reading.word) {
                     paragraph(ui, RichText::new(theme.format_text(&warning)).color(theme.palette.warn));
-                    paragraph(ui, theme.caption(say(theme, "ib_sends.swapped")));
+                    paragraph(ui, theme.caption(translate(theme, "ib_sends.swapped")));
                 }
             }
         }
         ui.add_space(theme.space.inside);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         if encoder.record.last().is_some_and(|own| matches!(own.reply(), Reply::Echo { .. } | Reply::Busy { .. })) {
-            paragraph(ui, RichText::new(say(theme, "ib_sends.left")).color(theme.palette.warn));
+            paragraph(ui, RichText::new(translate(theme, "ib_sends.left")).color(theme.palette.warn));
         }
         if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &theme.translate("lead_back_card.button")).clicked() {
             actions.push(Action::device(encoder.session.id, Interbus::LeadBack));
         }
         let Some(own) = encoder.mode() else {
-            paragraph(ui, theme.caption(say(theme, "ib_sends.mode_unknown")));
+            paragraph(ui, theme.caption(translate(theme, "ib_sends.mode_unknown")));
             return;
         };
-        let word = say(theme, "ib_sends.mode");
+        let word = translate(theme, "ib_sends.mode");
         let mut wanted = own;
         let programs = ProgramNumber::all().map(StartupMode::Cams);
         let usual = if own == StartupMode::K2 { StartupMode::K2 } else { StartupMode::K3 };
@@ -136,7 +146,7 @@ fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
         if wanted != own {
             actions.push(Action::device(encoder.session.id, Interbus::Select(wanted)));
         }
-        paragraph(ui, theme.caption(say(theme, "ib_sends.mode_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_sends.mode_words")));
     });
 }
 
@@ -146,7 +156,7 @@ const WIRING: [&str; 5] =
 fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, theme.label(say(theme, note)));
+            paragraph(ui, theme.label(translate(theme, note)));
         }
     });
 }

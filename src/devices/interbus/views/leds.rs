@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::Action;
 use crate::devices::interbus::protocol::{Class, Interface, LedState, Leds, id_code};
 use crate::devices::interbus::state::{TEXTS, words};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::controls::{folding_card, name, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
@@ -19,7 +19,7 @@ impl Default for LedsUiState {
     }
 }
 
-const LAMP: f32 = 92.0;
+const LED_WIDTH: f32 = 92.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     let none: Vec<Action> = Vec::new();
@@ -28,13 +28,13 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
         theme,
         (view, none),
         |ui, (view, _)| output_indicators_ui(ui, theme, view),
-        |ui, _| codes(ui, theme),
+        |ui, _| codes_ui(ui, theme),
     );
 }
 
 fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     folding_card(ui, theme, TEXTS.text("ib_leds.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ib_leds.words")));
+        paragraph(ui, theme.label(translate(theme, "ib_leds.words")));
         ui.horizontal_wrapped(|ui| {
             let LedsUiState { leds } = view;
             for (word, lamp, blinks) in [
@@ -48,10 +48,10 @@ fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
         });
         ui.add_space(theme.space.inside);
         let Some(own) = view.leds.row() else {
-            paragraph(ui, RichText::new(say(theme, "ib_leds.unknown")).color(theme.palette.warn));
+            paragraph(ui, RichText::new(translate(theme, "ib_leds.unknown")).color(theme.palette.warn));
             return;
         };
-        let (meaning, remedy) = words::lamps(own);
+        let (meaning, remedy) = words::led_texts(own);
         ui.label(theme.value(theme.format_text(&meaning)));
         paragraph(ui, theme.format_text(&remedy));
     });
@@ -65,9 +65,10 @@ fn led_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: b
         LedState::On => ("ib_leds.on", palette.good),
         LedState::Blinking => ("ib_leds.blinking", palette.warn),
     };
-    let state = say(theme, id);
+    let state = translate(theme, id);
     let icon = RichText::new(if *lamp == LedState::Off { icons::STOP } else { icons::LIGHTNING }).color(ink);
-    let button = egui::Button::new((icon, RichText::new(format!("{word}  {state}")))).min_size([LAMP, 28.0].into());
+    let button =
+        egui::Button::new((icon, RichText::new(format!("{word}  {state}")))).min_size([LED_WIDTH, 28.0].into());
     if name(ui.add(button), true, &format!("{word}: {state}")).clicked() {
         *lamp = match lamp {
             LedState::Off => LedState::On,
@@ -77,9 +78,9 @@ fn led_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: b
     }
 }
 
-fn codes(ui: &mut Ui, theme: &Theme) {
+fn codes_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, TEXTS.text("ib_id.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ib_id.words")));
+        paragraph(ui, theme.label(translate(theme, "ib_id.words")));
         for class in Class::ALL {
             let codes: Vec<String> = Interface::ALL
                 .into_iter()

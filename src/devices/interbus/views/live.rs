@@ -6,14 +6,14 @@ use crate::app::Rgb;
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::StartupMode;
 use crate::devices::interbus::state::{Encoder, TEXTS};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{connection_dot, row};
 use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui};
 
 /// Width of eight output indicators side by side.
-const LAMPS: f32 = 280.0;
-const LAMP: f32 = 16.0;
+const INDICATORS_WIDTH: f32 = 280.0;
+const INDICATOR_SIZE: f32 = 16.0;
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let last = encoder.record.last();
@@ -35,7 +35,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     // Unknown values have their rows already, so that the buttons below stay where they are.
     let unknown = || "–".to_owned();
     let word = last.map_or_else(unknown, |reading| format!("0x{:08X}", reading.word));
-    let place = last.and_then(WordReading::place);
+    let place = last.and_then(WordReading::turn_position);
     let is_position = last.is_none_or(|reading| reading.rpm().is_none() && reading.cams().is_none());
     if ui.available_height() < LOW_PANEL_HEIGHT {
         // A low window leaves only one line for the words, since the plot needs the space.
@@ -50,7 +50,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             let rows = [
                 (theme.translate("live.turns"), place.as_ref().map(|place| place.turns.to_string())),
                 (theme.translate("live.step"), place.as_ref().map(|place| place.steps.to_string())),
-                (say(theme, "ib_live.angle"), place.as_ref().map(|place| angle(place.degrees))),
+                (translate(theme, "ib_live.angle"), place.as_ref().map(|place| angle(place.degrees))),
             ];
             for (label, value) in rows {
                 row(ui, theme, &label, theme.monospace(value.unwrap_or_else(unknown)));
@@ -64,10 +64,10 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     {
         let text = TEXTS.text("ib_startup.program").with("program", program.get());
         ui.label(theme.caption(theme.format_text(&text)));
-        let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
+        let beside = if ui.available_width() < INDICATORS_WIDTH { 4 } else { 8 };
         ui.scope(|ui| {
             // The indicators are not interactive, so they may be lower than a button.
-            ui.spacing_mut().interact_size.y = LAMP;
+            ui.spacing_mut().interact_size.y = INDICATOR_SIZE;
             for first in (0..8).step_by(beside) {
                 ui.horizontal(|ui| {
                     for cam in first..first + beside {

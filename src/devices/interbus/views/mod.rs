@@ -107,7 +107,7 @@ impl TypedDeviceView for InterbusView {
                 .show_separator_line(false)
                 .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Values, actions));
         }
-        let shown = (page == Page::Cams).then(|| view.cams.shown());
+        let shown = (page == Page::Cams).then(|| view.cams.displayed_program());
         marks::marks_ui(ui, theme, encoder, shown);
         page::scrollable_page(ui, theme, (encoder.session.id, page.index()), |ui| {
             if page != Page::Backups {
@@ -134,6 +134,6 @@ impl TypedDeviceView for InterbusView {
     }
 }
 
-pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

@@ -4,12 +4,12 @@
 use std::collections::BTreeMap;
 
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
-use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear};
+use crate::devices::interbus::jobs::{Change, WEAR_CONFIRMATION, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
@@ -28,8 +28,8 @@ pub(super) struct EncoderParametersUiState {
     preset_problem: Option<Text>,
 }
 
-const NUMBER: f32 = 112.0;
-const WORDS: f32 = 240.0;
+const ENTRY_WIDTH: f32 = 112.0;
+const TEXT_WIDTH: f32 = 240.0;
 
 pub(super) fn page_ui(
     ui: &mut Ui,
@@ -69,8 +69,8 @@ fn table_ui(
     actions: &mut Vec<Action>,
 ) {
     card(ui, theme, TEXTS.text("ib_set.title"), |ui| {
-        let (Some(device), Some(wanted)) = (encoder.staged.device(), encoder.staged.wanted()) else {
-            empty_placeholder(ui, theme, &say(theme, "ib_set.nothing"), None);
+        let (Some(device), Some(wanted)) = (encoder.staged.device(), encoder.staged.edited_values()) else {
+            empty_placeholder(ui, theme, &translate(theme, "ib_set.nothing"), None);
             return;
         };
         let id = encoder.session.id;
@@ -90,7 +90,7 @@ fn table_ui(
                     }
                 } else {
                     let draft = view.drafts.entry(parameter.name()).or_default();
-                    committed_entry(ui, draft, &now.to_string(), NUMBER, &word, |text| {
+                    committed_entry(ui, draft, &now.to_string(), ENTRY_WIDTH, &word, |text| {
                         let edit = forms::parameter(parameter, text, new)?;
                         actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
                         Ok(())
@@ -107,7 +107,7 @@ fn table_ui(
                 } else if let Ok(gear) = new.gear()
                     && parameter != Parameter::Direction
                 {
-                    let range = parameter.range(gear);
+                    let range = parameter.valid_range(gear);
                     let range = theme.caption(format!("{} … {}", range.start(), range.end()));
                     ui.add(egui::Label::new(range).truncate());
                 }
@@ -116,14 +116,14 @@ fn table_ui(
         ui.add_space(theme.space.inside);
         match new.gear() {
             Ok(gear) => {
-                let per_turn = f64::from(gear.steps()) / f64::from(gear.turns());
+                let per_turn = f64::from(gear.total_steps()) / f64::from(gear.turns());
                 let text = TEXTS
                     .text("ib_set.gear")
-                    .with_number("steps", per_turn, if gear.steps() % gear.turns() == 0 { 0 } else { 4 })
+                    .with_number("steps", per_turn, if gear.total_steps() % gear.turns() == 0 { 0 } else { 4 })
                     .with_number("degrees", 360.0 / per_turn, 5);
                 paragraph(ui, theme.label(theme.format_text(&text)));
-                if gear.steps() % gear.turns() != 0 {
-                    paragraph(ui, theme.caption(say(theme, "ib_set.uneven")));
+                if gear.total_steps() % gear.turns() != 0 {
+                    paragraph(ui, theme.caption(translate(theme, "ib_set.uneven")));
                 }
             }
             Err(error) => {
@@ -131,9 +131,9 @@ fn table_ui(
             }
         }
         if encoder.identity().is_some_and(|own| own.flags.steps_minus_one()) {
-            paragraph(ui, theme.caption(say(theme, "ib_set.steps_minus_one")));
+            paragraph(ui, theme.caption(translate(theme, "ib_set.steps_minus_one")));
         }
-        paragraph(ui, theme.caption(say(theme, "ib_set.mounting")));
+        paragraph(ui, theme.caption(translate(theme, "ib_set.mounting")));
     });
 }
 
@@ -145,15 +145,15 @@ fn preset_ui(
     actions: &mut Vec<Action>,
 ) {
     card(ui, theme, TEXTS.text("ib_preset.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ib_preset.words")));
+        paragraph(ui, theme.label(translate(theme, "ib_preset.words")));
         let id = encoder.session.id;
         let Some(parameters) = encoder.staged.device().map(|image| image.parameters) else { return };
         let ready = encoder.session.is_ready() && encoder.is_stopped();
-        let word = say(theme, "ib_preset.value");
+        let word = translate(theme, "ib_preset.value");
         entry(ui, theme, &word, |ui| {
             let hint = parameters.preset.to_string();
-            crate::ui::controls::text_entry(ui, &mut view.preset, NUMBER, &word, &hint);
-            if enabled_button(ui, ready, icons::TARGET, &say(theme, "ib_preset.set")).clicked() {
+            crate::ui::controls::text_entry(ui, &mut view.preset, ENTRY_WIDTH, &word, &hint);
+            if enabled_button(ui, ready, icons::TARGET, &translate(theme, "ib_preset.set")).clicked() {
                 match forms::preset(&view.preset, &parameters) {
                     Ok(value) => {
                         view.preset_problem = None;
@@ -165,34 +165,41 @@ fn preset_ui(
         });
         show_error_below(ui, theme, view.preset_problem.as_ref());
         if let Some(position) = encoder.position() {
-            row(ui, theme, &say(theme, "ib_preset.now"), theme.monospace(position.to_string()));
+            row(ui, theme, &translate(theme, "ib_preset.now"), theme.monospace(position.to_string()));
         }
         ui.add_space(theme.space.inside);
-        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ib_preset.default")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "ib_preset.default")).clicked() {
             actions.push(Action::device(id, Interbus::Plan(Box::new(Change::Default))));
         }
-        paragraph(ui, theme.caption(say(theme, "ib_preset.default_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_preset.default_words")));
     });
 }
 
 fn eeprom_wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
-        let Some(stores) = encoder.stores() else {
-            paragraph(ui, theme.label(say(theme, "ib_wear.unknown")));
+        let Some(stores) = encoder.store_count() else {
+            paragraph(ui, theme.label(translate(theme, "ib_wear.unknown")));
             return;
         };
         let palette = theme.palette;
-        let ink = match Wear::of(stores) {
-            Some(Wear::Worn(_) | Wear::Unknown) => palette.bad,
-            Some(Wear::Known(_) | Wear::Ask(_)) => palette.warn,
+        let ink = match WearAfterPlan::from_stores(stores) {
+            Some(WearAfterPlan::Worn(_) | WearAfterPlan::Unknown) => palette.bad,
+            Some(WearAfterPlan::Known(_) | WearAfterPlan::Ask(_)) => palette.warn,
             None => palette.accent,
         };
-        let text = TEXTS.text("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
+        let text = TEXTS
+            .text("ib_wear.seen")
+            .with("stores", stores)
+            .with("nominal", WEAR_CONFIRMATION)
+            .with("last", WEAR_LAST);
         paragraph(ui, theme.format_text(&text));
         let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
-        let text =
-            TEXTS.text("ib_wear.words").with("warning", WEAR_WARNING).with("ask", WEAR_ASK).with("limit", WEAR_LIMIT);
+        let text = TEXTS
+            .text("ib_wear.words")
+            .with("warning", WEAR_WARNING)
+            .with("ask", WEAR_CONFIRMATION)
+            .with("limit", WEAR_LIMIT);
         paragraph(ui, theme.caption(theme.format_text(&text)));
     });
 }
@@ -200,17 +207,17 @@ fn eeprom_wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
 fn handshake_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {
-            paragraph(ui, theme.label(say(theme, "ib_handshake.nothing")));
+            paragraph(ui, theme.label(translate(theme, "ib_handshake.nothing")));
             return;
         }
-        let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(WORDS).stick_to_bottom(true);
+        let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(TEXT_WIDTH).stick_to_bottom(true);
         list.auto_shrink([false, true]).show(ui, |ui| {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
                     ui.label(theme.monospace(format!("0x{:08X}", step.out)));
                     ui.label(theme.label(theme.format_text(&word_meaning::command_text(step.command))));
                     ui.label(theme.monospace(format!("0x{:08X}", step.input)));
-                    let known = word_meaning::WordContext::of(step.command, encoder.shift());
+                    let known = word_meaning::WordContext::for_command(step.command, encoder.shift());
                     ui.add(
                         egui::Label::new(theme.label(theme.format_text(&word_meaning::word_text(step.input, &known))))
                             .truncate(),

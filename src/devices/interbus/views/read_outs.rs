@@ -5,14 +5,14 @@ use egui::Ui;
 use crate::app::Action;
 use crate::devices::interbus::protocol::{READ_OUTS, ReadOutNumber};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, words};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, folding_card, icon_button, paragraph};
 use crate::ui::{Theme, icons};
 
 /// Minimum and maximum width of a column of names.
 const NAMES: [f32; 2] = [120.0, 168.0];
 /// Width of a cell with a chip register.
-const REGISTER: f32 = 132.0;
+const REGISTER_WIDTH: f32 = 132.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     if encoder.profile().is_some() {
@@ -21,7 +21,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let id = encoder.session.id;
     card(ui, theme, TEXTS.text("ib_values.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ib_values.words")));
+        paragraph(ui, theme.label(translate(theme, "ib_values.words")));
         let wide = ui.available_width() > 640.0;
         let columns = if wide { 2 } else { 1 };
         let [least, most] = NAMES;
@@ -47,14 +47,14 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
     });
     theme.add_gap(ui);
     folding_card(ui, theme, TEXTS.text("ib_values.chip"), |ui| {
-        paragraph(ui, theme.caption(say(theme, "ib_values.chip_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_values.chip_words")));
         ui.horizontal_wrapped(|ui| {
             for what in (0..16).filter_map(ReadOutNumber::chip_register) {
                 let name = theme.format_text(&explain::read_out(what));
                 let number = what.register().unwrap_or_default();
                 let value = encoder.read_out(what).map_or_else(|| "–".to_owned(), |own| format!("0x{:X}", own.get()));
                 let button = egui::Button::new(theme.monospace(format!("{number:X}  {value}")))
-                    .min_size([REGISTER, 28.0].into());
+                    .min_size([REGISTER_WIDTH, 28.0].into());
                 if crate::ui::controls::name(ui.add_enabled(ready, button), ready, &name).clicked() {
                     actions.push(Action::device(id, Interbus::ReadOut(what)));
                 }

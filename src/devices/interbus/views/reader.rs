@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::devices::interbus::protocol::{EncoderMode, READ_OUTS, WindowShift};
 use crate::devices::interbus::state::reader::{Reading, WordSource};
 use crate::devices::interbus::state::{TEXTS, explain, words};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, dropdown, entry, mono_entry, name, paragraph};
 use crate::ui::{Theme, icons};
 
@@ -15,15 +15,15 @@ pub(super) struct WordReaderUiState {
     reading: Reading,
 }
 
-const WORD: f32 = 92.0;
+const WORD_WIDTH: f32 = 92.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) {
     card(ui, theme, TEXTS.text("ib_reader.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ib_reader.words")));
+        paragraph(ui, theme.label(translate(theme, "ib_reader.words")));
         let WordReaderUiState { text, reading } = view;
         ui.horizontal_wrapped(|ui| {
             for way in WordSource::ALL {
-                let word = say(theme, way.word());
+                let word = translate(theme, way.keyword());
                 let response = ui.add(egui::Button::selectable(reading.source == way, &word));
                 if name(response, true, &word).clicked() {
                     reading.source = way;
@@ -31,7 +31,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
             }
         });
         if reading.source.has_mode() {
-            let word = say(theme, "ib_reader.mode");
+            let word = translate(theme, "ib_reader.mode");
             entry(ui, theme, &word, |ui| {
                 dropdown(
                     ui,
@@ -42,14 +42,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
             });
         }
         if reading.source == WordSource::In && reading.mode == EncoderMode::Cam {
-            let word = say(theme, "ib_cams.shift");
+            let word = translate(theme, "ib_cams.shift");
             entry(ui, theme, &word, |ui| {
                 let shifts = (0..=25).filter_map(WindowShift::new);
                 dropdown(ui, &word, &mut reading.shift, shifts.map(|own| (own, own.get().to_string())));
             });
         }
         if reading.source == WordSource::In && reading.mode == EncoderMode::ReadOut {
-            let word = say(theme, "ib_reader.read_out");
+            let word = translate(theme, "ib_reader.read_out");
             entry(ui, theme, &word, |ui| {
                 let all = READ_OUTS
                     .iter()
@@ -58,17 +58,17 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
                     ui,
                     &word,
                     &mut reading.read_out,
-                    [(None, say(theme, "ib_reader.any"))].into_iter().chain(all),
+                    [(None, translate(theme, "ib_reader.any"))].into_iter().chain(all),
                 );
             });
         }
-        let word = say(theme, "ib_reader.entry");
+        let word = translate(theme, "ib_reader.entry");
         let width = (ui.available_width() - 18.0).max(0.0);
-        mono_entry(ui, theme, text, width, &word, &say(theme, "ib_reader.hint"));
-        for line in reading.lines(text) {
+        mono_entry(ui, theme, text, width, &word, &translate(theme, "ib_reader.hint"));
+        for line in reading.decode_words(text) {
             ui.horizontal_top(|ui| {
                 let own = ui.label(theme.monospace(&line.word));
-                ui.add_space((WORD - own.rect.width()).max(0.0));
+                ui.add_space((WORD_WIDTH - own.rect.width()).max(0.0));
                 match &line.meaning {
                     Ok(meaning) => {
                         ui.vertical(|ui| {

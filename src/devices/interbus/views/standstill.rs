@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Theme, icons};
 
@@ -19,18 +19,18 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mu
         ui.horizontal_wrapped(|ui| {
             let ink = if stopped { theme.palette.good } else { theme.palette.warn };
             ui.label(RichText::new(if stopped { icons::CHECK_CIRCLE } else { icons::WARNING }).color(ink));
-            if ui.checkbox(&mut stopped, say(theme, "ib_stop.stands")).changed() {
+            if ui.checkbox(&mut stopped, translate(theme, "ib_stop.stands")).changed() {
                 actions.push(Action::device(id, Interbus::Stopped(stopped)));
             }
             if encoder.survey.is_none() {
                 let ready = encoder.is_stopped() && encoder.session.is_ready();
-                let word = say(theme, "ib_stop.read");
+                let word = translate(theme, "ib_stop.read");
                 if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &word).clicked() {
                     actions.push(Action::Command(id, DeviceCommand::Read));
                 }
             }
         });
-        paragraph(ui, theme.caption(say(theme, "ib_stop.words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_stop.words")));
     });
     theme.add_gap(ui);
 }

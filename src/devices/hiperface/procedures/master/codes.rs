@@ -6,9 +6,9 @@ use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
 /// Maximum number of codes in the queue of an encoder, plus one reply that shows its end.
-const MOST_CODES: usize = 5;
+const MAX_CODES: usize = 5;
 /// Number of replies without a new code after which reading the queue is abandoned.
-const MOST_REPEATED: u32 = 5;
+const MAX_REPEATED: u32 = 5;
 /// Length of a reply to 50h in bytes: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 
@@ -23,14 +23,14 @@ impl Master<'_> {
     /// codes that may have been lost.
     pub(in super::super) fn collect_codes(&mut self) -> Result<(), Error> {
         let (mut seen, mut repeated) = (Vec::new(), 0);
-        while seen.len() < MOST_CODES && repeated < MOST_REPEATED {
+        while seen.len() < MAX_CODES && repeated < MAX_REPEATED {
             let before = seen.len();
             if !self.next_codes(&mut seen)? {
                 break;
             }
             repeated += u32::from(seen.len() == before);
         }
-        if repeated == MOST_REPEATED {
+        if repeated == MAX_REPEATED {
             // A late reply does not repeat this often. The encoder announces the same code again as soon as it is read.
             self.station.unanswered_codes = self.station.unanswered_codes.saturating_sub(repeated);
         }
@@ -46,7 +46,7 @@ impl Master<'_> {
             tries += 1;
             self.line.record_late_bytes();
             let sent = self.station.line.quality.requests;
-            let attempt = self.attempt(&Request::ReadStatus);
+            let attempt = self.exchange_once(&Request::ReadStatus);
             // After a cancellation, or on a line that is never silent, the request was not sent.
             if self.station.line.quality.requests > sent {
                 self.station.unanswered_codes += 1;
@@ -55,7 +55,7 @@ impl Master<'_> {
                 Ok(answered) => {
                     // After a repetition, the replies to earlier attempts may still arrive.
                     let ended = if tries > 1 { self.receive_late_bytes(tries) } else { Ok(()) };
-                    (Some(codes(answered.answer)), ended)
+                    (Some(codes_in(answered.answer)), ended)
                 }
                 Err(trouble) => (None, self.prepare_retry(&Request::ReadStatus, tries, trouble)),
             };
@@ -114,7 +114,7 @@ impl Master<'_> {
     fn parse_status_reply<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;
-            Some((codes(answer), behind))
+            Some((codes_in(answer), behind))
         });
         let ends = |behind: &[u8]| behind.first().is_none_or(|byte| bytes.first() == Some(byte));
         let (mut whole, mut other): (Vec<_>, Vec<_>) = replies.partition(|(_, behind)| ends(behind));
@@ -123,7 +123,7 @@ impl Master<'_> {
     }
 }
 
-fn codes(answer: Answer) -> Codes {
+fn codes_in(answer: Answer) -> Codes {
     match answer {
         Answer::Reply { reply: Reply::Status(codes), pending } | Answer::Rejected { codes, pending } => {
             (codes, pending)

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::Master;
 use crate::bits::MaskedBytes;
-use crate::devices::hiperface::procedures::error::Damage;
+use crate::devices::hiperface::procedures::error::ReplyDamage;
 use crate::devices::hiperface::procedures::{Echo, Error};
 use crate::devices::hiperface::protocol::{Answer, Command, MaskableFrame, Request, StatusCode};
 use crate::link::LinkError;
@@ -23,7 +23,7 @@ pub(in super::super) enum ExchangeFailure {
         /// Whether the sent bytes were received as an echo.
         echo_heard: bool,
     },
-    Damage(Damage),
+    Damage(ReplyDamage),
 }
 
 pub(in super::super) struct ReceivedAnswer {
@@ -38,37 +38,39 @@ struct ReceivedBytes {
     /// Time at which the first byte of the reply was complete.
     first_at: Moment,
     echo_heard: bool,
-    damage: Option<Damage>,
+    damage: Option<ReplyDamage>,
 }
 
 impl Master<'_> {
     /// Performs one exchange. The outer error is final. The inner error permits another attempt.
-    pub(in super::super) fn attempt(
+    pub(in super::super) fn exchange_once(
         &mut self,
         request: &Request,
     ) -> Result<Result<ReceivedAnswer, ExchangeFailure>, Error> {
         if request.command() != Command::ReadTypeLabel {
             self.detect_echo()?;
         }
-        self.begin()?;
+        self.wait_for_line()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
         self.station.line.mark_sent(sent_at);
         self.send(&frame, sent_at)?;
-        let heard = self.listen(request, &frame, sent_at)?;
+        let heard = self.receive_reply(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
-        let judgement = self.judge(request, heard);
+        let judgement = self.match_reply(request, heard);
         // A damaged reply to a frame with an access code may be its echo, so none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::fully_masked(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
         // Damaged bytes may contain a whole reply. Late or extra bytes were kept while listening, and an echo is not a
         // reply.
-        if let Err(ExchangeFailure::Damage(Damage::Reply(_))) = judgement {
+        if let Err(ExchangeFailure::Damage(ReplyDamage::Reply(_))) = judgement {
             self.line.skip_bytes(&reply);
         }
         Ok(judgement.map_err(|trouble| match trouble {
-            ExchangeFailure::Damage(Damage::Reply(_)) if secret => ExchangeFailure::Damage(Damage::Unreadable),
+            ExchangeFailure::Damage(ReplyDamage::Reply(_)) if secret => {
+                ExchangeFailure::Damage(ReplyDamage::Unreadable)
+            }
             trouble => trouble,
         }))
     }
@@ -76,20 +78,20 @@ impl Master<'_> {
     /// Determines whether the line has an echo, unless this is already known.
     pub(super) fn detect_echo(&mut self) -> Result<(), Error> {
         if self.station.line.echo == Echo::Unknown {
-            self.ask(&Request::ReadTypeLabel)?;
+            self.request(&Request::ReadTypeLabel)?;
         }
         Ok(())
     }
 
     /// Checks for cancellation, then waits for the dead time and for silence on the line.
-    pub(super) fn begin(&mut self) -> Result<(), Error> {
+    pub(super) fn wait_for_line(&mut self) -> Result<(), Error> {
         let quiet = self.silence_duration();
         Ok(self.line.begin_exchange(&mut self.station.line, quiet)?)
     }
 
     /// Sends a frame, and traces it with its access codes masked.
     pub(super) fn send(&mut self, frame: &MaskableFrame, sent_at: Moment) -> Result<(), LinkError> {
-        self.line.send(frame.bytes(), frame.masked(), sent_at)
+        self.line.send(frame.bytes(), frame.to_masked(), sent_at)
     }
 
     /// Returns the dead time tT. It must exceed the time-out, so it is one bit longer.
@@ -102,7 +104,12 @@ impl Master<'_> {
         self.dead_time() + self.station.line.margin
     }
 
-    fn listen(&mut self, request: &Request, frame: &MaskableFrame, sent_at: Moment) -> Result<ReceivedBytes, Error> {
+    fn receive_reply(
+        &mut self,
+        request: &Request,
+        frame: &MaskableFrame,
+        sent_at: Moment,
+    ) -> Result<ReceivedBytes, Error> {
         let timing = self.station.timing();
         let deadline = sent_at + timing.worst_case(request) + self.station.line.margin;
         let gap = timing.timeout + self.station.line.margin;
@@ -130,11 +137,11 @@ impl Master<'_> {
         let more = self.receive_during_dead_time(&mut line, frame)?;
         let intrusion = match (begun, more) {
             (_, false) => None,
-            (true, true) => Some(Damage::Trailing),
+            (true, true) => Some(ReplyDamage::Trailing),
             (false, true) => {
                 let quiet = self.silence_duration();
                 self.line.discard_late_answers(&mut self.station.line, quiet)?;
-                Some(Damage::Late)
+                Some(ReplyDamage::Late)
             }
         };
         Ok(self.parse_received_line(&line, request, frame, first_at, intrusion))
@@ -166,7 +173,7 @@ impl Master<'_> {
         request: &Request,
         frame: &MaskableFrame,
         first_at: Moment,
-        intrusion: Option<Damage>,
+        intrusion: Option<ReplyDamage>,
     ) -> ReceivedBytes {
         let sent = frame.bytes();
         let echo_heard = line.starts_with(sent);
@@ -178,11 +185,11 @@ impl Master<'_> {
             Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
             Echo::Unknown => false,
         };
-        let damage = if wrong_echo { Some(Damage::Echo) } else { intrusion };
+        let damage = if wrong_echo { Some(ReplyDamage::Echo) } else { intrusion };
         ReceivedBytes { reply, first_at, echo_heard, damage }
     }
 
-    fn judge(&mut self, request: &Request, heard: ReceivedBytes) -> Result<ReceivedAnswer, ExchangeFailure> {
+    fn match_reply(&mut self, request: &Request, heard: ReceivedBytes) -> Result<ReceivedAnswer, ExchangeFailure> {
         if let Some(damage) = heard.damage {
             return Err(ExchangeFailure::Damage(damage));
         }
@@ -191,12 +198,12 @@ impl Master<'_> {
         }
         let answer = request
             .parse_reply(self.station.address, &heard.reply)
-            .map_err(|e| ExchangeFailure::Damage(Damage::Reply(e)))?;
+            .map_err(|e| ExchangeFailure::Damage(ReplyDamage::Reply(e)))?;
         if let Answer::Rejected { codes, .. } = &answer
             && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
         {
             // The request was correct when it was sent, so the line damaged it.
-            return Err(ExchangeFailure::Damage(Damage::AtEncoder(*code)));
+            return Err(ExchangeFailure::Damage(ReplyDamage::AtEncoder(*code)));
         }
         self.station.line.mark_replied();
         self.station.line.record_answer_start(heard.first_at);

@@ -69,7 +69,7 @@ impl Planner<'_> {
             let old = now.and_then(|now| now.bytes.as_deref()).unwrap_or_default();
             let new = target.bytes.as_deref().unwrap_or_default();
             for range in differing_ranges(old, new).into_iter().chain(std::iter::once(old.len()..new.len())) {
-                self.allowed(target.number, range);
+                self.writable_parts(target.number, range);
             }
         }
     }
@@ -107,10 +107,10 @@ impl Planner<'_> {
 
     pub(super) fn check_memory(&self, recreated: Option<u8>) -> Result<(), PlanError> {
         let blocks =
-            |fields: &[FieldImage]| fields.iter().map(|f| usize::from(f.status.size().blocks())).sum::<usize>();
+            |fields: &[FieldImage]| fields.iter().map(|f| usize::from(f.status.size().block_count())).sum::<usize>();
         let mut after: Vec<FieldImage> =
             self.device.fields.iter().filter(|now| self.target_field(now.number).is_none()).cloned().collect();
-        after.extend(self.targets(recreated));
+        after.extend(self.target_fields(recreated));
         after.sort_by_key(|field| field.number);
         after.dedup_by_key(|field| field.number);
         let have = blocks(&self.device.fields) + usize::from(self.device.memory.blocks);
@@ -130,7 +130,7 @@ impl Planner<'_> {
     }
 
     /// Returns the fields of the profile. If fields are created again, those that exist only in the encoder are added.
-    pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
+    pub(super) fn target_fields(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
             let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_field(f.number).is_none());
@@ -164,12 +164,12 @@ impl Planner<'_> {
         let first = if target.bytes.is_some() { writable } else { target.status };
         if target.bytes.is_none() && !self.left.contains(&target.number) {
             // The field is created because others may follow it, but its former content is unknown.
-            self.missing.push(FieldRange::of(target.number));
+            self.missing.push(FieldRange::whole_field(target.number));
         }
         self.ops.push(Op::Define { field: target.number, from: None, to: first });
         if let Some(bytes) = &target.bytes {
-            for range in self.allowed(target.number, 0..bytes.len()) {
-                self.store(target.number, writable, range, None, bytes);
+            for range in self.writable_parts(target.number, 0..bytes.len()) {
+                self.store_bytes(target.number, writable, range, None, bytes);
             }
         }
         if first != target.status {
@@ -177,21 +177,22 @@ impl Planner<'_> {
         }
     }
 
-    pub(super) fn change(&mut self, now: &FieldImage, target: &FieldImage) {
+    pub(super) fn change_field(&mut self, now: &FieldImage, target: &FieldImage) {
         // A field that is unreadable on one side is left unchanged.
         let (Some(old), Some(new)) = (&now.bytes, &target.bytes) else {
             if now != target {
-                self.missing.push(FieldRange::of(now.number));
+                self.missing.push(FieldRange::whole_field(now.number));
             }
             return;
         };
         let mut stores: Vec<(Range<usize>, bool)> = Vec::new();
         for run in differing_ranges(old, new) {
-            stores.extend(self.allowed(now.number, run).into_iter().map(|range| (range, true)));
+            stores.extend(self.writable_parts(now.number, run).into_iter().map(|range| (range, true)));
         }
         if new.len() > old.len() {
             // The content of the part by which the last field grows is unknown.
-            stores.extend(self.allowed(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
+            stores
+                .extend(self.writable_parts(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
         }
         self.unchanged += u64::from(now.status == target.status);
         let changed: usize = differing_ranges(old, new).iter().map(ExactSizeIterator::len).sum();
@@ -201,18 +202,18 @@ impl Planner<'_> {
         let working =
             if stores.is_empty() || can_write_first { now.status } else { target.status.with_write_enable(true) };
         if working != now.status {
-            self.define(now.number, now.status, working);
+            self.define_field(now.number, now.status, working);
         }
         for (range, known) in stores {
-            self.store(now.number, working, range, known.then_some(old.as_slice()), new);
+            self.store_bytes(now.number, working, range, known.then_some(old.as_slice()), new);
         }
         if working != target.status {
-            self.define(now.number, working, target.status);
+            self.define_field(now.number, working, target.status);
         }
     }
 
     /// Returns the parts of a range that may be written. For another encoder, they may exclude mounting values.
-    fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
+    fn writable_parts(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];
         }
@@ -220,10 +221,10 @@ impl Planner<'_> {
         for at in range {
             let is_mounting = self.profile.depends_on_mounting(field, at);
             if is_mounting {
-                extend(&mut of_mounting, at);
+                extend_runs(&mut of_mounting, at);
             }
             if if is_mounting { self.with_mounting } else { !self.left.contains(&field) } {
-                extend(&mut allowed, at);
+                extend_runs(&mut allowed, at);
             }
         }
         let of_mounting = of_mounting.into_iter().map(|run| FieldRange::new(field, run.start, run.len()));
@@ -235,12 +236,12 @@ impl Planner<'_> {
         allowed
     }
 
-    fn define(&mut self, field: u8, from: DataFieldStatus, to: DataFieldStatus) {
+    fn define_field(&mut self, field: u8, from: DataFieldStatus, to: DataFieldStatus) {
         self.touched.push(field);
         self.ops.push(Op::Define { field, from: Some(from), to });
     }
 
-    fn store(&mut self, field: u8, status: DataFieldStatus, range: Range<usize>, old: Option<&[u8]>, new: &[u8]) {
+    fn store_bytes(&mut self, field: u8, status: DataFieldStatus, range: Range<usize>, old: Option<&[u8]>, new: &[u8]) {
         let (Ok(address), Some(new)) = (u8::try_from(range.start), new.get(range.clone())) else { return };
         if old.is_some() {
             self.touched.push(field);
@@ -252,7 +253,7 @@ impl Planner<'_> {
     pub(super) fn finish(mut self) -> crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange> {
         for now in &self.device.fields {
             if self.target_field(now.number).is_none() && !self.left.contains(&now.number) {
-                self.missing.push(FieldRange::of(now.number));
+                self.missing.push(FieldRange::whole_field(now.number));
             }
         }
         let fields = self.device.fields.iter().filter(|field| self.touched.contains(&field.number)).cloned().collect();
@@ -269,7 +270,7 @@ impl Planner<'_> {
     }
 }
 
-fn extend(runs: &mut Vec<Range<usize>>, at: usize) {
+fn extend_runs(runs: &mut Vec<Range<usize>>, at: usize) {
     match runs.last_mut() {
         Some(run) if run.end == at => run.end += 1,
         _ => runs.push(at..at + 1),

@@ -1,6 +1,6 @@
 //! Plans by case.
 
-use super::super::{Interface, MountingMark, Op, ProfileIdentity, Recorded};
+use super::super::{Interface, MountingMark, Op, ProfileIdentity, RecordedValues};
 use super::*;
 use crate::devices::hiperface::protocol::{DataFieldStatus, LineSettings};
 
@@ -31,7 +31,7 @@ fn profile(serial_number: &str, fields: Vec<FieldImage>) -> HiperfaceProfile {
             unknown: Default::default(),
         },
         interface: Interface { address: 0x40, settings: LineSettings::FACTORY, unknown: Default::default() },
-        recorded: Recorded::default(),
+        recorded: RecordedValues::default(),
         mounting: Vec::new(),
         fields,
         created: Vec::new(),
@@ -265,7 +265,7 @@ fn unchanged_bytes_are_counted() {
     .unwrap()
     .common;
     assert_eq!(restore.unchanged, 1 + 31);
-    assert_eq!(restore.missing, [FieldRange::of(1)]);
+    assert_eq!(restore.missing, [FieldRange::whole_field(1)]);
     assert_eq!(restore.plan.write_cycles(), 1);
 }
 
@@ -296,7 +296,7 @@ fn restoring_a_backup_deletes_fields_its_write_created() {
     let now = after(vec![field(0, 0xC8, &[]), changed[1].clone(), changed[2].clone()]);
     let left = plan_restore(&image, &now, RestoreOptions::default()).unwrap();
     assert_eq!((left.created_left, left.common.plan.is_empty()), (vec![1, 2], true));
-    assert_eq!(left.common.missing, [FieldRange::of(1), FieldRange::of(2)]);
+    assert_eq!(left.common.missing, [FieldRange::whole_field(1), FieldRange::whole_field(2)]);
     // A field came after them.
     let now = after(vec![field(0, 0xC8, &[]), wanted.fields[1].clone(), wanted.fields[2].clone(), field(3, 0xC8, &[])]);
     assert_eq!(plan_restore(&image, &now, RestoreOptions::default()).unwrap().created_left, [1, 2]);

@@ -24,8 +24,9 @@ pub(super) fn deletable_created_fields(profile: &HiperfaceProfile, device: &Devi
     (undone, left)
 }
 
-pub(super) fn without(device: &DeviceState, deleted: &[FieldImage]) -> DeviceState {
-    let blocks = deleted.iter().fold(device.memory.blocks, |sum, own| sum.saturating_add(own.status.size().blocks()));
+pub(super) fn without_fields(device: &DeviceState, deleted: &[FieldImage]) -> DeviceState {
+    let blocks =
+        deleted.iter().fold(device.memory.blocks, |sum, own| sum.saturating_add(own.status.size().block_count()));
     let count = u8::try_from(deleted.len()).unwrap_or(u8::MAX);
     let fields = device.fields.iter().filter(|own| !deleted.contains(own)).cloned().collect();
     let memory = FreeMemory { blocks, fields: device.memory.fields.saturating_sub(count) };
@@ -33,7 +34,7 @@ pub(super) fn without(device: &DeviceState, deleted: &[FieldImage]) -> DeviceSta
 }
 
 pub(super) fn delete(field: &FieldImage) -> Op {
-    Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() }
+    Op::Define { field: field.number, from: Some(field.status), to: field.status.as_deleted() }
 }
 
 /// Returns the fields that a plan creates and fills completely.

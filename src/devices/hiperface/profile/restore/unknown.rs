@@ -23,7 +23,7 @@ impl UnknownMeaningField {
     }
 
     /// Returns the whole field as an item, in the form that `--copy` and `--leave` accept.
-    pub fn item(&self) -> FieldRange {
+    pub fn as_range(&self) -> FieldRange {
         FieldRange { field: self.field, start: 0, count: None }
     }
 }

@@ -21,8 +21,8 @@ fn the_manuals_example_works_with_the_right_checksum() {
     host.expect("40 4B 01 05 02 66 08 15 76", "40 50 0E 1E");
     host.expect("40 4D 01 68 66 02", "40 4D 01 68 64");
     host.expect("40 4E 0E", "40 4E 06 01 09");
-    assert_eq!(host.encoder().wear().writes(Command::DefineField), 4);
-    assert_eq!(host.encoder().wear().writes(Command::StoreData), 1, "what is refused wears nothing");
+    assert_eq!(host.encoder().wear().write_count(Command::DefineField), 4);
+    assert_eq!(host.encoder().wear().write_count(Command::StoreData), 1, "what is refused wears nothing");
     assert_eq!(host.encoder().wear().total(), 6);
 }
 
@@ -78,7 +78,7 @@ fn the_kit_encoder_describes_itself() {
     host.expect("40 63 00 00 12 34 55 50", "40 63 23");
     host.expect("40 42 02", "40 42 00 00 12 34 24");
     host.expect("40 63 00 00 00 00 55 76", "40 63 23");
-    assert_eq!(host.encoder().wear().writes(Command::Synchronise), 2);
+    assert_eq!(host.encoder().wear().write_count(Command::Synchronise), 2);
     assert_eq!(&host.encoder().memory().field_bytes(0).unwrap()[..8], b"SMK42-08");
 }
 
@@ -140,7 +140,7 @@ fn an_overlong_request_is_one_wrong_frame() {
 fn queued_status_codes_flag_every_reply() {
     let mut host = Host::with("");
     for code in [0x1C, 0x1D, 0x1E, 0x01, 0x02] {
-        host.encoder_mut().report(StatusCode::new(code));
+        host.encoder_mut().queue_code(StatusCode::new(code));
     }
     host.expect("40 42 02", "40 C2 00 0E 05 31 B8");
     host.expect("40 4C 01 0D", "40 D0 12 82");
@@ -189,7 +189,7 @@ fn a_moving_shaft_is_sampled_when_the_reply_starts() {
     let now = host.now;
     host.encoder_mut().set_rpm(now, 6001.0);
     host.expect("40 42 02", "40 50 1F 0F");
-    host.encoder_mut().report(StatusCode::new(0x1D));
+    host.encoder_mut().queue_code(StatusCode::new(0x1D));
     host.expect("40 42 02", "40 D0 1F 8F");
 }
 

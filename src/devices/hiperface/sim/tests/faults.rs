@@ -77,7 +77,7 @@ fn power_can_fail_in_the_second_store() {
     host.expect("40 4B 00 00 04 66 DE AD BE EF 4B", "40 50 0F 1F"); // refused: no store
     host.expect("40 4B 00 00 03 55 01 02 03 5D", "");
     assert_eq!(host.encoder().memory().field_bytes(0).unwrap()[..4], [0x01, 0x02, 0xBE, 0xEF]);
-    assert_eq!(host.encoder().wear().writes(Command::StoreData), 2);
+    assert_eq!(host.encoder().wear().write_count(Command::StoreData), 2);
     host.wait(ms(5000.0));
     host.expect("40 42 02", "");
     host.bus.connect(host.now);
@@ -135,7 +135,7 @@ proptest! {
             match what {
                 1 => host.bus.power_cycle(host.now),
                 2 => host.bus.connect(host.now),
-                3 => if let Some(format) = LineSettings::from_byte(settings).format() {
+                3 => if let Some(format) = LineSettings::from_byte(settings).character_format() {
                     host.bus.set_host_format(host.now, format);
                 },
                 4 => drop(host.bus.poll(host.now)),

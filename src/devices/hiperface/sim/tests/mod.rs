@@ -84,7 +84,7 @@ impl Host {
     }
 
     fn set_format(&mut self, settings: u8) {
-        self.bus.set_host_format(self.now, LineSettings::from_byte(settings).format().unwrap());
+        self.bus.set_host_format(self.now, LineSettings::from_byte(settings).character_format().unwrap());
     }
 
     fn encoder(&self) -> &Encoder {

@@ -97,7 +97,7 @@ fn settings_67_apply_immediately_and_until_the_reset() {
 #[test]
 fn a_reset_has_no_reply_and_clears_the_queue() {
     let mut host = Host::with("");
-    host.encoder_mut().report(crate::devices::hiperface::protocol::StatusCode::new(0x1D));
+    host.encoder_mut().queue_code(crate::devices::hiperface::protocol::StatusCode::new(0x1D));
     host.expect("FF 53 AC", "");
     host.expect("40 50 10", ""); // INIT
     host.wait(ms(100.0));

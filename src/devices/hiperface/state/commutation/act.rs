@@ -1,7 +1,7 @@
 //! Actions of the user in the commutation assistant.
 
 use super::outcome::check_can_read;
-use super::{CommutationAction, Slot};
+use super::{CommutationAction, VectorSlot};
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, SessionEvents};
 use crate::app::{Severity, Text};
@@ -22,23 +22,26 @@ impl Encoder {
             CommutationAction::Read(slot) => self.read_into_slot(slot, services),
             CommutationAction::Use(slot) => self.commutation.apply_typed_value(slot),
             CommutationAction::Clear => self.commutation.forget_readings(),
-            CommutationAction::Store => match self.verified(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
-                Ok((field, address, bytes)) => {
-                    self.put(field, address, &bytes, services);
-                    // Fixes the location, so that storing again replaces this offset even if another location is then
-                    // empty.
-                    (self.commutation.form.field, self.commutation.form.address) = (Some(field), address.to_string());
-                    let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
-                    if (address..).zip(&bytes).all(is_there) {
-                        let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
-                        let id = if edited { "commutation.staged" } else { "commutation.same" };
-                        let text = TEXTS.text(id).with("field", field).with("address", address);
-                        services.notify(Severity::Good, vec![text], Some(&self.session.name()));
+            CommutationAction::Store => {
+                match self.if_verified(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
+                    Ok((field, address, bytes)) => {
+                        self.edit_bytes(field, address, &bytes, services);
+                        // Fixes the location, so that storing again replaces this offset even if another location is then
+                        // empty.
+                        (self.commutation.form.field, self.commutation.form.address) =
+                            (Some(field), address.to_string());
+                        let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
+                        if (address..).zip(&bytes).all(is_there) {
+                            let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
+                            let id = if edited { "commutation.staged" } else { "commutation.same" };
+                            let text = TEXTS.text(id).with("field", field).with("address", address);
+                            services.notify(Severity::Good, vec![text], Some(&self.session.name()));
+                        }
                     }
+                    Err(why) => self.commutation.problem = Some(why),
                 }
-                Err(why) => self.commutation.problem = Some(why),
-            },
-            CommutationAction::Set => match self.verified(|own| own.commutation.setting(own.geometry())) {
+            }
+            CommutationAction::Set => match self.if_verified(|own| own.commutation.setting(own.geometry())) {
                 Ok(setting) => {
                     let (wanted, exact) = (setting.value, setting.exact);
                     let change = Change::SetPosition { wanted, exact, synchronise: false, kit: false };
@@ -50,19 +53,19 @@ impl Encoder {
     }
 
     /// Returns the result, or an error if the offset has not been verified.
-    fn verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
+    fn if_verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
         let result = result(self)?;
         self.commutation.check_offset_is_verified(self.geometry()).map(|()| result)
     }
 
-    fn read_into_slot(&mut self, slot: Slot, services: &mut Services) {
+    fn read_into_slot(&mut self, slot: VectorSlot, services: &mut Services) {
         if let Err(why) = check_can_read(&self.commutation, self.session.is_ready()) {
             self.commutation.problem = Some(why);
             return;
         }
         self.commutation.problem = None;
         if self.try_submit(HiperfaceJob::Rest, services) {
-            self.commutation.ask(slot);
+            self.commutation.request_reading(slot);
         }
     }
 }

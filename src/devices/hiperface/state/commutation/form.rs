@@ -20,7 +20,7 @@ pub struct Form {
     pub current_a: String,
     /// Maximum time in seconds for which the motor is energised, as typed.
     pub time_s: String,
-    pub vector: Vector,
+    pub vector: EnergisedVector,
     /// Angle of a custom vector in electrical degrees, as typed.
     pub vector_deg: String,
     /// Pole pairs of the motor, as typed.
@@ -38,7 +38,7 @@ pub struct Form {
     pub second_deg: String,
     /// Whether the user accepts the offset without verification by a second vector.
     pub without_second: bool,
-    /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
+    /// Fine positions in periods, as typed, in the order of [`VectorSlot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
     /// Data field for the offset, or `None` for the proposed field.
@@ -50,7 +50,7 @@ pub struct Form {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
+pub enum VectorSlot {
     OneSide,
     /// Rest position after an approach from the other side.
     OtherSide,
@@ -60,7 +60,7 @@ pub enum Slot {
 
 /// Vector that is energised during a reading, named by its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vector {
+pub enum EnergisedVector {
     /// Current into U, returning through V and W: 0°.
     UAgainstBoth,
     /// Current into U, returning through V: −30°.
@@ -100,10 +100,10 @@ pub struct OffsetInputs {
 }
 
 /// Highest number of pole pairs that is accepted. No motor has as many.
-const MOST_POLE_PAIRS: u32 = 500;
+const MAX_POLE_PAIRS: u32 = 500;
 
-impl Slot {
-    pub const ALL: [Slot; 3] = [Slot::OneSide, Slot::OtherSide, Slot::Second];
+impl VectorSlot {
+    pub const ALL: [VectorSlot; 3] = [VectorSlot::OneSide, VectorSlot::OtherSide, VectorSlot::Second];
 }
 
 impl Default for Form {
@@ -114,7 +114,7 @@ impl Default for Form {
             released: false,
             current_a: String::new(),
             time_s: String::new(),
-            vector: Vector::UAgainstBoth,
+            vector: EnergisedVector::UAgainstBoth,
             vector_deg: String::new(),
             pole_pairs: String::new(),
             periods: String::new(),
@@ -159,7 +159,7 @@ impl Form {
     ///
     /// # Errors
     /// Returns an error that names a missing or invalid entry.
-    pub fn prepared(&self) -> Result<(), Text> {
+    pub fn check_prepared(&self) -> Result<(), Text> {
         let ticks = [
             (self.disabled, "commutation.disabled"),
             (self.uncoupled, "commutation.uncoupled"),
@@ -179,10 +179,12 @@ impl Form {
     /// Returns an error if the entry is invalid.
     pub fn vector_deg(&self) -> Result<f64, Text> {
         match self.vector {
-            Vector::UAgainstBoth => Ok(0.0),
-            Vector::UAgainstV => Ok(-30.0),
-            Vector::UAgainstW => Ok(30.0),
-            Vector::Other => parse_in_range(TEXTS.text("commutation.vector_angle"), &self.vector_deg, -360.0, 360.0),
+            EnergisedVector::UAgainstBoth => Ok(0.0),
+            EnergisedVector::UAgainstV => Ok(-30.0),
+            EnergisedVector::UAgainstW => Ok(30.0),
+            EnergisedVector::Other => {
+                parse_in_range(TEXTS.text("commutation.vector_angle"), &self.vector_deg, -360.0, 360.0)
+            }
         }
     }
 
@@ -207,12 +209,12 @@ impl Form {
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
-    pub fn fine(&self, slot: Slot) -> Result<f64, Text> {
+    pub fn fine_position(&self, slot: VectorSlot) -> Result<f64, Text> {
         let [one, other, second] = &self.typed;
         let text = match slot {
-            Slot::OneSide => one,
-            Slot::OtherSide => other,
-            Slot::Second => second,
+            VectorSlot::OneSide => one,
+            VectorSlot::OtherSide => other,
+            VectorSlot::Second => second,
         };
         parse_in_range(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
@@ -221,7 +223,7 @@ impl Form {
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
-    pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
+    pub fn signal_periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
             (true, Some(Geometry::Rotary { periods, .. })) => Ok(periods.max(1)),
@@ -232,7 +234,7 @@ impl Form {
     /// Returns a warning if the entered number of periods differs from that of the encoder type.
     pub fn periods_warning(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
-        let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
+        let typed = self.signal_periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
@@ -241,10 +243,10 @@ impl Form {
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
-        let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
-        let periods = self.periods(geometry)?;
+        let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MAX_POLE_PAIRS)?;
+        let periods = self.signal_periods(geometry)?;
         Ok(OffsetInputs {
-            motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing("commutation.pole_pairs"))?,
+            motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing_text("commutation.pole_pairs"))?,
             periods,
             pole_pairs,
             reversed: self.reversed,
@@ -254,11 +256,11 @@ impl Form {
     }
 }
 
-fn missing(what: &'static str) -> Text {
+fn missing_text(what: &'static str) -> Text {
     Text::new("entry.missing").with_text("what", TEXTS.text(what))
 }
 
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
     let periods = parse_in_range(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
-    Phase::from_periods(periods).ok_or_else(|| missing("commutation.phase"))
+    Phase::from_periods(periods).ok_or_else(|| missing_text("commutation.phase"))
 }

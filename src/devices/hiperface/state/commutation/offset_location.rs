@@ -24,11 +24,11 @@ impl Commutation {
     ///
     /// # Errors
     /// Returns an error if no field has enough space or the typed address is invalid.
-    pub fn place(&self, staged: &StagedEdits) -> Result<OffsetLocation, Text> {
+    pub fn offset_location(&self, staged: &StagedEdits) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
-        let wanted = staged.wanted();
-        let writable = || wanted.iter().rev().filter(|field| rules::edit(field).is_ok());
+        let wanted = staged.edited_fields();
+        let writable = || wanted.iter().rev().filter(|field| rules::check_edit(field).is_ok());
         let candidates = || writable().filter(|field| form.field.is_none_or(|own| own == field.number));
         if form.address.trim().is_empty() {
             let kept = candidates().find_map(|field| first(field, |bytes| is_kept(form.storage, bytes)));
@@ -43,7 +43,7 @@ impl Commutation {
 
     /// Returns a warning that names the data that the offset would replace. Returns `None` if the location is empty or
     /// already contains an offset.
-    pub fn replaced(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Option<Text> {
+    pub fn replacement_warning(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
         let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
@@ -106,7 +106,7 @@ mod tests {
     ) -> Result<(u8, usize), &'static str> {
         let mut commutation = Commutation::default();
         (commutation.form.storage, commutation.form.field) = (storage, field);
-        commutation.place(staged).map(|place| (place.field, place.address)).map_err(|text| text.id())
+        commutation.offset_location(staged).map(|place| (place.field, place.address)).map_err(|text| text.id())
     }
 
     const PLATE: &[u8; 16] = b"EMD71K-4 3000rpm";

@@ -1,7 +1,7 @@
 //! Results of the commutation readings: the mean of both approaches, the offset, its verification with a second vector,
 //! the bytes for method 1, and the position for method 2.
 
-use super::{Commutation, Kind, OffsetInputs, OffsetLocation, RestReading, Slot, Source, Storage};
+use super::{Commutation, OffsetInputs, OffsetLocation, PositionKind, RestReading, Source, Storage, VectorSlot};
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::{ElectricalAngle, preset_position};
 use crate::analysis::quality::Verdict;
@@ -9,12 +9,12 @@ use crate::app::Text;
 use crate::app::number::parse_integer;
 use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordError};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
-use crate::devices::hiperface::state::{Allowed, StagedEdits, TEXTS};
+use crate::devices::hiperface::state::{ActionPermission, StagedEdits, TEXTS};
 
 /// Step size in electrical degrees from which method 2 is refused. The torque may then have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
 /// Step size in electrical degrees from which a warning is given. The torque is then reduced to cos 30° or less (U).
-const WEAK_DEG: f64 = 30.0;
+const WEAK_TORQUE_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommutationOffset {
@@ -31,7 +31,7 @@ pub struct CommutationOffset {
 
 /// Position to set with method 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
+pub struct PositionSetting {
     pub value: u32,
     /// Whether the encoder must be set to exactly this value, because its absolute position and phase disagree.
     pub exact: bool,
@@ -42,7 +42,7 @@ pub struct Setting {
 
 /// Commutation record found in the memory, including edits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stored {
+pub struct StoredRecord {
     pub field: u8,
     /// Index of the first byte.
     pub address: usize,
@@ -58,10 +58,12 @@ impl Commutation {
     /// Returns an error if an entry or a reading is missing, or if the readings cannot be used.
     pub fn offset(&self, geometry: Option<Geometry>) -> Result<CommutationOffset, Text> {
         let inputs = self.form.inputs(geometry)?;
-        let (one, other) = (self.reading(Slot::OneSide), self.reading(Slot::OtherSide));
+        let (one, other) = (self.reading_of(VectorSlot::OneSide), self.reading_of(VectorSlot::OtherSide));
         let (first, apart) = match (one, other) {
-            (Some(one), Some(other)) => (one, Some(apart(one.fine_periods, other.fine_periods, inputs.periods))),
-            (Some(own), None) | (None, Some(own)) if own.kind == Kind::Typed => (own, None),
+            (Some(one), Some(other)) => {
+                (one, Some(signed_distance(one.fine_periods, other.fine_periods, inputs.periods)))
+            }
+            (Some(own), None) | (None, Some(own)) if own.kind == PositionKind::Typed => (own, None),
             (None, None) => return Err(TEXTS.text("commutation.no_reading")),
             _ => return Err(TEXTS.text("commutation.one_side_only")),
         };
@@ -73,9 +75,9 @@ impl Commutation {
         let turn = f64::from(inputs.periods);
         let fine_periods = (first.fine_periods + apart.unwrap_or(0.0) / 2.0).rem_euclid(turn);
         let resolution = [one, other].into_iter().flatten().map(|reading| match reading.kind {
-            Kind::Fine { resolution_periods, .. } => resolution_periods,
-            Kind::Absolute => Some(1.0 / f64::from(STEPS_PER_PERIOD)),
-            Kind::Typed => None,
+            PositionKind::Fine { resolution_periods, .. } => resolution_periods,
+            PositionKind::Absolute => Some(1.0 / f64::from(STEPS_PER_PERIOD)),
+            PositionKind::Typed => None,
         });
         // The coarser resolution applies to the mean.
         let resolution = resolution.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
@@ -83,7 +85,7 @@ impl Commutation {
             fine_periods,
             shaft_deg: fine_periods / turn * 360.0,
             apart_deg,
-            angle: angle(fine_periods, &inputs).ok_or_else(|| TEXTS.text("commutation.no_reading"))?,
+            angle: offset_angle(fine_periods, &inputs).ok_or_else(|| TEXTS.text("commutation.no_reading"))?,
             resolution_deg: resolution.map(|periods| periods_to_electrical_deg(periods, &inputs)),
         })
     }
@@ -93,20 +95,21 @@ impl Commutation {
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
     pub fn second_vector_result(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
-        let reading = self.reading(Slot::Second)?;
+        let reading = self.reading_of(VectorSlot::Second)?;
         Some(self.evaluate_second_reading(reading.fine_periods, geometry))
     }
 
     fn evaluate_second_reading(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
         /// Fraction of the expected movement below which the shaft is considered not to have moved.
-        const STILL: f64 = 0.1;
+        const MIN_MOVEMENT_FRACTION: f64 = 0.1;
         /// Permitted ratio of the actual movement to the expected movement.
-        const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
+        const MOVEMENT_RATIO: std::ops::RangeInclusive<f64> = 0.8..=1.25;
         let (inputs, offset, turns) =
             (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_vector_turns()?);
-        let moved = apart(offset.fine_periods, fine_periods, inputs.periods);
+        let moved = signed_distance(offset.fine_periods, fine_periods, inputs.periods);
         let moved = if inputs.reversed { -moved } else { moved };
-        let second = inputs.motor.second_vector(moved, turns).filter(|second| second.ratio.abs() >= STILL);
+        let second =
+            inputs.motor.second_vector(moved, turns).filter(|second| second.ratio.abs() >= MIN_MOVEMENT_FRACTION);
         let degrees = |text: Text| {
             let text = text.with_number("moved", moved / f64::from(inputs.periods) * 360.0, 2);
             text.with_number("expected", turns * 360.0 / f64::from(inputs.pole_pairs), 2)
@@ -115,7 +118,7 @@ impl Commutation {
         let pairs = turns * f64::from(inputs.periods) / moved.abs();
         let whole = (pairs - pairs.round()).abs() < 0.25 && second.pole_pairs > 0;
         let own = second.pole_pairs == inputs.pole_pairs;
-        let id = match (own && FITS.contains(&second.ratio.abs()), second.ratio > 0.0) {
+        let id = match (own && MOVEMENT_RATIO.contains(&second.ratio.abs()), second.ratio > 0.0) {
             (true, true) => return Ok((Verdict::Ok, degrees(TEXTS.text("commutation.fits")))),
             (true, false) => "commutation.exchanged",
             (false, true) if whole && !own => "commutation.other_pairs",
@@ -132,8 +135,9 @@ impl Commutation {
 
     /// Returns whether both approaches gave identical readings, which suggests that the shaft was not turned.
     pub fn are_sides_identical(&self) -> bool {
-        let is_fine = |reading: &&RestReading| matches!(reading.kind, Kind::Fine { .. });
-        let [one, other] = [Slot::OneSide, Slot::OtherSide].map(|slot| self.reading(slot).filter(is_fine));
+        let is_fine = |reading: &&RestReading| matches!(reading.kind, PositionKind::Fine { .. });
+        let [one, other] =
+            [VectorSlot::OneSide, VectorSlot::OtherSide].map(|slot| self.reading_of(slot).filter(is_fine));
         one.is_some() && one == other
     }
 
@@ -161,7 +165,7 @@ impl Commutation {
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         self.check_second_vector_agrees(geometry)?;
-        let OffsetLocation { field, address } = self.place(staged)?;
+        let OffsetLocation { field, address } = self.offset_location(staged)?;
         let bytes = match self.form.storage {
             Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
             Storage::Record => {
@@ -183,51 +187,52 @@ impl Commutation {
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing, or if method 2 cannot be used.
-    pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
+    pub fn setting(&self, geometry: Option<Geometry>) -> Result<PositionSetting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         self.check_second_vector_agrees(geometry)?;
         let step = inputs.motor.electrical_step_deg();
         if step >= UNUSABLE_DEG {
             return Err(TEXTS.text("commutation.unusable").with_number("step", step, 1));
         }
-        let here = self.last.filter(|slot| *slot != Slot::Second).and_then(|slot| self.reading(slot));
+        let here = self.last.filter(|slot| *slot != VectorSlot::Second).and_then(|slot| self.reading_of(slot));
         let here = here.ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let phase = Phase::from_periods(here.fine_periods).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let steps = u64::from(STEPS_PER_PERIOD);
-        let periods = geometry.and_then(Geometry::range).map_or(u64::from(inputs.periods), |range| range / steps);
+        let periods =
+            geometry.and_then(Geometry::position_count).map_or(u64::from(inputs.periods), |range| range / steps);
         let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);
         let period = parse_integer(TEXTS.text("commutation.period"), &self.form.period, 0, last)?;
         let value = preset_position(period, phase).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
-        let remaining = angle(f64::from(period) + phase.to_periods(), &inputs);
+        let remaining = offset_angle(f64::from(period) + phase.to_periods(), &inputs);
         let remaining = remaining.ok_or_else(|| TEXTS.text("commutation.not_there"))?.to_degrees();
         let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));
-        Ok(Setting {
+        Ok(PositionSetting {
             value,
             // A difference of one step is due to rounding.
             exact: off_step.min(STEPS_PER_PERIOD - off_step) > 1,
             remaining_deg: if remaining > 180.0 { remaining - 360.0 } else { remaining },
-            verdict: if step >= WEAK_DEG { Verdict::Warn } else { Verdict::Ok },
+            verdict: if step >= WEAK_TORQUE_DEG { Verdict::Warn } else { Verdict::Ok },
         })
     }
 }
 
-pub fn stored(staged: &StagedEdits) -> Vec<Stored> {
+pub fn stored(staged: &StagedEdits) -> Vec<StoredRecord> {
     let mut found = Vec::new();
-    for field in staged.wanted() {
+    for field in staged.edited_fields() {
         let blocks = field.bytes.as_deref().unwrap_or_default().chunks(CommutationRecord::BYTES).enumerate();
         for (block, bytes) in blocks {
             let Some(record) = CommutationRecord::parse(bytes) else { continue };
             let address = block * CommutationRecord::BYTES;
             let edited = (address..address + bytes.len()).any(|at| staged.is_edited(field.number, at));
-            found.push(Stored { field: field.number, address, record, edited });
+            found.push(StoredRecord { field: field.number, address, record, edited });
         }
     }
     found
 }
 
 /// Checks whether the position may be read. All previous steps of the assistant must be complete.
-pub fn check_can_read(commutation: &Commutation, ready: bool) -> Allowed {
-    commutation.form.prepared()?;
+pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermission {
+    commutation.form.check_prepared()?;
     if commutation.form.source == Source::Typed {
         commutation.form.phase()?;
     }
@@ -235,7 +240,7 @@ pub fn check_can_read(commutation: &Commutation, ready: bool) -> Allowed {
 }
 
 /// Returns the signed distance between two positions in signal periods, the shorter way within a revolution.
-fn apart(from: f64, to: f64, periods: u32) -> f64 {
+fn signed_distance(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);
     if forward > turn / 2.0 { forward - turn } else { forward }
@@ -246,7 +251,7 @@ fn periods_to_electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
 }
 
 /// Returns the offset for which the electrical angle at the given position equals the angle of the vector.
-fn angle(fine_periods: f64, inputs: &OffsetInputs) -> Option<ElectricalAngle> {
+fn offset_angle(fine_periods: f64, inputs: &OffsetInputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;
     inputs.motor.electrical_angle(shaft, vector)

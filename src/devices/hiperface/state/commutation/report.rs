@@ -1,13 +1,13 @@
 //! Report of a commutation run. It lists the preparation, the readings and the results, one item per line.
 
-use super::{Commutation, Kind, RestReading, Slot, Vector};
+use super::{Commutation, EnergisedVector, PositionKind, RestReading, VectorSlot};
 use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
-    pub fn report(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
+    pub fn report_texts(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
         let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];
         let ticks = [
@@ -25,8 +25,8 @@ impl Commutation {
         }
         if let Ok(degrees) = form.vector_deg() {
             lines.push(match form.vector {
-                Vector::Other => TEXTS.text("commutation.report_angle").with_number("degrees", degrees, 1),
-                named => TEXTS.text("commutation.report_vector").with_text("vector", TEXTS.text(named.word())),
+                EnergisedVector::Other => TEXTS.text("commutation.report_angle").with_number("degrees", degrees, 1),
+                named => TEXTS.text("commutation.report_vector").with_text("vector", TEXTS.text(named.keyword())),
             });
         }
         if let Ok(inputs) = form.inputs(geometry) {
@@ -34,9 +34,9 @@ impl Commutation {
             let text = TEXTS.text("commutation.report_motor").with("pairs", inputs.pole_pairs);
             lines.push(text.with("periods", inputs.periods).with_text("direction", direction));
         }
-        for slot in Slot::ALL {
-            if let Some(reading) = self.reading(slot) {
-                let text = TEXTS.text("commutation.report_reading").with_text("slot", TEXTS.text(slot.word()));
+        for slot in VectorSlot::ALL {
+            if let Some(reading) = self.reading_of(slot) {
+                let text = TEXTS.text("commutation.report_reading").with_text("slot", TEXTS.text(slot.keyword()));
                 lines.push(
                     text.with_number("fine", reading.fine_periods, 5).with_text("kind", reading_kind_text(reading)),
                 );
@@ -56,34 +56,35 @@ impl Commutation {
 
 pub fn reading_kind_text(reading: &RestReading) -> Text {
     match reading.kind {
-        Kind::Fine { residual_periods, .. } => {
+        PositionKind::Fine { residual_periods, .. } => {
             let text = TEXTS.text("commutation.kind_fine").with("limit", Synchroniser::MAX_STEPS);
             text.with_number("residual", residual_periods * 32.0, 2)
         }
-        Kind::Absolute => TEXTS.text("commutation.kind_absolute"),
-        Kind::Typed => TEXTS.text("commutation.kind_typed"),
+        PositionKind::Absolute => TEXTS.text("commutation.kind_absolute"),
+        PositionKind::Typed => TEXTS.text("commutation.kind_typed"),
     }
 }
 
-impl Slot {
-    pub fn word(self) -> &'static str {
+impl VectorSlot {
+    pub fn keyword(self) -> &'static str {
         match self {
-            Slot::OneSide => "commutation.one_side",
-            Slot::OtherSide => "commutation.other_side",
-            Slot::Second => "commutation.in_second",
+            VectorSlot::OneSide => "commutation.one_side",
+            VectorSlot::OtherSide => "commutation.other_side",
+            VectorSlot::Second => "commutation.in_second",
         }
     }
 }
 
-impl Vector {
-    pub const ALL: [Vector; 4] = [Vector::UAgainstBoth, Vector::UAgainstV, Vector::UAgainstW, Vector::Other];
+impl EnergisedVector {
+    pub const ALL: [EnergisedVector; 4] =
+        [EnergisedVector::UAgainstBoth, EnergisedVector::UAgainstV, EnergisedVector::UAgainstW, EnergisedVector::Other];
 
-    pub fn word(self) -> &'static str {
+    pub fn keyword(self) -> &'static str {
         match self {
-            Vector::UAgainstBoth => "commutation.u_both",
-            Vector::UAgainstV => "commutation.u_v",
-            Vector::UAgainstW => "commutation.u_w",
-            Vector::Other => "commutation.u_other",
+            EnergisedVector::UAgainstBoth => "commutation.u_both",
+            EnergisedVector::UAgainstV => "commutation.u_v",
+            EnergisedVector::UAgainstW => "commutation.u_w",
+            EnergisedVector::Other => "commutation.u_other",
         }
     }
 }

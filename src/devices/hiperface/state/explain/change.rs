@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::state::{ByteEditError, TEXTS};
 
-pub fn change(change: &Change) -> Text {
+pub fn change_text(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),
         Change::Store(edits) => {
@@ -40,7 +40,7 @@ pub fn change(change: &Change) -> Text {
 }
 
 /// Explains why `count` bytes from index `start` cannot be edited.
-pub fn staged(error: &ByteEditError, count: usize, start: usize) -> Text {
+pub fn edit_error_text(error: &ByteEditError, count: usize, start: usize) -> Text {
     match error {
         ByteEditError::NoField { field } => TEXTS.text("staged.no_field").with("field", field),
         ByteEditError::Locked { field } => TEXTS.text("staged.locked").with("field", field),

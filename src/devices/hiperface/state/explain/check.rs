@@ -9,11 +9,11 @@ use crate::devices::hiperface::procedures::LineQuality;
 use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn check(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
+pub fn check_lines(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
-fn step(step: CheckStep) -> Text {
+fn check_step_text(step: CheckStep) -> Text {
     TEXTS.text(match step {
         CheckStep::Restart => "check.restart",
         CheckStep::Status => "check.status",

@@ -2,19 +2,19 @@
 
 use super::words::status_with_number;
 use crate::app::Text;
-use crate::devices::hiperface::procedures::Damage;
+use crate::devices::hiperface::procedures::ReplyDamage;
 use crate::devices::hiperface::protocol::{FrameError, ReplyError};
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn damage_text(damage: &Damage) -> Text {
+pub fn damage_text(damage: &ReplyDamage) -> Text {
     match damage {
-        Damage::Reply(error) => reply(error),
-        Damage::Unreadable => TEXTS.text("damage.unreadable"),
-        Damage::Trailing => TEXTS.text("damage.trailing"),
-        Damage::Late => TEXTS.text("damage.late"),
-        Damage::Echo => TEXTS.text("damage.echo"),
-        Damage::AtEncoder(code) => TEXTS.text("damage.at_encoder").with_text("code", status_with_number(*code)),
-        Damage::Inconsistent => Text::new("damage.inconsistent"),
+        ReplyDamage::Reply(error) => reply(error),
+        ReplyDamage::Unreadable => TEXTS.text("damage.unreadable"),
+        ReplyDamage::Trailing => TEXTS.text("damage.trailing"),
+        ReplyDamage::Late => TEXTS.text("damage.late"),
+        ReplyDamage::Echo => TEXTS.text("damage.echo"),
+        ReplyDamage::AtEncoder(code) => TEXTS.text("damage.at_encoder").with_text("code", status_with_number(*code)),
+        ReplyDamage::Inconsistent => Text::new("damage.inconsistent"),
     }
 }
 
@@ -47,18 +47,18 @@ mod tests {
     #[test]
     fn damage_texts_match_the_protocol_errors() {
         let cases = [
-            Damage::Reply(ReplyError::Frame(FrameError::Short { got: 2 })),
-            Damage::Reply(ReplyError::Frame(FrameError::Checksum { expected: 0x0A, got: 0xB0 })),
-            Damage::Reply(ReplyError::Address { expected: 0x40, got: 0x41 }),
-            Damage::Reply(ReplyError::Command { expected: 0x42, got: 0x50 }),
-            Damage::Reply(ReplyError::Length { command: 0x42, got: 3 }),
-            Damage::Reply(ReplyError::Argument),
-            Damage::Unreadable,
-            Damage::Trailing,
-            Damage::Late,
-            Damage::Echo,
-            Damage::AtEncoder(StatusCode::PARITY),
-            Damage::Inconsistent,
+            ReplyDamage::Reply(ReplyError::Frame(FrameError::Short { got: 2 })),
+            ReplyDamage::Reply(ReplyError::Frame(FrameError::Checksum { expected: 0x0A, got: 0xB0 })),
+            ReplyDamage::Reply(ReplyError::Address { expected: 0x40, got: 0x41 }),
+            ReplyDamage::Reply(ReplyError::Command { expected: 0x42, got: 0x50 }),
+            ReplyDamage::Reply(ReplyError::Length { command: 0x42, got: 3 }),
+            ReplyDamage::Reply(ReplyError::Argument),
+            ReplyDamage::Unreadable,
+            ReplyDamage::Trailing,
+            ReplyDamage::Late,
+            ReplyDamage::Echo,
+            ReplyDamage::AtEncoder(StatusCode::PARITY),
+            ReplyDamage::Inconsistent,
         ];
         for found in cases {
             assert_eq!(damage_text(&found).to_string_in(Language::English), found.to_string());

@@ -10,21 +10,21 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn frame(fact: &FrameDetail) -> Text {
+pub fn detail_text(fact: &FrameDetail) -> Text {
     match fact {
-        FrameDetail::Heading { address, command } => heading(*address, *command),
+        FrameDetail::Heading { address, command } => heading_text(*address, *command),
         FrameDetail::Request(arguments) => request(arguments),
         FrameDetail::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", request_error_text(*error)),
         FrameDetail::Refused(code) => TEXTS.text("frame.refused").with_text("code", status_code_text(*code)),
         FrameDetail::Code(code) => status_code_text(*code),
-        FrameDetail::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
+        FrameDetail::Reply(reply) => TEXTS.text("frame.reply").with_text("words", reply_text(reply)),
     }
 }
 
-fn heading(address: u8, byte: u8) -> Text {
+fn heading_text(address: u8, byte: u8) -> Text {
     let who = match address {
         BROADCAST => TEXTS.text("frame.broadcast"),
-        address => TEXTS.text("frame.address").with("address", number(address)),
+        address => TEXTS.text("frame.address").with("address", format_byte(address)),
     };
     let what = Command::from_byte(byte).map_or_else(|| TEXTS.text("command.unknown"), command);
     let flagged = byte & Frame::ERROR_BIT != 0;
@@ -32,30 +32,30 @@ fn heading(address: u8, byte: u8) -> Text {
         .text(if flagged { "frame.heading_error" } else { "frame.heading" })
         .with_text("who", who)
         .with_text("command", what)
-        .with("number", number(byte & !Frame::ERROR_BIT))
+        .with("number", format_byte(byte & !Frame::ERROR_BIT))
 }
 
 fn request(arguments: &Arguments) -> Text {
     match arguments {
         Arguments::None => TEXTS.text("frame.request"),
         Arguments::Position(position) => {
-            TEXTS.text("frame.request_position").with("position", position).with("word", word(*position))
+            TEXTS.text("frame.request_position").with("position", position).with("word", format_word(*position))
         }
-        Arguments::Channel(channel) => TEXTS.text("frame.request_channel").with("channel", number(*channel)),
+        Arguments::Channel(channel) => TEXTS.text("frame.request_channel").with("channel", format_byte(*channel)),
         Arguments::Read { field, address, count } => TEXTS
             .text(if *count == 1 { "frame.request_byte" } else { "frame.request_bytes" })
-            .with("field", number(*field))
+            .with("field", format_byte(*field))
             .with("count", count)
             .with("address", address),
         Arguments::Store { field, address, data } => TEXTS
             .text("frame.request_store")
-            .with("field", number(*field))
+            .with("field", format_byte(*field))
             .with("address", address)
             .with("bytes", hex(data)),
-        Arguments::Field(field) => TEXTS.text("frame.request_field").with("field", number(*field)),
+        Arguments::Field(field) => TEXTS.text("frame.request_field").with("field", format_byte(*field)),
         Arguments::Define { field, status } => TEXTS
             .text("frame.request_define")
-            .with("field", number(*field))
+            .with("field", format_byte(*field))
             .with_text("status", status_byte_text(*status)),
         Arguments::Code(code) => TEXTS.text("frame.request_code").with("number", code),
         Arguments::Address(address) => TEXTS.text("frame.request_address").with("address", address),
@@ -67,7 +67,7 @@ fn request(arguments: &Arguments) -> Text {
 
 fn request_error_text(error: RequestError) -> Text {
     match error {
-        RequestError::Command(byte) => TEXTS.text("frame.no_command").with("command", number(byte)),
+        RequestError::Command(byte) => TEXTS.text("frame.no_command").with("command", format_byte(byte)),
         RequestError::Length { expected, got } => {
             TEXTS.text("frame.wrong_length").with("got", got).with("expected", expected)
         }
@@ -83,10 +83,10 @@ fn status_code_text(code: StatusCode) -> Text {
     TEXTS.text(if code.is_warning() { "frame.warning" } else { "frame.error" }).with_text("code", named)
 }
 
-fn answer(reply: &Reply) -> Text {
+fn reply_text(reply: &Reply) -> Text {
     match reply {
         Reply::Done => TEXTS.text("frame.done"),
-        Reply::Position(raw) => TEXTS.text("frame.position").with("position", raw).with("word", word(*raw)),
+        Reply::Position(raw) => TEXTS.text("frame.position").with("position", raw).with("word", format_word(*raw)),
         Reply::Analogue(value) => TEXTS.text("frame.value").with("value", value),
         Reply::Counter(value) => TEXTS.text("frame.counter").with("value", value),
         Reply::Data(bytes) => TEXTS.text("frame.data").with("bytes", hex(bytes)),
@@ -113,25 +113,25 @@ fn type_label(label: &TypeLabel) -> Text {
     TEXTS
         .text("frame.type_label")
         .with_text("settings", settings_byte_text(label.settings))
-        .with("type", number(label.encoder_type))
+        .with("type", format_byte(label.encoder_type))
         .with_text("name", name.map_or_else(|| TEXTS.text("frame.unknown_type"), |row| literal_text(&row.name)))
         .with("bytes", label.eeprom_bytes())
-        .with("options", number(label.options))
+        .with("options", format_byte(label.options))
 }
 
 fn status_byte_text(status: DataFieldStatus) -> Text {
-    TEXTS.text("frame.byte").with("byte", number(status.byte())).with_text("words", field_status(status))
+    TEXTS.text("frame.byte").with("byte", format_byte(status.byte())).with_text("words", field_status(status))
 }
 
 fn settings_byte_text(settings: LineSettings) -> Text {
-    TEXTS.text("frame.byte").with("byte", number(settings.byte())).with_text("words", line_settings(settings))
+    TEXTS.text("frame.byte").with("byte", format_byte(settings.byte())).with_text("words", line_settings(settings))
 }
 
-fn number(byte: u8) -> String {
+fn format_byte(byte: u8) -> String {
     format!("{byte:02X}h")
 }
 
-fn word(raw: u32) -> String {
+fn format_word(raw: u32) -> String {
     format!("{raw:08X}h")
 }
 
@@ -140,10 +140,10 @@ mod tests {
     use super::*;
     use crate::app::Language;
     use crate::bits::parse_hex;
-    use crate::devices::hiperface::protocol::describe;
+    use crate::devices::hiperface::protocol::describe_frame;
 
     fn texts(bytes: &str) -> Vec<Text> {
-        describe(&parse_hex(bytes).unwrap(), None).unwrap().iter().map(frame).collect()
+        describe_frame(&parse_hex(bytes).unwrap(), None).unwrap().iter().map(detail_text).collect()
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::devices::hiperface::profile::{EntryError, FieldRange, Item, PlanItem}
 use crate::devices::hiperface::state::TEXTS;
 use crate::profile::Cause;
 
-pub fn item(item: &Item) -> Text {
+pub fn item_text(item: &Item) -> Text {
     match item {
         Item::Field(range) => field_range(range),
         Item::Status(field) => TEXTS.text("hf_item.status").with("field", field),
@@ -30,7 +30,7 @@ pub fn field_range(range: &FieldRange) -> Text {
 
 pub fn plan_item_text(own: &PlanItem) -> Text {
     match own {
-        PlanItem::Item(own) => item(own),
+        PlanItem::Item(own) => item_text(own),
         PlanItem::Encoder => TEXTS.text("hf_item.encoder"),
         PlanItem::FieldCount => TEXTS.text("hf_item.field_count"),
         PlanItem::Position => TEXTS.text("hf_item.position"),
@@ -45,7 +45,7 @@ pub fn read_back(read: &ReadBackValue) -> Text {
     }
 }
 
-pub fn refused(cause: &Cause) -> Option<Text> {
+pub fn rejection_text(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::Twice(field) => TEXTS.text("hf_entry.twice").with("field", field),
         EntryError::Status(status) => TEXTS.text("hf_entry.status").with("status", format!("{status:02X}h")),

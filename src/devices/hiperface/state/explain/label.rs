@@ -16,7 +16,7 @@ pub struct LabelRow {
 
 /// Returns the rows of an extended type label, or an empty list if the bytes are no label. Invalid limits are left out.
 pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
-    let Ok(parts) = ExtendedLabel::parts(bytes) else { return Vec::new() };
+    let Ok(parts) = ExtendedLabel::parse_parts(bytes) else { return Vec::new() };
     let flags = bytes.get(1).copied().unwrap_or(0);
     let linear = flags & ExtendedLabel::LINEAR != 0;
     let fits = ExtendedLabel::parse(bytes).is_ok_and(|label| label.checksum_fits);
@@ -28,12 +28,12 @@ pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
                 1 => format!("{address:02X}h"),
                 _ => format!("{address:02X}…{:02X}h", address + count - 1),
             };
-            Some(LabelRow { addresses, bytes: hex(own), meaning: meaning(part, linear, flags, fits)? })
+            Some(LabelRow { addresses, bytes: hex(own), meaning: part_meaning(part, linear, flags, fits)? })
         })
         .collect()
 }
 
-fn meaning(part: LabelPart, linear: bool, flags: u8, fits: bool) -> Option<Text> {
+fn part_meaning(part: LabelPart, linear: bool, flags: u8, fits: bool) -> Option<Text> {
     Some(match part {
         LabelPart::Checksum => TEXTS.text(if fits { "label.checksum" } else { "label.checksum_other" }),
         LabelPart::Flags => {

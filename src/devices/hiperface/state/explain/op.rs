@@ -10,9 +10,9 @@ use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::TEXTS;
 
 /// Describes an operation without revealing access codes.
-pub fn op(op: &Op) -> OperationTexts {
+pub fn operation_texts(op: &Op) -> OperationTexts {
     match op {
-        Op::Define { field, from, to } => define(*field, *from, *to),
+        Op::Define { field, from, to } => define_texts(*field, *from, *to),
         Op::Store { field, address, old, new, .. } => OperationTexts::single(
             bytes(*field, usize::from(*address), new.len()),
             old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| literal_text(hex(old))),
@@ -53,7 +53,7 @@ fn bytes(field: u8, first: usize, count: usize) -> Text {
     }
 }
 
-fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationTexts {
+fn define_texts(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationTexts {
     let item = TEXTS.text("op.field").with("field", field);
     match from {
         Some(from) if from.exists() && !to.exists() => {
@@ -111,11 +111,13 @@ mod tests {
             (Op::IncrementCounter { from: 0x00FF_FFFF }, "counter: 16777215 → 0"),
         ];
         for (operation, english) in cases {
-            let words: Vec<String> = op(&operation).texts().map(|text| text.to_string_in(English)).collect();
+            let words: Vec<String> =
+                operation_texts(&operation).texts().map(|text| text.to_string_in(English)).collect();
             let [item, old, new] = words.as_slice() else { panic!("{words:?}") };
             assert_eq!(format!("{item}: {old} → {new}"), english);
         }
-        let words: Vec<String> = op(&define(Some(0xE8), 0xA9)).texts().map(|text| text.to_string_in(German)).collect();
+        let words: Vec<String> =
+            operation_texts(&define(Some(0xE8), 0xA9)).texts().map(|text| text.to_string_in(German)).collect();
         assert_eq!(words, ["Datenfeld 1", "16 Bytes, beschreibbar", "32 Bytes, schreibgeschützt"]);
     }
 }

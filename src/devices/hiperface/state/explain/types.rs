@@ -10,7 +10,7 @@ use crate::store::StoreError;
 use crate::worker::OpenError;
 
 /// Explains why a user-defined table of encoder types cannot be used.
-pub fn store(error: &StoreError) -> Text {
+pub fn table_error_text(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<TypeTableFileError>() {
         Some(TypeTableFileError { path, cause }) => TEXTS
@@ -23,7 +23,7 @@ pub fn store(error: &StoreError) -> Text {
 
 pub fn open(error: &OpenError) -> Text {
     match error {
-        OpenError::Store(error) => store(error),
+        OpenError::Store(error) => table_error_text(error),
         other => general::open(other),
     }
 }

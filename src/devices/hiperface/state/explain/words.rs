@@ -65,7 +65,7 @@ pub fn field_code_required(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }
 
-pub fn geometry(geometry: Geometry) -> Text {
+pub fn geometry_text(geometry: Geometry) -> Text {
     match geometry {
         Geometry::Rotary { periods, turns: 1 } => TEXTS.text("geometry.singleturn").with("periods", periods),
         Geometry::Rotary { periods, turns } => {
@@ -102,7 +102,7 @@ pub fn line_settings(settings: LineSettings) -> Text {
         .text("line.settings")
         .with("bits", if settings.has_long_timeout() { 44 } else { 11 })
         .with_text("wiring", TEXTS.text(if settings.is_bus() { "line.bus" } else { "line.standard" }));
-    match settings.format() {
+    match settings.character_format() {
         Some(format) => text.with("format", format),
         None => text.with_text("format", TEXTS.text("line.reserved")),
     }
@@ -136,7 +136,7 @@ mod tests {
         let rotary = |periods, turns| Geometry::Rotary { periods, turns };
         let linear = |period_nm| Geometry::Linear { period_nm, periods: 0 };
         for shape in [rotary(128, 1), rotary(128, 4096), linear(4_000_000), linear(1_500_000), linear(820)] {
-            assert_eq!(geometry(shape).to_string_in(Language::English), shape.to_string());
+            assert_eq!(geometry_text(shape).to_string_in(Language::English), shape.to_string());
             assert_eq!(
                 position(shape.position(919_857)).to_string_in(Language::English),
                 shape.position(919_857).to_string()
@@ -154,7 +154,7 @@ mod tests {
                 field_status(DataFieldStatus::from_byte(0xAA)),
                 "48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel erforderlich",
             ),
-            (geometry(Geometry::Linear { period_nm: 1_500_000, periods: 0 }), "linear, Periode 1,5 mm"),
+            (geometry_text(Geometry::Linear { period_nm: 1_500_000, periods: 0 }), "linear, Periode 1,5 mm"),
             (position(Geometry::Rotary { periods: 128, turns: 4096 }.position(0x000E_0531)), "Umdrehung 224, 116,807°"),
             (line_settings(LineSettings::from_byte(0x64)), "9600 8E1, Zeitüberschreitung 44 Bit, Bus"),
             (parity(Parity::Odd), "ungerade"),

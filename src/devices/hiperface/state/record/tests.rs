@@ -14,15 +14,15 @@ fn moment(microseconds: u64) -> Moment {
     Moment::from_elapsed(Duration::from_micros(microseconds))
 }
 
-fn position(microseconds: u64, steps: i64) -> Sample {
+fn position(microseconds: u64, steps: i64) -> PolledSample {
     let raw = u32::try_from(steps.rem_euclid(RANGE)).unwrap();
     let position = Some(SKM36.position(raw));
-    Sample::Position(PositionReading { at: moment(microseconds), raw, position, valid: true, codes: Vec::new() })
+    PolledSample::Position(PositionReading { at: moment(microseconds), raw, position, valid: true, codes: Vec::new() })
 }
 
-fn watched(microseconds: u64, value: i64) -> Sample {
-    let (at, what) = (moment(microseconds), Watch::TEMPERATURE);
-    Sample::Watched(WatchedReading { at, watch: what, value: Ok(value), codes: Vec::new() })
+fn watched(microseconds: u64, value: i64) -> PolledSample {
+    let (at, what) = (moment(microseconds), WatchedQuantity::TEMPERATURE);
+    PolledSample::Watched(WatchedReading { at, watch: what, value: Ok(value), codes: Vec::new() })
 }
 
 fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
@@ -40,10 +40,10 @@ fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
 #[test]
 fn a_single_position_read_keeps_the_polled_samples() {
     let mut record = Record::default();
-    record.add((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
+    record.add_samples((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
     // It was read in between, and is reported after those.
-    record.add(vec![position(550_000, 550)], 0, Some(SKM36));
-    record.add((11..=20).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
+    record.add_samples(vec![position(550_000, 550)], 0, Some(SKM36));
+    record.add_samples((11..=20).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
     let positions = samples(&record, "position");
     assert_eq!(positions.len(), 21);
     assert!(
@@ -57,9 +57,13 @@ fn a_single_position_read_keeps_the_polled_samples() {
 #[test]
 fn lines_break_at_missing_samples() {
     let mut record = Record::default();
-    record.watch(&[Watch::TEMPERATURE]);
-    record.add(vec![position(0, 0), watched(0, 40), position(100_000, 1), watched(500_000, 41)], 0, Some(SKM36));
-    record.add(vec![position(600_000, 2), watched(1_000_000, 42)], 7, Some(SKM36));
+    record.set_watched(&[WatchedQuantity::TEMPERATURE]);
+    record.add_samples(
+        vec![position(0, 0), watched(0, 40), position(100_000, 1), watched(500_000, 41)],
+        0,
+        Some(SKM36),
+    );
+    record.add_samples(vec![position(600_000, 2), watched(1_000_000, 42)], 7, Some(SKM36));
     let breaks =
         |heading| -> Vec<bool> { samples(&record, heading).iter().map(|own| own.2.contains(Flags::BREAK)).collect() };
     assert_eq!(breaks("position"), [false, false, true]);
@@ -68,17 +72,17 @@ fn lines_break_at_missing_samples() {
     // The cable was disconnected for an hour.
     let began: Zoned = "2026-03-01T10:00:00[UTC]".parse().unwrap();
     let mut record = Record::default();
-    record.watch(&[Watch::TEMPERATURE]);
-    record.begin(&began);
-    record.add(vec![position(0, 5), watched(0, 40)], 0, Some(SKM36));
-    record.begin(&"2026-03-01T11:00:00[UTC]".parse().unwrap());
-    record.add(vec![position(0, 6), watched(0, 30)], 0, Some(SKM36));
+    record.set_watched(&[WatchedQuantity::TEMPERATURE]);
+    record.begin_session(&began);
+    record.add_samples(vec![position(0, 5), watched(0, 40)], 0, Some(SKM36));
+    record.begin_session(&"2026-03-01T11:00:00[UTC]".parse().unwrap());
+    record.add_samples(vec![position(0, 6), watched(0, 30)], 0, Some(SKM36));
     let hour = 3_600_000_000_000;
     assert_eq!(samples(&record, "position"), [(0, 5.0, Flags::NONE), (hour, 6.0, Flags::BREAK)]);
     assert_eq!(samples(&record, "temperature"), [(0, 40.0, Flags::NONE), (hour, 30.0, Flags::BREAK)]);
     // A wall clock that was set back does not reverse time.
-    record.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
-    record.add(vec![position(0, 7)], 0, Some(SKM36));
+    record.begin_session(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
+    record.add_samples(vec![position(0, 7)], 0, Some(SKM36));
     assert_eq!(samples(&record, "position").last().unwrap().0, hour + 1);
 }
 
@@ -87,12 +91,12 @@ fn lines_break_between_stop_and_start() {
     let mut record = Record::default();
     let every = Some(Duration::from_millis(50));
     record.track.poll(every, true);
-    record.add(vec![position(0, 0), position(50_000, 1)], 0, Some(SKM36));
+    record.add_samples(vec![position(0, 0), position(50_000, 1)], 0, Some(SKM36));
     record.track.poll(None, false);
     record.track.poll(every, true);
-    record.add(vec![position(150_000, 2), position(200_000, 3)], 0, Some(SKM36));
+    record.add_samples(vec![position(150_000, 2), position(200_000, 3)], 0, Some(SKM36));
     // After more than four intervals and 0.4 s a sample is missing, whether the shaft is stopped or not.
-    record.add(vec![position(790_000, 4), position(1_400_000, 5)], 0, Some(SKM36));
+    record.add_samples(vec![position(790_000, 4), position(1_400_000, 5)], 0, Some(SKM36));
     let breaks: Vec<bool> = samples(&record, "position").iter().map(|own| own.2.contains(Flags::BREAK)).collect();
     assert_eq!(breaks, [false, false, true, false, false, true]);
 }
@@ -113,7 +117,7 @@ fn a_long_recording_keeps_every_break_and_wrap() {
         expected.push((microseconds as i64 * 1_000, steps(microseconds), paused));
         batch.push(position(microseconds, steps(microseconds)));
         if batch.len() == 1_000 {
-            record.add(std::mem::take(&mut batch), 0, Some(SKM36));
+            record.add_samples(std::mem::take(&mut batch), 0, Some(SKM36));
         }
     }
     let recorder = &record.track.recorder;

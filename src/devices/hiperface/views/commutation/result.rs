@@ -3,12 +3,14 @@
 
 use egui::{RichText, Ui};
 
-use super::{ask, fixed_height_message_ui, number_ui};
+use super::{assistant_action, fixed_height_message_ui, number_ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
-use crate::devices::hiperface::state::commutation::{CommutationAction as Assistant, Form, Storage, Stored, stored};
+use crate::devices::hiperface::state::commutation::{
+    CommutationAction as Assistant, Form, Storage, StoredRecord, stored,
+};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
-use crate::devices::hiperface::views::say;
+use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{
     button_with_reason, card, dropdown, enabled_button, entry, folding_card, paragraph, primary_button, row, verdict_ui,
 };
@@ -34,37 +36,37 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
         let is_confirmed = encoder.commutation.is_confirmed(encoder.geometry());
         let message = match &offset {
             Err(why) => theme.label(theme.format_text(why)),
-            Ok(_) if is_confirmed => RichText::new(say(theme, "commutation.confirmed")).color(theme.palette.good),
-            Ok(_) => RichText::new(say(theme, "commutation.unconfirmed")).color(theme.palette.warn),
+            Ok(_) if is_confirmed => RichText::new(translate(theme, "commutation.confirmed")).color(theme.palette.good),
+            Ok(_) => RichText::new(translate(theme, "commutation.unconfirmed")).color(theme.palette.warn),
         };
         fixed_height_message_ui(ui, theme, message);
         ui.add_enabled_ui(!is_confirmed, |ui| {
-            ui.checkbox(&mut form.without_second, say(theme, "commutation.without_second"));
+            ui.checkbox(&mut form.without_second, translate(theme, "commutation.without_second"));
         });
     });
 }
 
 pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("commutation.method_one"), |ui| {
-        paragraph(ui, theme.label(say(theme, "commutation.method_one_words")));
-        entry(ui, theme, &say(theme, "commutation.storage"), |ui| {
+        paragraph(ui, theme.label(translate(theme, "commutation.method_one_words")));
+        entry(ui, theme, &translate(theme, "commutation.storage"), |ui| {
             let ways = [(Storage::Record, "commutation.record"), (Storage::Number, "commutation.number")];
             dropdown(
                 ui,
-                &say(theme, "commutation.storage"),
+                &translate(theme, "commutation.storage"),
                 &mut form.storage,
-                ways.map(|(way, id)| (way, say(theme, id))),
+                ways.map(|(way, id)| (way, translate(theme, id))),
             );
         });
         if form.storage == Storage::Number {
             verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.number_words"));
         }
-        let place = encoder.commutation.place(&encoder.staged).ok();
-        entry(ui, theme, &say(theme, "commutation.field"), |ui| {
+        let place = encoder.commutation.offset_location(&encoder.staged).ok();
+        entry(ui, theme, &translate(theme, "commutation.field"), |ui| {
             let fields = encoder.staged.device().iter().map(|field| (Some(field.number), field.number.to_string()));
             let shown = form.field.or(place.map(|place| place.field));
             let mut chosen = shown;
-            dropdown(ui, &say(theme, "commutation.field"), &mut chosen, fields);
+            dropdown(ui, &translate(theme, "commutation.field"), &mut chosen, fields);
             if chosen != shown {
                 form.field = chosen;
             }
@@ -80,17 +82,18 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
         for found in stored(&encoder.staged) {
             stored_offset_ui(ui, theme, &found);
         }
-        if let Some(words) = encoder.commutation.replaced(encoder.geometry(), &encoder.staged) {
+        if let Some(words) = encoder.commutation.replacement_warning(encoder.geometry(), &encoder.staged) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
         ui.horizontal_wrapped(|ui| {
             let verified = encoder.commutation.check_offset_is_verified(encoder.geometry());
             let allowed = bytes.as_ref().map_err(Clone::clone).and(verified);
-            if button_with_reason(ui, theme, &allowed, icons::MEMORY, &say(theme, "commutation.store")).clicked() {
-                actions.push(ask(encoder, Assistant::Store));
+            if button_with_reason(ui, theme, &allowed, icons::MEMORY, &translate(theme, "commutation.store")).clicked()
+            {
+                actions.push(assistant_action(encoder, Assistant::Store));
             }
             let ready = encoder.session.is_ready() && encoder.staged.is_dirty();
-            if primary_button(ui, theme, ready, icons::LIST_CHECKS, &say(theme, "commutation.review")).clicked() {
+            if primary_button(ui, theme, ready, icons::LIST_CHECKS, &translate(theme, "commutation.review")).clicked() {
                 actions.push(Action::Command(encoder.session.id, DeviceCommand::Review));
             }
         });
@@ -100,7 +103,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
     });
 }
 
-fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
+fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &StoredRecord) {
     let text = match found.record {
         Ok(record) => TEXTS
             .text("commutation.found")
@@ -110,7 +113,7 @@ fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
     };
     let text = text.with("field", found.field).with("address", found.address);
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme.label(say(theme, "commutation.found_title")));
+        ui.label(theme.label(translate(theme, "commutation.found_title")));
         let colour = match (found.record.is_err(), found.edited) {
             (true, _) => theme.palette.bad,
             (false, true) => theme.palette.staged,
@@ -118,29 +121,31 @@ fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
         };
         ui.label(RichText::new(theme.format_text(&text)).color(colour));
         if found.edited {
-            ui.label(RichText::new(say(theme, "commutation.found_edited")).color(theme.palette.staged).underline());
+            ui.label(
+                RichText::new(translate(theme, "commutation.found_edited")).color(theme.palette.staged).underline(),
+            );
         }
     });
 }
 
 pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("commutation.method_two"), |ui| {
-        paragraph(ui, theme.label(say(theme, "commutation.method_two_words")));
+        paragraph(ui, theme.label(translate(theme, "commutation.method_two_words")));
         if let Ok(inputs) = form.inputs(encoder.geometry()) {
             let text = TEXTS
                 .text("commutation.step_value")
                 .with_number("mechanical", inputs.motor.mechanical_step_deg(), 4)
                 .with_number("electrical", inputs.motor.electrical_step_deg(), 2);
-            row(ui, theme, &say(theme, "commutation.step"), theme.monospace(theme.format_text(&text)));
+            row(ui, theme, &translate(theme, "commutation.step"), theme.monospace(theme.format_text(&text)));
         }
         number_ui(ui, theme, "commutation.period", &mut form.period, "0");
         let setting = encoder.commutation.setting(encoder.geometry());
         match &setting {
             Ok(setting) => {
                 let value = format!("{} = {:X}h", setting.value, setting.value);
-                row(ui, theme, &say(theme, "commutation.position"), theme.monospace(value));
+                row(ui, theme, &translate(theme, "commutation.position"), theme.monospace(value));
                 let left = TEXTS.text("commutation.remaining_value").with_number("degrees", setting.remaining_deg, 2);
-                row(ui, theme, &say(theme, "commutation.remaining"), theme.monospace(theme.format_text(&left)));
+                row(ui, theme, &translate(theme, "commutation.remaining"), theme.monospace(theme.format_text(&left)));
                 if setting.verdict == Verdict::Warn {
                     verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.weak"));
                 }
@@ -152,8 +157,8 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
         }
         let allowed = setting.and(encoder.commutation.check_offset_is_verified(encoder.geometry()));
         let ready = if encoder.session.is_ready() { allowed } else { Err(TEXTS.text("commutation.not_ready")) };
-        if button_with_reason(ui, theme, &ready, icons::CROSSHAIR, &say(theme, "commutation.set")).clicked() {
-            actions.push(ask(encoder, Assistant::Set));
+        if button_with_reason(ui, theme, &ready, icons::CROSSHAIR, &translate(theme, "commutation.set")).clicked() {
+            actions.push(assistant_action(encoder, Assistant::Set));
         }
     });
 }
@@ -161,7 +166,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
 pub(super) fn report_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let lines: Vec<String> = encoder
         .commutation
-        .report(&encoder.session.name(), encoder.geometry())
+        .report_texts(&encoder.session.name(), encoder.geometry())
         .iter()
         .map(|line| theme.format_text(line))
         .collect();
@@ -169,7 +174,7 @@ pub(super) fn report_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         for line in &lines {
             ui.add(egui::Label::new(line).wrap().selectable(true));
         }
-        if enabled_button(ui, true, icons::COPY, &say(theme, "commutation.copy")).clicked() {
+        if enabled_button(ui, true, icons::COPY, &translate(theme, "commutation.copy")).clicked() {
             ui.ctx().copy_text(lines.join("\n"));
         }
     });

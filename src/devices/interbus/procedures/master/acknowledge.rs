@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use super::stability::{CycleResult, STAYS_FOR, StabilityTimer};
+use super::stability::{ACCEPTANCE_TIME, CycleResult, StabilityTimer};
 use super::{Error, Master};
 use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
@@ -16,7 +16,7 @@ use crate::devices::interbus::protocol::{Command, Reply, Value};
 /// IN word of a busy encoder without further bits. The echo is the same if the start of cam 0 is set to 0.
 const BUSY: u32 = 0xC000_0000;
 /// Maximum number of attempts to set an edge of cam 0. None of the attempts stores the edge.
-const TRIES: u32 = 4;
+const MAX_ATTEMPTS: u32 = 4;
 
 impl Master<'_> {
     /// Sends a setting until its exact echo is stable.
@@ -24,7 +24,7 @@ impl Master<'_> {
     /// # Errors
     /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::Refused`],
     /// [`Error::OtherMaster`], [`Error::TimeOut`] or an error of the exchange.
-    pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
+    pub(in crate::devices::interbus::procedures) fn send_setting(&mut self, command: Command) -> Result<(), Error> {
         self.try_send_setting(command, 0)
     }
 
@@ -33,7 +33,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, and otherwise the same errors as
-    /// [`set`](Self::set).
+    /// [`send_setting`](Self::send_setting).
     pub(in crate::devices::interbus::procedures) fn set_and_verify(
         &mut self,
         command: Command,
@@ -42,9 +42,9 @@ impl Master<'_> {
         item: impl FnOnce() -> String,
     ) -> Result<(), Error> {
         let mut reads = wanted;
-        for tried in 0..TRIES {
+        for tried in 0..MAX_ATTEMPTS {
             self.try_send_setting(command, tried)?;
-            reads = self.ask(question)?;
+            reads = self.request_value(question)?;
             if reads == wanted {
                 return Ok(());
             }
@@ -69,12 +69,12 @@ impl Master<'_> {
 
     fn wait_for_acknowledgement(&mut self, command: Command, tried: u32, may_run: bool) -> Result<(), Error> {
         let (before, found) = (self.input, self.found_error);
-        let holds = self.holds(command, tried);
+        let holds = self.required_echo_time(command, tried);
         let patience = self.patience + holds.unwrap_or_default();
         let mut rests = StabilityTimer::new(self.recorded);
-        self.until(command, ExpectedWord::Echo, patience, |CycleResult { now, word, same }| {
+        self.repeat_until(command, ExpectedWord::Echo, patience, |CycleResult { now, word, same }| {
             let reply = Reply::parse(word);
-            rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
+            rests.update(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {
                 _ if is_echo(command, word) => {
                     holds.map_or(same.is_stable(), |holds| same.has_held_for(holds)).then_some(Ok(()))
@@ -91,12 +91,14 @@ impl Master<'_> {
 
     /// Returns how long the echo of a command must persist. The result is `None` if it cannot be confused with a busy
     /// encoder.
-    fn holds(&self, command: Command, tried: u32) -> Option<Duration> {
+    fn required_echo_time(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;
         match echo {
             _ if echo.emit() == BUSY => Some(most),
-            Reply::Busy { .. } => Some(((STAYS_FOR + self.known.processing) * (1 << tried.min(TRIES))).min(most)),
+            Reply::Busy { .. } => {
+                Some(((ACCEPTANCE_TIME + self.known.processing) * (1 << tried.min(MAX_ATTEMPTS))).min(most))
+            }
             _ => None,
         }
     }

@@ -9,12 +9,12 @@ use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupMode};
 
 /// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`).
-const VALUE_STAYS: Duration = Duration::from_millis(300);
+const VALUE_CLEAR_TIMEOUT: Duration = Duration::from_millis(300);
 /// Number of additional readings, because the first one may return an old word.
-const LOOKS: u32 = 2;
-const LOOK: Duration = Duration::from_millis(10);
+const EXTRA_READINGS: u32 = 2;
+const READING_INTERVAL: Duration = Duration::from_millis(10);
 /// Time for which the known mode stays valid after a step of a job that returned the encoder to it.
-const STILL: Duration = Duration::from_secs(1);
+const MODE_VALIDITY: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
     /// Runs `work` and returns the encoder to its previous mode. This is also done after an error.
@@ -23,15 +23,15 @@ impl Master<'_> {
     /// Returns the error of `work`, [`Error::NotRunning`] if the work cannot begin, or [`Error::NotLedBack`] if the
     /// mode cannot be restored.
     pub fn run_guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
-        let ended = self.begin().and_then(|()| work(self));
-        self.end(ended)
+        let ended = self.enter().and_then(|()| work(self));
+        self.finish(ended)
     }
 
-    /// Returns the encoder to its state before [`begin`](Self::begin). This is also done if the work has failed.
+    /// Returns the encoder to its state before [`enter`](Self::enter). This is also done if the work has failed.
     ///
     /// # Errors
     /// Returns the error of the work, or [`Error::NotLedBack`] if the state cannot be restored.
-    pub(in crate::devices::interbus::procedures) fn end<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
+    pub(in crate::devices::interbus::procedures) fn finish<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
         let led = match &ended {
             // The link is lost, so nothing more can be sent.
             Err(error @ Error::Link(_)) => Err(error.clone()),
@@ -47,7 +47,7 @@ impl Master<'_> {
         if self.is_in_initial_state() {
             return Err(cause);
         }
-        Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
+        Err(Error::NotLedBack { cause: Box::new(cause), standing: self.left_state() })
     }
 
     /// Ends a parameterisation, an error or a read-out of another program and returns the resulting mode. Values that
@@ -77,7 +77,7 @@ impl Master<'_> {
             Ok(master.is.unwrap_or(mode))
         });
         self.record_step_end(ended.is_ok());
-        ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
+        ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.left_state() })
     }
 
     /// Switches the encoder to a mode and checks the result.
@@ -85,34 +85,37 @@ impl Master<'_> {
     /// # Errors
     /// Returns [`Error::NoMode`], [`Error::NotSelectable`] or [`Error::UnknownMode`] if the switch is not possible.
     /// Other errors come from the handshake or the exchange.
-    pub(in crate::devices::interbus::procedures) fn go(&mut self, wanted: StartupMode) -> Result<(), Error> {
+    pub(in crate::devices::interbus::procedures) fn switch_to_mode(
+        &mut self,
+        wanted: StartupMode,
+    ) -> Result<(), Error> {
         use StartupMode::{Cams, K2, K3, Unknown, Velocity};
         match (self.is, wanted) {
             (_, Unknown(_)) => Err(Error::NotSelectable { mode: wanted }),
             (Some(mode @ Unknown(_)), _) => Err(Error::UnknownMode { mode }),
             (Some(is), wanted) if is_same_operating_mode(is, wanted) => Ok(()),
-            (Some(Velocity), K2 | K3) => self.switch(Command::Velocity(false), wanted),
-            (_, K2 | K3) => self.switch(Command::Cams(None), wanted),
+            (Some(Velocity), K2 | K3) => self.send_mode_word(Command::Velocity(false), wanted),
+            (_, K2 | K3) => self.send_mode_word(Command::Cams(None), wanted),
             (Some(Cams(_)), Velocity) => {
-                self.go(K3)?;
-                self.go(wanted)
+                self.switch_to_mode(K3)?;
+                self.switch_to_mode(wanted)
             }
-            (_, Velocity) => self.switch(Command::Velocity(true), wanted),
+            (_, Velocity) => self.send_mode_word(Command::Velocity(true), wanted),
             (Some(Velocity), Cams(_)) => {
-                self.go(K3)?;
-                self.go(wanted)
+                self.switch_to_mode(K3)?;
+                self.switch_to_mode(wanted)
             }
-            (_, Cams(program)) => self.switch(Command::Cams(Some(program)), wanted),
+            (_, Cams(program)) => self.send_mode_word(Command::Cams(Some(program)), wanted),
         }
     }
 
     /// Marks the present mode as the one to which the encoder returns after the job.
-    pub(in crate::devices::interbus::procedures) fn stay_in_current_mode(&mut self) {
+    pub(in crate::devices::interbus::procedures) fn keep_current_mode(&mut self) {
         self.found = self.is;
     }
 
     /// Reads the state and the mode of the encoder, which determine the meaning of the words to be sent.
-    pub(in crate::devices::interbus::procedures) fn begin(&mut self) -> Result<(), Error> {
+    pub(in crate::devices::interbus::procedures) fn enter(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
         let mut looks = 0;
         loop {
@@ -127,16 +130,16 @@ impl Master<'_> {
                     });
                 }
                 Reply::Echo { .. } | Reply::Busy { .. } => {}
-                _ if looks >= LOOKS => break,
+                _ if looks >= EXTRA_READINGS => break,
                 _ => looks += 1,
             }
-            self.data.wait(LOOK)?;
+            self.data.wait(READING_INTERVAL)?;
         }
         if let Reply::Error(_) = Reply::parse(self.input) {
             self.found_error = Some(self.input);
         }
         let runs = matches!(Reply::parse(self.input), Reply::Run { .. });
-        if runs && self.rested.take().is_some_and(|rested| self.data.now().duration_since(rested) < STILL) {
+        if runs && self.rested.take().is_some_and(|rested| self.data.now().duration_since(rested) < MODE_VALIDITY) {
             return Ok(());
         }
         let mode = self.read_startup_mode()?;
@@ -151,13 +154,13 @@ impl Master<'_> {
             return Ok(());
         }
         // Checks whether this read-out has ended the mode. In another mode, words for cams have other effects.
-        self.rest()?;
+        self.send_idle_word()?;
         if is_same_operating_mode(self.read_startup_mode()?, mode) {
             self.known.kept = Some(mode);
             return Ok(());
         }
         self.known.hold = Some((mode, keeps));
-        self.go(mode)
+        self.switch_to_mode(mode)
     }
 
     /// Returns whether the encoder is in its initial mode and no word other than normal operation is active.
@@ -174,7 +177,7 @@ impl Master<'_> {
 
     /// Sends a word that changes the mode, then 00000000h, and reads the mode. If the encoder does not keep the mode,
     /// the word that keeps it is sent instead of 00000000h. The manual does not define which word is required (`U`).
-    fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
+    fn send_mode_word(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
         let of_cams = matches!(command, Command::Cams(_));
         let keeps = if of_cams { Command::Run } else { command };
         let known = self.known.hold.is_some_and(|(mode, _)| mode == wanted);
@@ -209,7 +212,7 @@ impl Master<'_> {
         }
         let Some(found) = self.found else {
             // Only read-outs were sent, since the encoder never reported its mode.
-            self.cycle(Command::Normal)?;
+            self.run_cycle(Command::Normal)?;
             return Ok(());
         };
         let reply = Reply::parse(self.input);
@@ -227,28 +230,28 @@ impl Master<'_> {
         }
         // A read-out may also have ended the mode.
         if self.switched || !matches!(found, StartupMode::K2 | StartupMode::K3) {
-            self.rest()?;
+            self.send_idle_word()?;
             self.read_startup_mode()?;
         }
         if !matches!(found, StartupMode::Unknown(_)) {
-            self.go(found)?;
+            self.switch_to_mode(found)?;
         }
-        self.rest()
+        self.send_idle_word()
     }
 
     /// Sends 00000000h, so that a following 80000000h has the edge that it needs to take effect.
     fn clear_run_command(&mut self) -> Result<(), Error> {
-        for _ in 0..LOOKS {
-            self.cycle(Command::Normal)?;
+        for _ in 0..EXTRA_READINGS {
+            self.run_cycle(Command::Normal)?;
         }
         Ok(())
     }
 
     /// Sends the word that keeps the mode without a request.
-    fn rest(&mut self) -> Result<(), Error> {
+    fn send_idle_word(&mut self) -> Result<(), Error> {
         self.wait_until_value_cleared()?;
         let word = self.idle_command();
-        if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
+        if self.out == Some(word) { Ok(()) } else { self.return_to_running(word, self.patience) }
     }
 
     fn idle_command(&self) -> Command {
@@ -268,11 +271,11 @@ impl Master<'_> {
         }
         let word = self.idle_command();
         let of_cams = matches!(self.is, Some(StartupMode::Cams(_))) && word == Command::Normal;
-        let patience = if of_cams { VALUE_STAYS.min(self.patience) } else { self.patience };
-        match self.running(word, patience) {
+        let patience = if of_cams { VALUE_CLEAR_TIMEOUT.min(self.patience) } else { self.patience };
+        match self.return_to_running(word, patience) {
             Err(Error::TimeOut { .. }) if of_cams => {
-                self.running(Command::Run, self.patience)?;
-                self.running(word, self.patience)
+                self.return_to_running(Command::Run, self.patience)?;
+                self.return_to_running(word, self.patience)
             }
             ended => ended,
         }
@@ -281,11 +284,12 @@ impl Master<'_> {
     /// Sends 00000000h until the IN word contains no value. It is used while parameters or cams are being set, since
     /// 80000000h would store them. A value that persists is accepted because it differs from the next echo.
     fn clear_query_while_setting(&mut self) -> Result<(), Error> {
-        let patience = VALUE_STAYS.min(self.patience);
-        let ended = self.until(Command::Normal, ExpectedWord::Run, patience, |CycleResult { word, same, .. }| {
-            let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
-            (!asks && same.is_stable()).then_some(Ok(()))
-        });
+        let patience = VALUE_CLEAR_TIMEOUT.min(self.patience);
+        let ended =
+            self.repeat_until(Command::Normal, ExpectedWord::Run, patience, |CycleResult { word, same, .. }| {
+                let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
+                (!asks && same.is_stable()).then_some(Ok(()))
+            });
         match ended {
             Err(Error::TimeOut { .. }) => Ok(()),
             ended => ended,

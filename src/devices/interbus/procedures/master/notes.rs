@@ -8,7 +8,7 @@ use crate::devices::interbus::procedures::journal::{Journal, ModeSwitch};
 use crate::devices::interbus::protocol::{ReadOutNumber, StartupMode};
 
 #[derive(Default)]
-pub(super) struct Notes<'a> {
+pub(super) struct JournalNotes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<ModeSwitch>,
@@ -108,7 +108,8 @@ impl Master<'_> {
 
     /// Records the possible stores at the end of a step, and whether the encoder is back in its initial mode.
     pub(super) fn record_step_end(&mut self, is_back: bool) {
-        let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
+        let JournalNotes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } =
+            &mut self.notes
         else {
             return;
         };

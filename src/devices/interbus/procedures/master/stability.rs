@@ -6,22 +6,22 @@ use std::time::Duration;
 use crate::units::Moment;
 
 /// Number of consecutive cycles after which an echo or a value is stable. See reference 4.
-const STANDS: u32 = 2;
+const STABLE_CYCLES: u32 = 2;
 /// Minimum duration of a stable echo or value. It exceeds the time for which a gateway usually keeps a word (`U`).
-const STANDS_FOR: Duration = Duration::from_millis(10);
+const MIN_STABLE_TIME: Duration = Duration::from_millis(10);
 /// Time after which a word is accepted even if it could be the answer to the previous request (`U`).
-pub(super) const STAYS_FOR: Duration = Duration::from_millis(100);
+pub(super) const ACCEPTANCE_TIME: Duration = Duration::from_millis(100);
 /// Number of cycles that replaces a duration in recordings, in which no time passes.
-const STAYS: u32 = 20;
+const RECORDED_CYCLES: u32 = 20;
 
 /// Returns the minimum number of cycles to wait for an answer. It allows for cycles with old words, and for a lost
 /// reply that uses up the whole time limit.
 pub(super) const fn min_wait_cycles(recorded: bool) -> u32 {
-    if recorded { STAYS + 4 } else { 8 }
+    if recorded { RECORDED_CYCLES + 4 } else { 8 }
 }
 
 /// Lower limit for the time limit of the handshake. A shorter one would miss words that must persist.
-pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
+pub(super) const MIN_HANDSHAKE_TIMEOUT: Duration = Duration::from_millis(150);
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StabilityTimer {
@@ -39,7 +39,7 @@ impl StabilityTimer {
     }
 
     /// Records whether the condition holds in the current cycle.
-    pub(super) fn go_on(&mut self, holds: bool, now: Moment) {
+    pub(super) fn update(&mut self, holds: bool, now: Moment) {
         if !holds {
             *self = StabilityTimer::new(self.timeless);
             return;
@@ -50,16 +50,16 @@ impl StabilityTimer {
 
     /// Returns whether the condition has held long enough for an echo or a value.
     pub(super) fn is_stable(self) -> bool {
-        self.cycles >= STANDS && self.is_stable_for(STANDS_FOR)
+        self.cycles >= STABLE_CYCLES && self.is_stable_for(MIN_STABLE_TIME)
     }
 
     pub(super) fn is_settled(self) -> bool {
-        self.has_held_for(STAYS_FOR)
+        self.has_held_for(ACCEPTANCE_TIME)
     }
 
     /// Returns whether the condition has held for the given time and for the minimum number of cycles.
     pub(super) fn has_held_for(self, duration: Duration) -> bool {
-        let least = if self.timeless { STAYS } else { STANDS };
+        let least = if self.timeless { RECORDED_CYCLES } else { STABLE_CYCLES };
         self.cycles >= least && self.is_stable_for(duration)
     }
 

@@ -1,6 +1,6 @@
 //! Plans of edits: the writes, their order, and refusals.
 
-use super::super::test_profiles::{cam, edges, image, item, note, program, value, with};
+use super::super::test_profiles::{cam, cam_between, image, image_with, logbook_note, parse_item, program, value};
 use super::super::{Direction, ItemValue};
 use super::*;
 use crate::devices::interbus::protocol::{GearError, OutOfRange, WindowShift};
@@ -20,7 +20,7 @@ fn equal_values_are_not_written() {
     let plan = plan_edits(&image(), &image()).unwrap();
     assert_eq!(plan, InterbusPlan { base: Base::default(), ops: vec![] });
     // Values that are not wanted need not be known.
-    let nothing = Image::of(image().parameters);
+    let nothing = Image::from_parameters(image().parameters);
     assert!(plan_edits(&image(), &nothing).unwrap().is_empty());
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
 }
@@ -28,7 +28,13 @@ fn equal_values_are_not_written() {
 /// Issue 22.6: a zero shift is a position within the measuring range; one beyond the new range is changed first.
 #[test]
 fn a_zero_shift_must_be_within_the_measuring_range() {
-    let device = Image::of(Parameters { steps: 255, revolutions: 1, preset: 0, zero_shift: 0, ..image().parameters });
+    let device = Image::from_parameters(Parameters {
+        steps: 255,
+        revolutions: 1,
+        preset: 0,
+        zero_shift: 0,
+        ..image().parameters
+    });
     let with = |change: &dyn Fn(&mut Parameters)| {
         let mut wanted = device.clone();
         change(&mut wanted.parameters);
@@ -53,13 +59,13 @@ fn a_zero_shift_must_be_within_the_measuring_range() {
 #[test]
 fn a_full_set_writes_only_differences() {
     let device = image();
-    let wanted = with(
+    let wanted = image_with(
         &device,
         &[
-            ("cam:2:0", ItemValue::Cam(edges(20, 300))),
-            ("cam:2:7", ItemValue::Cam(edges(3500, 40))),
-            ("cam:5:3", ItemValue::Cam(edges(305, 400))),
-            ("cam:8:1", ItemValue::Cam(edges(0, 157))),
+            ("cam:2:0", ItemValue::Cam(cam_between(20, 300))),
+            ("cam:2:7", ItemValue::Cam(cam_between(3500, 40))),
+            ("cam:5:3", ItemValue::Cam(cam_between(305, 400))),
+            ("cam:8:1", ItemValue::Cam(cam_between(0, 157))),
             ("cam-mask:8", ItemValue::Mask(0x7F)),
         ],
     );
@@ -87,10 +93,10 @@ fn a_full_set_writes_only_differences() {
     let touched: Vec<u8> = plan.base.programs.iter().map(|(number, _)| number.get()).collect();
     assert_eq!((touched, plan.base.parameters, plan.base.shift), (vec![2, 5, 8], Some(device.parameters), None));
     assert_eq!(plan.base.programs[0].1, *device.program(program(2)).unwrap());
-    let items: Vec<String> = plan.ops.iter().map(Op::item).collect();
+    let items: Vec<String> = plan.ops.iter().map(Op::item_names).collect();
     assert_eq!(items, ["cam:2:0, cam:2:7", "cam:5:3", "cam-mask:8, cam:8:1"]);
-    assert_eq!(plan.ops.iter().map(Op::weight).sum::<u64>(), 5);
-    assert_eq!(note(&plan.ops[2]), "cam:8:1 start: 108 → 0, cam-mask:8: 0xFF → 0x7F");
+    assert_eq!(plan.ops.iter().map(Op::change_count).sum::<u64>(), 5);
+    assert_eq!(logbook_note(&plan.ops[2]), "cam:8:1 start: 108 → 0, cam-mask:8: 0xFF → 0x7F");
 }
 
 #[test]
@@ -102,20 +108,23 @@ fn all_parameters_need_one_store() {
         ("preset", Number(1)),
         ("zero-shift", Number(7)),
     ];
-    let plan = plan_edits(&device, &with(&device, &items)).unwrap();
+    let plan = plan_edits(&device, &image_with(&device, &items)).unwrap();
     assert_eq!(plan.write_cycles(), 1);
     assert_eq!(plan.base, Base { parameters: Some(device.parameters), ..Base::default() });
-    assert_eq!(note(&plan.ops[0]), "steps: 3600 → 7200, direction: cw → ccw, preset: 500 → 1, zero-shift: 0 → 7");
-    assert_eq!(plan.ops[0].weight(), 4);
+    assert_eq!(
+        logbook_note(&plan.ops[0]),
+        "steps: 3600 → 7200, direction: cw → ccw, preset: 500 → 1, zero-shift: 0 → 7"
+    );
+    assert_eq!(plan.ops[0].change_count(), 4);
 }
 
 /// A number is sent when it is within its limits: steps ≤ 8192 · turns, preset < steps (reference 3).
 #[test]
 fn parameters_are_sent_in_a_legal_order() {
     use Parameter::{Preset, Steps, Turns};
-    let image = Image::of(image().parameters);
+    let image = Image::from_parameters(image().parameters);
     let gear = |steps, turns, preset| {
-        with(&image, &[("steps", Number(steps)), ("revolutions", Number(turns)), ("preset", Number(preset))])
+        image_with(&image, &[("steps", Number(steps)), ("revolutions", Number(turns)), ("preset", Number(preset))])
     };
     let cases = [
         ("the range grows", gear(3600, 1, 500), gear(36_000, 10, 500), vec![(Turns, 10), (Steps, 36_000)]),
@@ -145,7 +154,7 @@ fn the_shift_is_stored_with_a_changed_program() {
     let device = image();
     let (zero, eight) = (WindowShift::new(0).unwrap(), WindowShift::new(8).unwrap());
     let items = [("shift", Number(8)), ("cam-mask:3", ItemValue::Mask(1)), ("cam-mask:6", ItemValue::Mask(2))];
-    let plan = plan_edits(&device, &with(&device, &items)).unwrap();
+    let plan = plan_edits(&device, &image_with(&device, &items)).unwrap();
     let shifts: Vec<_> = plan
         .ops
         .iter()
@@ -157,15 +166,15 @@ fn the_shift_is_stored_with_a_changed_program() {
     assert_eq!((shifts, plan.write_cycles()), (vec![(3, Some((zero, eight))), (6, None)], 2));
     assert_eq!(plan.base.shift, Some(zero));
     // Alone it costs one.
-    let plan = plan_edits(&device, &with(&device, &items[..1])).unwrap();
-    assert_eq!((plan.ops[0].item().as_str(), note(&plan.ops[0]).as_str()), ("shift", "shift: 0 → 8"));
+    let plan = plan_edits(&device, &image_with(&device, &items[..1])).unwrap();
+    assert_eq!((plan.ops[0].item_names().as_str(), logbook_note(&plan.ops[0]).as_str()), ("shift", "shift: 0 → 8"));
     assert_eq!((plan.ops.len(), plan.write_cycles(), plan.base.programs.len()), (1, 1, 1));
 }
 
 #[test]
 fn invalid_values_are_refused_with_both_limits() {
     let device = image();
-    let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &with(&device, items)).unwrap_err();
+    let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &image_with(&device, items)).unwrap_err();
     assert_eq!(refusal(&[("steps", Number(8193))]), GearError::Steps { steps: 8193, turns: 1, most: 8192 }.into());
     assert_eq!(refusal(&[("revolutions", Number(4097))]), GearError::Turns { turns: 4097 }.into());
     let preset = OutOfRange { parameter: Parameter::Preset, value: 3600, low: 0, high: 3599 };
@@ -177,40 +186,41 @@ fn invalid_values_are_refused_with_both_limits() {
     let mut items: Vec<(&str, ItemValue)> = short.iter().map(|(name, mask)| (name.as_str(), *mask)).collect();
     items.push(("steps", Number(360)));
     assert_eq!(refusal(&items), stays.into());
-    let start = refusal(&[("cam:2:5", ItemValue::Cam(edges(3600, 10)))]);
-    let beyond = PlanError::CamBeyondRange { item: item("cam:2:5"), edge: Edge::Start, position: 3600, last: 3599 };
+    let start = refusal(&[("cam:2:5", ItemValue::Cam(cam_between(3600, 10)))]);
+    let beyond =
+        PlanError::CamBeyondRange { item: parse_item("cam:2:5"), edge: Edge::Start, position: 3600, last: 3599 };
     assert_eq!(start, beyond);
     assert_eq!(start.to_string(), "cam:2:5, start: 3600 is not within 0 to 3599");
-    assert!(plan_edits(&device, &with(&device, &[("cam:2:5", ItemValue::Cam(edges(3599, 10)))])).is_ok());
+    assert!(plan_edits(&device, &image_with(&device, &[("cam:2:5", ItemValue::Cam(cam_between(3599, 10)))])).is_ok());
 }
 
 /// Cams that are not written may be beyond the range; active ones may not be left there.
 #[test]
 fn a_shorter_range_refuses_enabled_cams_beyond_it() {
     let device = image();
-    let shorter = with(&device, &[("steps", Number(750))]);
+    let shorter = image_with(&device, &[("steps", Number(750))]);
     // Cam 7 of program 1 ends at 750; those of program 8 at 757.
-    let beyond = PlanError::CamBeyondRange { item: item("cam:1:7"), edge: Edge::Stop, position: 750, last: 749 };
+    let beyond = PlanError::CamBeyondRange { item: parse_item("cam:1:7"), edge: Edge::Stop, position: 750, last: 749 };
     assert_eq!(plan_edits(&device, &shorter), Err(beyond.clone()));
     // Also if the image has no programs.
-    let parameters = Image::of(shorter.parameters);
+    let parameters = Image::from_parameters(shorter.parameters);
     assert_eq!(plan_edits(&device, &parameters), Err(beyond));
     let mut resting = shorter;
     for number in ProgramNumber::all() {
-        resting.put(Item::CamMask(number), ItemValue::Mask(0x7F));
+        resting.set_value(Item::CamMask(number), ItemValue::Mask(0x7F));
     }
     assert_eq!(plan_edits(&device, &resting).unwrap().write_cycles(), 9);
 }
 
 #[test]
 fn unread_values_are_not_changed() {
-    let device = Image::of(image().parameters);
-    let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &with(&device, items)).unwrap_err();
-    assert_eq!(refusal(&[("cam-mask:4", ItemValue::Mask(1))]), PlanError::NotRead { item: item("cam-mask:4") });
+    let device = Image::from_parameters(image().parameters);
+    let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &image_with(&device, items)).unwrap_err();
+    assert_eq!(refusal(&[("cam-mask:4", ItemValue::Mask(1))]), PlanError::NotRead { item: parse_item("cam-mask:4") });
     assert_eq!(refusal(&[("shift", Number(8))]), PlanError::NotRead { item: Item::Shift });
-    let empty = with(&device, &[("cam-mask:4", ItemValue::Mask(1))]);
-    let wanted = with(&empty, &[("cam:4:2", ItemValue::Cam(edges(1, 2)))]);
-    assert_eq!(plan_edits(&empty, &wanted), Err(PlanError::NotRead { item: item("cam:4:2") }));
+    let empty = image_with(&device, &[("cam-mask:4", ItemValue::Mask(1))]);
+    let wanted = image_with(&empty, &[("cam:4:2", ItemValue::Cam(cam_between(1, 2)))]);
+    assert_eq!(plan_edits(&empty, &wanted), Err(PlanError::NotRead { item: parse_item("cam:4:2") }));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What a restore writes, leaves and refuses; what a comparison names.
 
-use super::super::test_profiles::{edges, identity, image, note, profile, value, with};
+use super::super::test_profiles::{cam_between, identity, image, image_with, logbook_note, profile, value};
 use super::super::{Base, ItemValue, Op};
 use super::*;
 use crate::devices::interbus::protocol::{Flags, WindowShift};
@@ -11,11 +11,11 @@ use ItemValue::{Cam, Mask, Number};
 const MINE: &str = "1234567";
 
 fn device(serial_number: &str, items: &[(&str, ItemValue)]) -> DeviceState {
-    DeviceState { identity: identity(serial_number), image: with(&image(), items) }
+    DeviceState { identity: identity(serial_number), image: image_with(&image(), items) }
 }
 
 fn operations(restore: &Restore) -> Vec<String> {
-    restore.plan.ops.iter().map(note).collect()
+    restore.plan.ops.iter().map(logbook_note).collect()
 }
 
 #[test]
@@ -28,13 +28,14 @@ fn an_equal_profile_writes_nothing() {
 
 #[test]
 fn only_differences_are_written() {
-    let items = [("steps", Number(4096)), ("preset", Number(1)), ("cam:3:4", Cam(edges(1, 2))), ("shift", Number(8))];
+    let items =
+        [("steps", Number(4096)), ("preset", Number(1)), ("cam:3:4", Cam(cam_between(1, 2))), ("shift", Number(8))];
     let restore = plan_restore(&profile(MINE), &device(MINE, &items), RestoreOptions::default()).unwrap();
     let expected =
         ["steps: 4096 → 3600, preset: 1 → 500", "cam:3:4 start: 1 → 403, cam:3:4 stop: 2 → 452, shift: 8 → 0"];
     assert_eq!(operations(&restore), expected);
     assert_eq!((restore.plan.write_cycles(), restore.unchanged), (2, 74));
-    let written: u64 = restore.plan.ops.iter().map(Op::weight).sum();
+    let written: u64 = restore.plan.ops.iter().map(Op::change_count).sum();
     assert_eq!(written + restore.unchanged, 78);
 }
 
@@ -65,7 +66,7 @@ fn only_marked_items_belong_to_the_mounting() {
     if let Some(mark) = of.mounting.first_mut() {
         mark.item = "cam:1:1".parse().unwrap();
     }
-    let other = device("7654321", &[("preset", Number(7)), ("cam:1:1", Cam(edges(0, 1)))]);
+    let other = device("7654321", &[("preset", Number(7)), ("cam:1:1", Cam(cam_between(0, 1)))]);
     let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let restore = plan_restore(&of, &other, options).unwrap();
     assert_eq!((operations(&restore), restore.mounting_left.len()), (vec!["preset: 7 → 500".to_owned()], 1));
@@ -162,14 +163,15 @@ fn ready_made_profiles_plan_the_expected_writes() {
     // Three programs; steps, turns and direction are those of the tests, the preset belongs to the mounting.
     assert_eq!((restore.plan.ops.len(), restore.plan.write_cycles()), (3, 3));
     assert_eq!((restore.mounting_left, restore.missing), (vec![Item::Preset], Vec::<String>::new()));
-    let after = machine.image.known().map(|(number, own)| (machine.names.program(number), own.outputs(value(1500))));
+    let after =
+        machine.image.known_programs().map(|(number, own)| (machine.names.program(number), own.outputs(value(1500))));
     assert_eq!(
         after.collect::<Vec<_>>(),
         [("carton 120 mm", 1 << 2), ("carton 180 mm", 1 << 2), ("set-up, glue off", 0)]
     );
     // 100 steps per millimetre over 2.5 m; the preset is not within the encoder's range.
     let spindle = read("scaled-encoder.ron");
-    assert_eq!(spindle.image.parameters.gear().map(|gear| gear.steps()), Ok(250_000));
+    assert_eq!(spindle.image.parameters.gear().map(|gear| gear.total_steps()), Ok(250_000));
     let with_it = RestoreOptions { with_mounting: true, ..RestoreOptions::default() };
     let restore = plan_restore(&spindle, &now, with_it).unwrap();
     let expected = ["revolutions: 1 → 250, steps: 3600 → 250000, direction: cw → ccw, preset: 500 → 125000"];
@@ -182,8 +184,9 @@ fn a_comparison_lists_the_differences() {
     right.recorded.temperature_tenths = None;
     assert_eq!(left.compare(&right).compared, 78);
     assert!(left.compare(&right).differences.is_empty());
-    right.image = with(&right.image, &[("direction", ItemValue::Direction(super::super::Direction::Counterclockwise))]);
-    right.image = with(&right.image, &[("cam:2:5", Cam(edges(1, 2))), ("cam-mask:2", Mask(0x0F))]);
+    right.image =
+        image_with(&right.image, &[("direction", ItemValue::Direction(super::super::Direction::Counterclockwise))]);
+    right.image = image_with(&right.image, &[("cam:2:5", Cam(cam_between(1, 2))), ("cam-mask:2", Mask(0x0F))]);
     right.image.shift = WindowShift::new(25);
     right.image.programs[7] = None;
     let comparison = left.compare(&right);

@@ -13,7 +13,7 @@ pub(super) struct Columns {
 }
 
 /// Recognised header words in lower case.
-const WORDS: [(Column, &[&str]); 5] = [
+const HEADER_WORDS: [(Column, &[&str]); 5] = [
     (Column::Program, &["program", "programm", "prog", "prg", "p"]),
     (Column::Cam, &["cam", "nocken", "nocke", "nr", "no", "number", "nummer", "output", "ausgang"]),
     (Column::Name, &["name", "track", "spur", "label", "signal", "bezeichnung", "funktion", "function"]),
@@ -26,8 +26,8 @@ impl Columns {
     pub(super) fn from_header(cells: &[&str]) -> Option<Self> {
         let mut places: Vec<(Column, usize)> = Vec::new();
         for (place, cell) in cells.iter().enumerate() {
-            let known = WORDS.iter().find(|(column, words)| {
-                words.contains(&word(cell).as_str()) && places.iter().all(|(own, _)| own != column)
+            let known = HEADER_WORDS.iter().find(|(column, words)| {
+                words.contains(&first_word(cell).as_str()) && places.iter().all(|(own, _)| own != column)
             });
             places.extend(known.map(|(column, _)| (*column, place)));
         }
@@ -51,7 +51,7 @@ impl Columns {
         Columns { places, cam_or_name: matches!(count, 3 | 4) }
     }
 
-    pub(super) fn place(&self, column: Column) -> Option<usize> {
+    pub(super) fn index_of(&self, column: Column) -> Option<usize> {
         self.places.iter().find(|(own, _)| *own == column).map(|(_, place)| *place)
     }
 }
@@ -85,7 +85,7 @@ pub(super) fn unit(cell: &str) -> Option<Unit> {
 }
 
 /// Returns the first word of a cell in lower case.
-fn word(cell: &str) -> String {
+fn first_word(cell: &str) -> String {
     let cell = cell.trim().trim_start_matches('\u{FEFF}').to_lowercase();
     cell.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()
 }

@@ -17,14 +17,14 @@ pub fn emit(image: &Image, names: &CamNames, scale: &Scale, decimal_comma: bool)
     };
     let mut table = String::new();
     let header = ["program", "cam", "name", &format!("start [{unit}]"), &format!("stop [{unit}]")];
-    line(&mut table, &header, separator);
+    append_row(&mut table, &header, separator);
     let range = image.parameters.steps;
     let number = |step| {
         let value = scale.value(step, range);
-        let text = format!("{value:.*}", scale.decimals());
+        let text = format!("{value:.*}", scale.decimal_places());
         if decimal_comma { text.replace('.', ",") } else { text }
     };
-    for (program, own) in image.known() {
+    for (program, own) in image.known_programs() {
         for (number_of, cam) in CamNumber::all().zip(&own.cams).filter(|(number, _)| own.is_on(*number)) {
             let Some(cam) = cam else { continue };
             let cells = [
@@ -34,13 +34,13 @@ pub fn emit(image: &Image, names: &CamNames, scale: &Scale, decimal_comma: bool)
                 number(cam.start.get()),
                 number(cam.stop.get()),
             ];
-            line(&mut table, &cells.each_ref().map(String::as_str), separator);
+            append_row(&mut table, &cells.each_ref().map(String::as_str), separator);
         }
     }
     table
 }
 
-fn line(table: &mut String, cells: &[&str], separator: char) {
+fn append_row(table: &mut String, cells: &[&str], separator: char) {
     for (place, cell) in cells.iter().enumerate() {
         if place > 0 {
             table.push(separator);

@@ -7,13 +7,13 @@ use super::{
     CamTable, Column, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableProblemKind, TableRow,
 };
 use crate::analysis::capture::Delimiter;
-use crate::devices::interbus::profile::{Outside, Placed, Unit};
+use crate::devices::interbus::profile::{OutsideRangeError, RoundedPosition, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
 /// Maximum number of rows in a cam table. All eight programs need 64 rows.
-const MOST_ROWS: usize = 1000;
+const MAX_ROWS: usize = 1000;
 /// Maximum number of characters of an invalid cell that a message contains.
-const SHOWN: usize = 24;
+const MAX_EXCERPT_CHARS: usize = 24;
 
 struct TableLine {
     /// Line number, counted from 1.
@@ -22,7 +22,7 @@ struct TableLine {
 }
 
 /// A row whose cam is not assigned yet, unless the row names one.
-struct Draft {
+struct DraftRow {
     line: u64,
     /// Column that error messages refer to. This is the column of the cam or of the name, or else the first column.
     column: u64,
@@ -47,7 +47,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
         return table;
     }
     let mut drafts = Vec::new();
-    for line in lines.iter().skip(usize::from(table.header)).take(MOST_ROWS) {
+    for line in lines.iter().skip(usize::from(table.header)).take(MAX_ROWS) {
         match parse_draft(options, &columns, line, delimiter != Delimiter::Comma) {
             Ok(draft) => drafts.push(draft),
             Err(problem) => table.problems.push(problem),
@@ -56,7 +56,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
     if drafts.is_empty() && table.problems.is_empty() {
         table.problems.push(TableProblem { line: first.number, column: 1, kind: TableProblemKind::Empty });
     }
-    table.place(drafts);
+    table.assign_cams(drafts);
     table.problems.sort_by_key(|problem| (problem.line, problem.column));
     table.note_repeated_names();
     table
@@ -68,7 +68,7 @@ impl CamTable {
         let cells: Vec<&str> = first.cells.iter().map(String::as_str).collect();
         let count = lines.iter().map(|line| line.cells.len()).max().unwrap_or_default();
         // A line without any number is a header.
-        self.header = !cells.iter().any(|cell| number(cell, true).is_some());
+        self.header = !cells.iter().any(|cell| parse_number(cell, true).is_some());
         if !self.header {
             return Columns::from_column_count(count);
         }
@@ -77,7 +77,8 @@ impl CamTable {
             self.notes.push(TableNote::OtherHeader);
         }
         let columns = known.unwrap_or_else(|| Columns::from_column_count(count));
-        let mut missing = [Column::Start, Column::Stop].into_iter().filter(|column| columns.place(*column).is_none());
+        let mut missing =
+            [Column::Start, Column::Stop].into_iter().filter(|column| columns.index_of(*column).is_none());
         if let Some(column) = missing.next() {
             self.problems.push(TableProblem {
                 line: first.number,
@@ -85,7 +86,7 @@ impl CamTable {
                 kind: TableProblemKind::NoColumn(column),
             });
         }
-        let named = [Column::Start, Column::Stop].into_iter().filter_map(|column| cells.get(columns.place(column)?));
+        let named = [Column::Start, Column::Stop].into_iter().filter_map(|column| cells.get(columns.index_of(column)?));
         let used = options.scale.unit();
         if let Some(header) = named.filter_map(|cell| columns::unit(cell)).find(|unit| *unit != used) {
             self.notes.push(TableNote::OtherUnit { header, used });
@@ -95,10 +96,10 @@ impl CamTable {
 
     /// Assigns a cam to each row. The cams that rows name are assigned first, and the other rows receive the remaining
     /// cams.
-    fn place(&mut self, drafts: Vec<Draft>) {
+    fn assign_cams(&mut self, drafts: Vec<DraftRow>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
-        let wrong = |draft: &Draft, what| TableProblem { line: draft.line, column: draft.column, kind: what };
+        let wrong = |draft: &DraftRow, what| TableProblem { line: draft.line, column: draft.column, kind: what };
         for (draft, own) in drafts.iter().zip(&mut rows) {
             let Some(cam) = draft.cam else { continue };
             let earlier = taken.iter().find(|(program, number, _)| (*program, *number) == (draft.program, cam));
@@ -122,7 +123,7 @@ impl CamTable {
             }
         }
         let placed = drafts.into_iter().zip(rows).filter_map(|(draft, cam)| {
-            let Draft { line, program, name, start, stop, .. } = draft;
+            let DraftRow { line, program, name, start, stop, .. } = draft;
             Some(TableRow { line, program, cam: cam?, name, start, stop })
         });
         self.rows = placed.collect();
@@ -149,7 +150,7 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     let mut lines = Vec::new();
     for (line, number) in text.lines().zip(1..) {
         // Each line is parsed as a row, so an unclosed quote affects only one line.
-        let cells = cells(&mut ReaderBuilder::new().delimiter(delimiter.byte()).build(), line);
+        let cells = split_cells(&mut ReaderBuilder::new().delimiter(delimiter.byte()).build(), line);
         if cells.iter().any(|cell| !cell.is_empty()) {
             lines.push(TableLine { number, cells });
         }
@@ -158,7 +159,7 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
 }
 
 /// Splits a line into cells, without their quotes and surrounding blanks.
-fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
+fn split_cells(reader: &mut Reader, line: &str) -> Vec<String> {
     // Since quotes are removed, the output is not longer than the input and has no more ends than characters.
     let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
     let (mut read, mut written, mut ended) = (0, 0, 0);
@@ -187,21 +188,21 @@ fn parse_draft(
     columns: &Columns,
     line: &TableLine,
     comma: bool,
-) -> Result<Draft, TableProblem> {
-    let at = |column| columns.place(column).map_or(1, |place| place as u64 + 1);
+) -> Result<DraftRow, TableProblem> {
+    let at = |column| columns.index_of(column).map_or(1, |place| place as u64 + 1);
     let wrong = |column, what| TableProblem { line: line.number, column: at(column), kind: what };
-    let cell = |column| columns.place(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);
+    let cell = |column| columns.index_of(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);
     let program = match cell(Column::Program) {
         "" => options.program,
         text => {
-            let own =
-                whole(text, &["program", "programm", "p"]).and_then(|own| ProgramNumber::new(u8::try_from(own).ok()?));
+            let own = parse_whole(text, &["program", "programm", "p"])
+                .and_then(|own| ProgramNumber::new(u8::try_from(own).ok()?));
             own.ok_or_else(|| wrong(Column::Program, TableProblemKind::Program { text: text_excerpt(text) }))?
         }
     };
     let (mut cam, mut name) = (None, cell(Column::Name).to_owned());
     let text = cell(Column::Cam);
-    match whole(text, &["cam", "nocken", "nocke"]) {
+    match parse_whole(text, &["cam", "nocken", "nocke"]) {
         Some(own) => {
             let own = u8::try_from(own).ok().and_then(CamNumber::new);
             cam = Some(own.ok_or_else(|| wrong(Column::Cam, TableProblemKind::Cam { text: text_excerpt(text) }))?);
@@ -216,39 +217,40 @@ fn parse_draft(
     }
     let value = |column| match cell(column) {
         "" => Err(wrong(column, TableProblemKind::Missing(column))),
-        text => number(text, comma).ok_or_else(|| wrong(column, TableProblemKind::Number { text: text_excerpt(text) })),
+        text => parse_number(text, comma)
+            .ok_or_else(|| wrong(column, TableProblemKind::Number { text: text_excerpt(text) })),
     };
     let (start, stop) = (value(Column::Start)?, value(Column::Stop)?);
     let outside = |column| move |outside| wrong(column, TableProblemKind::Outside { column, outside });
-    let (start, stop) = edges(options, start, stop, outside(Column::Start), outside(Column::Stop))?;
-    let column = if columns.place(Column::Cam).is_some() { at(Column::Cam) } else { at(Column::Name) };
-    Ok(Draft { line: line.number, column, program, cam, name, start, stop })
+    let (start, stop) = parse_edges(options, start, stop, outside(Column::Start), outside(Column::Stop))?;
+    let column = if columns.index_of(Column::Cam).is_some() { at(Column::Cam) } else { at(Column::Name) };
+    Ok(DraftRow { line: line.number, column, program, cam, name, start, stop })
 }
 
 /// Returns both edges in steps. If a pulse spans the whole range, its stop is the step before its start.
-fn edges(
+fn parse_edges(
     options: &TableOptions,
     start: f64,
     stop: f64,
-    start_outside: impl Fn(Outside) -> TableProblem,
-    stop_outside: impl Fn(Outside) -> TableProblem,
+    start_outside: impl Fn(OutsideRangeError) -> TableProblem,
+    stop_outside: impl Fn(OutsideRangeError) -> TableProblem,
 ) -> Result<(TableEdge, TableEdge), TableProblem> {
     let (scale, range) = (&options.scale, options.range);
-    let edge = |requested, Placed { step, off }| TableEdge { requested, step, off };
-    let first = scale.place(start, range).map_err(start_outside)?;
-    let span = scale.span(range);
+    let edge = |requested, RoundedPosition { step, off }| TableEdge { requested, step, off };
+    let first = scale.round_position(start, range).map_err(start_outside)?;
+    let span = scale.range_length(range);
     let one = span / f64::from(range.max(1));
     if scale.wraps_around(range) && scale.unit() != Unit::Steps && (stop - start - span).abs() < one / 2.0 {
         let step = first.step.checked_sub(1).unwrap_or(range.saturating_sub(1));
         let off = start + first.off + span - one - stop;
         return Ok((edge(start, first), TableEdge { requested: stop, step, off }));
     }
-    let last = scale.place(stop, range).map_err(stop_outside)?;
+    let last = scale.round_position(stop, range).map_err(stop_outside)?;
     Ok((edge(start, first), edge(stop, last)))
 }
 
 /// Parses a number, which may be followed by a unit. A decimal comma is only accepted if `comma` is set.
-fn number(text: &str, comma: bool) -> Option<f64> {
+fn parse_number(text: &str, comma: bool) -> Option<f64> {
     let text = text.trim();
     let text =
         ["°", "mm", "deg", "Grad", "grad"].iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
@@ -260,7 +262,7 @@ fn number(text: &str, comma: bool) -> Option<f64> {
 }
 
 /// Parses a whole number, which may be preceded by one of the given words.
-fn whole(text: &str, words: &[&str]) -> Option<u64> {
+fn parse_whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
     // Only digits are accepted, since a name such as 1e3 is possible.
@@ -269,12 +271,12 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
 }
 
 fn text_excerpt(text: &str) -> String {
-    let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
-    if text.chars().count() > SHOWN {
+    let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(MAX_EXCERPT_CHARS).collect();
+    if text.chars().count() > MAX_EXCERPT_CHARS {
         excerpt.push('…');
     }
     excerpt
 }
 
 /// Checks that a table has room for every cam.
-const _: () = assert!(MOST_ROWS >= Program::CAMS * ProgramNumber::COUNT);
+const _: () = assert!(MAX_ROWS >= Program::CAMS * ProgramNumber::COUNT);

@@ -2,7 +2,7 @@
 
 use super::{CamTable, Column, TableNote, TableOptions, TableProblem, TableProblemKind, emit_table};
 use crate::analysis::capture::Delimiter;
-use crate::devices::interbus::profile::{CamNames, Direction, Image, Outside, Parameters, Scale, Unit};
+use crate::devices::interbus::profile::{CamNames, Direction, Image, OutsideRangeError, Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
 fn number(program: u8) -> ProgramNumber {
@@ -51,7 +51,7 @@ fn columns_are_found_by_name_or_position() {
 
 #[test]
 fn decimal_commas_are_accepted_if_no_delimiter() {
-    let degrees = options(Scale::degrees(3600.0, 0).unwrap(), 3600);
+    let degrees = options(Scale::in_degrees(3600.0, 0).unwrap(), 3600);
     for (text, delimiter) in [
         ("10,5;20,25°", Delimiter::Semicolon),
         ("10.5\t20.25", Delimiter::Tab),
@@ -70,21 +70,21 @@ fn decimal_commas_are_accepted_if_no_delimiter() {
 fn rounding_of_an_edge_is_reported() {
     // 8192 steps per turn, the machine's 0 at 1000: 10° are 227.56 steps and 228 are 10.0195°; 350° are 7964.44, and 7964
     // 349.9805°.
-    let table = options(Scale::degrees(8192.0, 1000).unwrap(), 8192).read("feed;350;10\nplain;0;90");
+    let table = options(Scale::in_degrees(8192.0, 1000).unwrap(), 8192).read("feed;350;10\nplain;0;90");
     assert_eq!(rows(&table), [(1, 0, "feed", 772, 1228), (1, 1, "plain", 1000, 3048)]);
     let row = &table.rows[0];
     assert!((row.start.off + 0.019_531_25).abs() < 1e-9 && (row.stop.off - 0.019_531_25).abs() < 1e-9, "{row:?}");
     assert_eq!((row.start.requested, row.stop.requested), (350.0, 10.0));
-    assert_eq!(table.rounded().map(|row| row.line).collect::<Vec<_>>(), [1]);
+    assert_eq!(table.rounded_rows().map(|row| row.line).collect::<Vec<_>>(), [1]);
     assert!((table.max_rounding_error() - 0.019_531_25).abs() < 1e-9);
-    let table = options(Scale::millimetres(12.5, 0).unwrap(), 10_000).read("feed;100;200,03");
+    let table = options(Scale::in_millimetres(12.5, 0).unwrap(), 10_000).read("feed;100;200,03");
     assert_eq!(rows(&table), [(1, 0, "feed", 1250, 2500)]);
     assert!((table.rows[0].stop.off + 0.03).abs() < 1e-9);
 }
 
 #[test]
 fn a_full_turn_pulse_ends_just_before_its_start() {
-    let degrees = options(Scale::degrees(1000.0, 0).unwrap(), 1000);
+    let degrees = options(Scale::in_degrees(1000.0, 0).unwrap(), 1000);
     for (text, start, stop) in [("0;360", 0, 999), ("90;450", 250, 249), ("-90;270", 750, 749), ("350;370", 972, 28)] {
         assert_eq!(rows(&degrees.read(text)), [(1, 0, "", start, stop)], "{text}");
     }
@@ -106,7 +106,7 @@ fn two_pulses_on_one_track_take_two_cams_with_a_note() {
 fn cams_without_a_number_take_the_free_ones() {
     let table = steps("cam;name;start;stop\n;a;1;2\n0;b;3;4\n;c;5;6\n2;d;7;8\n");
     assert_eq!(rows(&table), [(1, 1, "a", 1, 2), (1, 0, "b", 3, 4), (1, 3, "c", 5, 6), (1, 2, "d", 7, 8)]);
-    let filled = table.filled();
+    let filled = table.to_programs();
     assert_eq!(filled.len(), 1);
     assert_eq!(filled[0].cams.iter().flatten().count(), 4);
     assert_eq!((filled[0].names[3].as_str(), filled[0].names[7].as_str()), ("c", ""));
@@ -132,7 +132,7 @@ fn errors_name_line_and_column_and_valid_rows_are_kept() {
         1;6;i;inf;2\n";
     let table = steps(text);
     let told = |text: &str| text.to_owned();
-    let outside = |value| Outside { value, least: 0.0, most: 999.0 };
+    let outside = |value| OutsideRangeError { value, least: 0.0, most: 999.0 };
     let expected = [
         problem(2, 1, TableProblemKind::Program { text: told("9") }),
         problem(3, 2, TableProblemKind::Cam { text: told("8") }),
@@ -173,7 +173,7 @@ fn empty_tables_are_reported() {
 
 #[test]
 fn a_header_with_another_unit_is_noted() {
-    let table = options(Scale::degrees(1000.0, 0).unwrap(), 1000).read("name;start [mm];stop [mm]\nfeed;36;72\n");
+    let table = options(Scale::in_degrees(1000.0, 0).unwrap(), 1000).read("name;start [mm];stop [mm]\nfeed;36;72\n");
     assert_eq!(rows(&table), [(1, 0, "feed", 100, 200)]);
     assert_eq!(table.notes, [TableNote::OtherUnit { header: Unit::Millimetres, used: Unit::Degrees }]);
     assert_eq!(steps("start (steps);stop (steps)\n1;2").notes, []);
@@ -186,12 +186,12 @@ fn emitted_tables_parse_back() {
     let edges = |start, stop| Some(Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() });
     for (range, scale) in [
         (1000, Scale::default()),
-        (1000, Scale::degrees(1000.0, 300).unwrap()),
-        (8192, Scale::degrees(8192.0, 4000).unwrap()),
-        (33_554_431, Scale::degrees(33_554_431.0, 5).unwrap()),
-        (20_000, Scale::millimetres(7.77, 1234).unwrap()),
+        (1000, Scale::in_degrees(1000.0, 300).unwrap()),
+        (8192, Scale::in_degrees(8192.0, 4000).unwrap()),
+        (33_554_431, Scale::in_degrees(33_554_431.0, 5).unwrap()),
+        (20_000, Scale::in_millimetres(7.77, 1234).unwrap()),
     ] {
-        let mut image = Image::of(parameters(range));
+        let mut image = Image::from_parameters(parameters(range));
         let mut program = Program { mask: 0b1000_0101, ..Program::default() };
         program.cams[0] = edges(range - 7, 3);
         program.cams[2] = edges(range / 3, range / 2);

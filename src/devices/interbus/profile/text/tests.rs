@@ -1,6 +1,6 @@
 //! The text, written and parsed, in the form of a user, and its errors.
 
-use super::super::test_profiles::{cam, edges, profile, program};
+use super::super::test_profiles::{cam, cam_between, profile, program};
 use super::*;
 use crate::profile::testing::{assert_edit_in_place, edit_profile};
 use crate::profile::{Body, Change, ChangedSide, ProfileDocument, UpdatedText, diverging_changes};
@@ -61,9 +61,9 @@ fn emitted_profiles_parse_back() {
 fn a_short_profile_leaves_the_rest_unset() {
     let read = parse(SHORT).unwrap();
     assert_eq!(read.image.parameters.direction, Direction::Counterclockwise);
-    assert_eq!((read.image.shift, read.image.known().count()), (None, 1));
+    assert_eq!((read.image.shift, read.image.known_programs().count()), (None, 1));
     let own = read.image.program(program(2)).unwrap();
-    assert_eq!((own.mask, own.cam(cam(2)), own.cam(cam(0))), (5, Some(edges(3500, 40)), None));
+    assert_eq!((own.mask, own.cam(cam(2)), own.cam(cam(0))), (5, Some(cam_between(3500, 40)), None));
     assert_eq!((read.names.program(program(2)), read.names.cam(program(2), cam(2))), ("carton", "glue"));
     let items: Vec<String> = read.items().map(|item| item.to_string()).collect();
     let parameters = ["steps", "revolutions", "direction", "preset", "zero-shift"];
@@ -122,7 +122,7 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
-        program.set_cam(cam(1), Some(edges(15, 20)));
+        program.set_cam(cam(1), Some(cam_between(15, 20)));
     };
     assert_edit_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
 }
@@ -133,7 +133,7 @@ fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |note, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), None);
-        program.set_cam(cam(4), Some(edges(300, 400)));
+        program.set_cam(cam(4), Some(cam_between(300, 400)));
         *note = Some("as of today".to_owned());
     });
     let expected = COMMENTED

@@ -2,8 +2,8 @@
 //! 5).
 
 use super::{Encoder, LOST};
-use crate::devices::interbus::protocol::{CamOutput, Class, Single, StartupMode, Value};
-use crate::devices::interbus::sim::memory::PLACES;
+use crate::devices::interbus::protocol::{CamOutput, Class, SingleWord, StartupMode, Value};
+use crate::devices::interbus::sim::memory::DISC_POSITIONS;
 use crate::units::Moment;
 
 impl Encoder {
@@ -11,39 +11,39 @@ impl Encoder {
     /// it wraps.
     pub(super) fn trigger_preset(&mut self, now: Moment) {
         let gear = self.memory.gear;
-        let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
+        let (steps, range) = (u64::from(gear.total_steps()), u64::from(gear.total_disc_steps()));
         let zero_shift = u64::from(self.memory.zero_shift) % steps;
         let wanted = (u64::from(self.memory.preset) + steps - zero_shift) % steps;
         // This is the first disc step that has the wanted position.
         let place = (wanted * range).div_ceil(steps);
-        self.offset = place as i64 - self.turned(now);
+        self.offset = place as i64 - self.position_in_direction(now);
     }
 
     /// Returns the shaft position in the configured counting direction.
-    fn turned(&self, now: Moment) -> i64 {
-        let place = self.shaft.place(now);
+    fn position_in_direction(&self, now: Moment) -> i64 {
+        let place = self.shaft.position_at(now);
         if self.memory.counterclockwise { -place } else { place }
     }
 
     /// Returns the position in steps.
     fn position(&self, now: Moment) -> Value {
         let gear = self.memory.gear;
-        let place = (self.turned(now) + self.offset).rem_euclid(i64::from(gear.range()));
+        let place = (self.position_in_direction(now) + self.offset).rem_euclid(i64::from(gear.total_disc_steps()));
         // The disc position is below the range, which has at most 26 bits.
         let position = u64::from(gear.position(place as u32).get()) + u64::from(self.memory.zero_shift);
-        Value::from_word((position % u64::from(gear.steps())) as u32)
+        Value::from_word((position % u64::from(gear.total_steps())) as u32)
     }
 
     /// Returns the IN word of a running encoder.
-    pub(super) fn live(&self, now: Moment) -> u32 {
+    pub(super) fn running_in_word(&self, now: Moment) -> u32 {
         let position = self.position(now);
         match (self.class, self.mode) {
             (Class::K1, _) => {
                 // A K1 encoder sends 12 of the 13 bits of a turn.
-                let place = self.turned(now).rem_euclid(i64::from(PLACES)) >> 1;
-                Single::parse_k1(place as u16 & 0x0FFF).emit()
+                let place = self.position_in_direction(now).rem_euclid(i64::from(DISC_POSITIONS)) >> 1;
+                SingleWord::parse_k1(place as u16 & 0x0FFF).emit()
             }
-            (Class::K2, _) => Single::parse_k2(position.get()).emit(),
+            (Class::K2, _) => SingleWord::parse_k2(position.get()).emit(),
             (Class::K3, _) if self.eeprom.lost => LOST,
             (Class::K3, StartupMode::Velocity) => {
                 let rpm = self.shaft.rpm().round() as i32;
@@ -52,7 +52,7 @@ impl Encoder {
             }
             (Class::K3, StartupMode::Cams(program)) => {
                 let outputs = self.memory.program(program).outputs(position);
-                CamOutput::at(position, outputs, self.memory.shift).emit()
+                CamOutput::at_position(position, outputs, self.memory.shift).emit()
             }
             (Class::K3, _) => position.get(),
         }

@@ -48,9 +48,9 @@ impl Encoder {
             return Some(CHIP | u32::from(register));
         }
         let tens_of_minutes = u32::try_from(now.since_start().as_secs() / 600).unwrap_or(u32::MAX);
-        Some(match read_out.number() {
+        Some(match read_out.to_u16() {
             0x0 => identity.serial_number,
-            0x1 => memory.gear.steps() - minus_one,
+            0x1 => memory.gear.total_steps() - minus_one,
             0x2 => memory.gear.turns(),
             0x3 if identity.complement_bit => memory.direction() - 3,
             0x3 => memory.direction(),

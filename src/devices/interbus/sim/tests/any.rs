@@ -21,14 +21,14 @@ proptest! {
     fn any_words_keep_the_memory_consistent(words in prop::collection::vec((word(), 0_u64..30), 0..60), stores in 495_u32..505) {
         let mut master = Master::with(&format!("stale=1&busy=5&cams=demo&steps=360&revolutions=1&stores={stores}&rpm=60"));
         for (word, pause) in words {
-            let before = master.encoder.stores();
+            let before = master.encoder.store_count();
             master.write(word);
             master.wait(pause);
             master.read();
             let (encoder, memory) = (&master.encoder, master.encoder.memory());
             // A word uses at most one store, and only one that leaves something does.
-            prop_assert!(encoder.stores() == before || encoder.stores() == before + 1 && word >> 29 != 0);
-            prop_assert!(memory.gear().steps() <= 8192 * memory.gear().turns());
+            prop_assert!(encoder.store_count() == before || encoder.store_count() == before + 1 && word >> 29 != 0);
+            prop_assert!(memory.gear().total_steps() <= 8192 * memory.gear().turns());
             prop_assert!(ProgramNumber::all().all(|number| memory.program(number).cams.iter().all(Option::is_some)));
         }
         // Without power only stored values remain.

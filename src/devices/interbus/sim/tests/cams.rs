@@ -29,7 +29,7 @@ fn the_manuals_example_matches() {
     assert_eq!([20, 21, 531, 532].map(|position| outputs(&mut master, position)), [0, 8, 8, 0]);
     let expected = Cam { start: Value::new(0x15).unwrap(), stop: Value::new(0x213).unwrap() };
     let kept = master.encoder.stored().program(program(1));
-    assert_eq!((kept.cams[3], kept.mask, master.encoder.stores()), (Some(expected), 8, 4));
+    assert_eq!((kept.cams[3], kept.mask, master.encoder.store_count()), (Some(expected), 8, 4));
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn edges_beyond_the_range_and_nonexistent_cams_are_refused() {
     for (word, error) in cases {
         master.exchange(&[(word, error), (0x8000_0000, position)]);
     }
-    assert_eq!(master.encoder.stores(), 4);
+    assert_eq!(master.encoder.store_count(), 4);
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn cams_mask_and_shift_are_read_from_the_running_program() {
         (0x2020_0040, 0xA000_0004),
         (0x8000_0000, 0x0000_0600),
     ]);
-    assert_eq!(master.encoder.stores(), 4, "reading and selecting store nothing");
+    assert_eq!(master.encoder.store_count(), 4, "reading and selecting store nothing");
 }
 
 #[test]
@@ -107,18 +107,18 @@ fn unstored_changes_keep_the_outputs_invalid() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001]);
     master.exchange(&[(0x4600_0015, 0xC600_0015), (0x2020_0013, 0xA000_0015), (0, 0x8000_0000)]);
-    assert_eq!(master.encoder.stores(), 3);
+    assert_eq!(master.encoder.store_count(), 3);
     master.exchange(&[(0x8000_0000, 0x0000_6400)]);
-    assert_eq!(master.encoder.stores(), 4);
+    assert_eq!(master.encoder.store_count(), 4);
 }
 
 #[test]
 fn a_changed_program_is_stored_when_another_one_is_selected() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4000_0001, 0x2080_0002]);
-    assert_eq!(master.encoder.stores(), 4);
+    assert_eq!(master.encoder.store_count(), 4);
     master.put(&[0x8000_0000, 0, 0x2080_0003, 0x8000_0000, 0x2080_0000]);
-    assert_eq!((master.encoder.stores(), master.encoder.startup_mode()), (4, StartupMode::K3));
+    assert_eq!((master.encoder.store_count(), master.encoder.startup_mode()), (4, StartupMode::K3));
     master.exchange(&[(0, 100)]);
 }
 
@@ -157,5 +157,5 @@ fn the_demo_has_the_example_and_cams_across_the_end() {
     let example = config.memory.program(program(8));
     let third = example.cams[3].map(|cam| (cam.start.get(), cam.stop.get()));
     assert_eq!((third, example.mask), (Some((15, 213)), 8));
-    assert!(config.memory.program(program(3)).cams.iter().flatten().any(|cam| cam.wraps()));
+    assert!(config.memory.program(program(3)).cams.iter().flatten().any(|cam| cam.wraps_around()));
 }

@@ -15,7 +15,7 @@ impl Host {
 
     /// Returns another client of the same gateway.
     fn second_client(&self) -> Host {
-        Host { gateway: self.gateway.connection(), now: self.now }
+        Host { gateway: self.gateway.new_connection(), now: self.now }
     }
 
     /// Sends a request and returns the bytes received within ten milliseconds.
@@ -105,7 +105,7 @@ fn invalid_requests_get_the_matching_exception() {
     for (what, request, exception) in cases {
         assert_eq!(host.ask(request), format!("00 01 00 00 00 03 01 {exception}"), "{what}");
     }
-    assert_eq!(host.gateway.with_encoder(|encoder| (encoder.out(), encoder.stores())), (0, 3));
+    assert_eq!(host.gateway.with_encoder(|encoder| (encoder.out_word(), encoder.store_count())), (0, 3));
 }
 
 #[test]
@@ -193,10 +193,10 @@ fn a_gateway_exception_keeps_the_word_from_the_encoder() {
     let mut host = Host::with("exception=1");
     let write = "00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68";
     host.exchange(&[(write, "00 01 00 00 00 03 01 90 0B")]);
-    assert_eq!(host.gateway.with_encoder(|encoder| encoder.out()), 0);
+    assert_eq!(host.gateway.with_encoder(|encoder| encoder.out_word()), 0);
     let mut lost = Host::with("fault=drop:1");
     lost.exchange(&[(write, "")]);
-    assert_eq!(lost.gateway.with_encoder(|encoder| encoder.out()), 0x0200_0168);
+    assert_eq!(lost.gateway.with_encoder(|encoder| encoder.out_word()), 0x0200_0168);
     lost.gateway.set_faults(&crate::sim::SimulatedFaults::default());
     lost.exchange(&[(write, "00 01 00 00 00 06 01 10 00 00 00 02")]);
 }
@@ -218,7 +218,7 @@ fn an_encoder_without_power_answers_only_after_a_new_connection() {
 #[test]
 fn the_motor_handle_turns_the_shaft() {
     let mut host = Host::with("position=0&steps=8192&revolutions=1");
-    let motor = host.gateway.shaft();
+    let motor = host.gateway.shaft_motor();
     assert_eq!(host.ask(READ), "00 01 00 00 00 07 01 04 04 00 00 00 00");
     motor.set_rpm(60.0);
     host.ask(READ);

@@ -22,7 +22,7 @@ fn the_worked_example_of_the_reference_matches() {
         assert_eq!([master.read(), master.read()], expected, "{out:08X}");
     }
     assert_eq!(
-        (master.encoder.stores(), master.encoder.mode()),
+        (master.encoder.store_count(), master.encoder.mode()),
         (4, crate::devices::interbus::protocol::EncoderMode::Position)
     );
 }
@@ -80,7 +80,10 @@ fn out_of_range_values_are_wrong_data_and_change_nothing() {
     for word in wrong {
         master.exchange(&[(word, 0x8200_0000), (0x8000_0000, 0x0000_1456), (0, 0x0000_1456)]);
     }
-    assert_eq!((master.encoder.stores(), master.encoder.memory()), (3, &config("steps=8192&revolutions=1").memory));
+    assert_eq!(
+        (master.encoder.store_count(), master.encoder.memory()),
+        (3, &config("steps=8192&revolutions=1").memory)
+    );
     // More turns allow more steps, which then do not allow fewer turns.
     master.exchange(&[(0x0400_0002, 0xC400_0002), (0x0200_4000, 0xC200_4000), (0x0400_0001, 0x8200_0000)]);
     master.exchange(&[(0x0800_3FFF, 0xC800_3FFF), (0x0A00_3FFF, 0xCA00_3FFF), (0x0600_0004, 0xC600_0004)]);
@@ -96,7 +99,7 @@ fn undocumented_codes_are_unknown() {
     for word in [0x0009_2021, 0x2041_0000, 0x2080_0009, 0x2040_0002, 0x2020_0000, 0xA000_0000] {
         master.exchange(&[(word, 0), (0, 0)]);
     }
-    assert_eq!(master.encoder.stores(), 3);
+    assert_eq!(master.encoder.store_count(), 3);
     // Outside of position mode a parameter is unknown.
     master.exchange(&[(0x2040_0001, 0), (0x0200_0168, 0x8400_0000), (0x8000_0000, 0)]);
 }
@@ -106,9 +109,9 @@ fn only_the_edge_of_run_ends_a_parameterisation() {
     let mut master = Master::with("position=9&steps=8192&revolutions=1");
     master.exchange(&[(0x0600_0003, 0xC600_0003), (0, 0xC600_0003), (0x4000_0000, 0xC600_0003)]);
     master.exchange(&[(0x2021_0000, 0xC600_0003), (0x2080_0001, 0xC600_0003)]);
-    assert_eq!(master.encoder.stores(), 3);
+    assert_eq!(master.encoder.store_count(), 3);
     master.exchange(&[(0x8000_0000, 9), (0x0600_0003, 0xC600_0003), (0x8000_0000, 9)]);
-    assert_eq!(master.encoder.stores(), 5);
+    assert_eq!(master.encoder.store_count(), 5);
 }
 
 #[test]
@@ -125,7 +128,7 @@ fn each_set_preset_fires_once() {
         master.set_shaft_position(place);
         master.exchange(&[(0x6000_0000, 100), (0x8000_0000, 100), (0, 100)]);
     }
-    assert_eq!(master.encoder.stores(), 4);
+    assert_eq!(master.encoder.store_count(), 4);
 }
 
 #[test]
@@ -174,7 +177,7 @@ fn older_encoders_report_steps_less_one() {
     let mut master = Master::with("steps-minus-one=on&revolutions=1&steps=360&position=4096");
     master.exchange(&[(0x2021_0001, 0xA000_0167), (0, 180), (0x2021_000A, 0xA000_0003), (0, 180)]);
     master.exchange(&[(0x0200_00FF, 0xC200_00FF), (0x8000_0000, 128), (0, 128), (0x2021_0001, 0xA000_00FF)]);
-    assert_eq!(master.encoder.memory().gear().steps(), 256);
+    assert_eq!(master.encoder.memory().gear().total_steps(), 256);
 }
 
 #[test]
@@ -183,7 +186,7 @@ fn default_restores_factory_parameters_and_keeps_the_cams() {
     let programs = *master.encoder.memory().program(program(2));
     master.exchange(&[(0x0E00_0001, 0x8200_0000), (0x0E00_0000, 0xCE00_0000)]);
     let memory = master.encoder.memory();
-    assert_eq!((memory.gear().steps(), memory.gear().turns(), memory.direction()), (0x01FF_FFFF, 4096, 3));
+    assert_eq!((memory.gear().total_steps(), memory.gear().turns(), memory.direction()), (0x01FF_FFFF, 4096, 3));
     assert_eq!((memory.preset(), memory.zero_shift()), (0, 0));
     assert_eq!(*memory.program(program(2)), programs);
 }
@@ -195,6 +198,6 @@ fn encoders_of_other_classes_ignore_commands() {
         master.set_shaft_position(0x5FFE);
         let expected = if class == "K2" { expected & 0x1FFF } else { expected };
         master.exchange(&[(0, expected), (0x0200_0168, expected), (0x2021_0009, expected), (0x8000_0000, expected)]);
-        assert_eq!(master.encoder.stores(), 3);
+        assert_eq!(master.encoder.store_count(), 3);
     }
 }

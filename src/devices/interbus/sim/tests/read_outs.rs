@@ -38,7 +38,7 @@ fn every_read_out_of_the_manual_has_its_value() {
         ]);
         master.exchange(&[(0, 34)]);
     }
-    assert_eq!(master.encoder.stores(), 3);
+    assert_eq!(master.encoder.store_count(), 3);
 }
 
 #[test]

@@ -8,10 +8,10 @@ fn unstored_values_are_lost_without_power() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0200_00B4, 0x8000_0000, 0, 0x0200_0009]);
     master.encoder.disconnect();
-    assert_eq!((master.encoder.read(master.now), master.encoder.memory().gear().steps()), (None, 180));
+    assert_eq!((master.encoder.read(master.now), master.encoder.memory().gear().total_steps()), (None, 180));
     master.encoder.write(master.now, 0);
     master.encoder.connect(master.now);
-    assert_eq!((master.read(), master.encoder.stores()), (90, 4));
+    assert_eq!((master.read(), master.encoder.store_count()), (90, 4));
 }
 
 /// The gateway sends the same word as before, which the encoder takes as a new one.
@@ -20,7 +20,7 @@ fn the_masters_word_is_processed_when_power_returns() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0200_00B4]);
     master.power_cycle();
-    assert_eq!((master.read(), master.encoder.stores()), (0xC200_00B4, 3));
+    assert_eq!((master.read(), master.encoder.store_count()), (0xC200_00B4, 3));
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn mode_zero_point_and_a_fired_preset_survive_without_a_store() {
     master.power_cycle();
     assert_eq!(master.encoder.startup_mode(), StartupMode::Cams(program(4)));
     master.exchange(&[(0x2080_0000, 5), (0, 5), (0x4000_0000, 5), (0x2021_0006, 0xA000_0000)]);
-    assert_eq!(master.encoder.stores(), 4);
+    assert_eq!(master.encoder.store_count(), 4);
 }
 
 #[test]
@@ -40,13 +40,13 @@ fn power_lost_in_a_store_loses_the_parameters() {
     master.write(0x8000_0000);
     assert_eq!((master.encoder.read(master.now), master.encoder.has_power()), (None, false));
     master.encoder.connect(master.now);
-    assert_eq!((master.read(), master.encoder.stores()), (0x8600_0000, 5));
-    assert_eq!((master.encoder.memory().gear().steps(), master.encoder.memory().direction()), (0x01FF_FFFF, 3));
+    assert_eq!((master.read(), master.encoder.store_count()), (0x8600_0000, 5));
+    assert_eq!((master.encoder.memory().gear().total_steps(), master.encoder.memory().direction()), (0x01FF_FFFF, 3));
     assert_eq!(master.encoder.memory().program(program(1)).mask, 0xFF);
     // Set again, it works.
     master.exchange(&[(0x0400_0001, 0x8200_0000), (0x0200_0168, 0xC200_0168), (0x0400_0001, 0xC400_0001)]);
     master.write(0x8000_0000);
-    assert_eq!((master.read() >> 31, master.encoder.stores()), (0, 6));
+    assert_eq!((master.read() >> 31, master.encoder.store_count()), (0, 6));
 }
 
 #[test]
@@ -58,17 +58,17 @@ fn power_lost_in_a_program_store_loses_that_program() {
     assert_eq!(master.read(), 0x8600_0000);
     let memory = master.encoder.memory();
     assert_eq!([1, 2].map(|number| memory.program(program(number)).mask), [0, 0xFF]);
-    assert_eq!(memory.gear().steps(), 360);
+    assert_eq!(memory.gear().total_steps(), 360);
 }
 
 #[test]
 fn a_worn_out_eeprom_keeps_nothing() {
     let mut master = Master::with("steps=360&revolutions=1&stores=499&position=4096");
     master.exchange(&[(0x0600_0004, 0xC600_0004), (0x8000_0000, 180), (0, 180)]);
-    assert_eq!(master.encoder.stores(), 500);
+    assert_eq!(master.encoder.store_count(), 500);
     for stores in [501, 502] {
         master.exchange(&[(0x0600_0003, 0xC600_0003), (0x8000_0000, 0x8600_0000), (0, 0x8600_0000)]);
-        assert_eq!(master.encoder.stores(), stores);
+        assert_eq!(master.encoder.store_count(), stores);
     }
     master.exchange(&[(0x2021_0001, 0xA1FF_FFFF)]);
 }

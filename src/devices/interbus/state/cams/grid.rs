@@ -15,10 +15,10 @@ pub struct Tick {
 /// Intervals of grid lines in degrees. Each of them divides a turn.
 const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
 /// Maximum number of grid lines. No chart has room for more.
-const MOST_TICKS: usize = 400;
+const MAX_TICKS: usize = 400;
 
 /// Returns the smallest number of the series 1, 2, 5, 10, 20, 50 … that is not below `at_least`.
-pub fn rounded(at_least: f64) -> f64 {
+pub fn round_up_1_2_5(at_least: f64) -> f64 {
     if !at_least.is_finite() || at_least <= 0.0 {
         return 1.0;
     }
@@ -29,20 +29,20 @@ pub fn rounded(at_least: f64) -> f64 {
 }
 
 /// Returns the visible grid lines. Their distance is at least `apart` steps.
-pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
+pub fn grid_ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_per_unit();
     let unit = round_interval(scale.unit(), apart / one);
-    let decimals = decimals(unit);
+    let decimals = decimal_places(unit);
     let zero = f64::from(scale.zero());
-    let (from, to) = (view.first(), (view.first() + view.span()).min(f64::from(range)));
+    let (from, to) = (view.first(), (view.first() + view.length()).min(f64::from(range)));
     let first = ((from - zero) / one / unit - 1e-9).ceil();
-    let span = scale.span(range);
+    let span = scale.range_length(range);
     let at = |line: usize| {
         let value = (first + line as f64) * unit;
-        let shown = if scale.wraps_around(range) { turned(value, span) } else { value };
+        let shown = if scale.wraps_around(range) { wrap_value(value, span) } else { value };
         Tick { position: zero + value * one, value: shown, decimals }
     };
-    (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
+    (0..MAX_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
 /// Returns the next grid line after a position, or the previous one before it, in steps. It may be beyond the range.
@@ -68,21 +68,21 @@ pub(super) fn grid_lines_around(scale: &Scale, apart: f64, position: f64, each: 
 /// Returns the smallest round number in a unit that is not below `at_least`.
 fn round_interval(unit: Unit, at_least: f64) -> f64 {
     match unit {
-        Unit::Steps => rounded(at_least).max(1.0),
-        Unit::Millimetres => rounded(at_least),
-        Unit::Degrees if at_least > 180.0 => rounded(at_least / 360.0).max(1.0) * 360.0,
+        Unit::Steps => round_up_1_2_5(at_least).max(1.0),
+        Unit::Millimetres => round_up_1_2_5(at_least),
+        Unit::Degrees if at_least > 180.0 => round_up_1_2_5(at_least / 360.0).max(1.0) * 360.0,
         Unit::Degrees if at_least > 0.5 => {
             DEGREES.into_iter().find(|degrees| *degrees >= at_least - 1e-9).unwrap_or(360.0)
         }
-        Unit::Degrees => rounded(at_least),
+        Unit::Degrees => round_up_1_2_5(at_least),
     }
 }
 
-fn turned(value: f64, span: f64) -> f64 {
+fn wrap_value(value: f64, span: f64) -> f64 {
     let turned = value.rem_euclid(span);
     if (span - turned).abs() < 1e-9 * span { 0.0 } else { turned }
 }
 
-fn decimals(unit: f64) -> usize {
+fn decimal_places(unit: f64) -> usize {
     if unit >= 1.0 { 0 } else { (-unit.log10()).ceil().clamp(0.0, 6.0) as usize }
 }

@@ -16,23 +16,23 @@ pub struct SnapSettings {
 }
 
 impl SnapSettings {
-    pub const OFF: SnapSettings = SnapSettings { reach: 0.0, apart: None, edges: false };
+    pub const DISABLED: SnapSettings = SnapSettings { reach: 0.0, apart: None, edges: false };
 
     /// Creates settings with all targets. An edge snaps within six points, and grid lines are at least ten points
     /// apart.
-    pub const fn on(steps_in_point: f64) -> Self {
-        SnapSettings { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
+    pub const fn enabled(steps_in_point: f64) -> Self {
+        SnapSettings { reach: steps_in_point * SNAP_DISTANCE, apart: Some(steps_in_point * GRID), edges: true }
     }
 }
 
 /// Maximum distance of a target in points.
-const REACH: f64 = 6.0;
+const SNAP_DISTANCE: f64 = 6.0;
 /// Minimum distance between grid lines in points.
 const GRID: f64 = 10.0;
 
 /// Returns the number of steps by which a cam is moved instead of `by`. If a target is near, an edge of the cam snaps
 /// to it. Otherwise, `by` is rounded to whole steps.
-pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, snap: &SnapSettings) -> i64 {
+pub fn snap_distance(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, snap: &SnapSettings) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {
         DragTarget::Edge(_, Edge::Start) => &[Edge::Start],
@@ -42,7 +42,7 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, s
     let mut best: Option<(f64, i64)> = None;
     for edge in edges {
         let from = f64::from(edge_value(cam, *edge).get());
-        for target in targets(chart, scale, hold.cam(), *edge, from + by, snap) {
+        for target in snap_targets(chart, scale, hold.cam(), *edge, from + by, snap) {
             let distance = (target - from - by).abs();
             if distance <= snap.reach && best.is_none_or(|(least, _)| distance < least) {
                 best = Some((distance, (target - from).round() as i64));
@@ -53,7 +53,7 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, s
 }
 
 /// Returns the possible targets of an edge. Of equally near targets, the first one is used.
-fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &SnapSettings) -> Vec<f64> {
+fn snap_targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &SnapSettings) -> Vec<f64> {
     let range = f64::from(chart.range.max(1));
     // The targets are in the turn that the pointer has reached.
     let turn = (at / range).floor() * range;

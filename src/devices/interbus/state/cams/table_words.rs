@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::{
 use crate::devices::interbus::state::TEXTS;
 
 /// Maximum number of displayed decimals.
-const MOST_DECIMALS: usize = 6;
+const MAX_DECIMALS: usize = 6;
 
 /// Describes the delimiter of a table and whether its columns have names.
 pub fn layout(table: &CamTable) -> Text {
@@ -22,12 +22,12 @@ pub fn layout(table: &CamTable) -> Text {
 }
 
 /// Describes a table problem and its location.
-pub fn problem(problem: &TableProblem) -> Text {
+pub fn problem_text(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
-    text.with_text("what", wrong(&problem.kind))
+    text.with_text("what", problem_kind_text(&problem.kind))
 }
 
-fn wrong(wrong: &TableProblemKind) -> Text {
+fn problem_kind_text(wrong: &TableProblemKind) -> Text {
     match wrong {
         TableProblemKind::Empty => TEXTS.text("camtable.empty"),
         TableProblemKind::NoColumn(own) => TEXTS.text("camtable.no_column").with_text("column", column(*own)),
@@ -51,7 +51,7 @@ fn wrong(wrong: &TableProblemKind) -> Text {
     }
 }
 
-pub fn note(note: &TableNote) -> Text {
+pub fn note_text(note: &TableNote) -> Text {
     match note {
         TableNote::Pulses { program, name, cams } => {
             let cams: Vec<String> = cams.iter().map(|cam| cam.get().to_string()).collect();
@@ -69,12 +69,12 @@ pub fn note(note: &TableNote) -> Text {
 pub fn rounding_text(row: &TableRow, scale: &Scale) -> Text {
     let text = TEXTS.text("camtable.rounded").with("line", row.line).with("program", row.program.get());
     let text = text.with("cam", row.cam.get());
-    text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
+    text.with_text("start", edge_text(row.start, scale)).with_text("stop", edge_text(row.stop, scale))
 }
 
 /// Describes the requested position of an edge, its rounded position and the difference.
-pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
-    let decimals = scale.decimals() + 1;
+pub fn edge_text(edge: TableEdge, scale: &Scale) -> Text {
+    let decimals = scale.decimal_places() + 1;
     let id = if edge.is_rounded() { "camtable.edge_off" } else { "camtable.edge" };
     // The number has all decimals of the table, since rounding would hide the difference.
     let requested = decimals.max(decimal_count(edge.requested));
@@ -86,7 +86,7 @@ pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
 
 fn decimal_count(number: f64) -> usize {
     let written = number.to_string();
-    written.split_once('.').map_or(0, |(_, decimals)| decimals.len()).min(MOST_DECIMALS)
+    written.split_once('.').map_or(0, |(_, decimals)| decimals.len()).min(MAX_DECIMALS)
 }
 
 fn column(column: Column) -> Text {
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_table_is_described_in_sentences() {
-        let scale = Scale::degrees(8192.0, 1000).unwrap();
+        let scale = Scale::in_degrees(8192.0, 1000).unwrap();
         let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
         let says = |text: Text| text.to_string_in(Language::English);
@@ -124,9 +124,9 @@ mod tests {
             says(layout(&table)),
             "Pulses read: 3. The columns are separated by semicolons, and the first line contains their names."
         );
-        assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");
+        assert_eq!(says(problem_text(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");
         let pulses = "Program 2: Glue has 2 pulses, which use cams 1, 2.";
-        assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
+        assert_eq!(table.notes.iter().map(note_text).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
         // 228 steps are 10.01953°.
         let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° lower), stop 10.000° → step 1228 \
                        (0.0195° higher)";
@@ -149,7 +149,8 @@ mod tests {
     fn each_problem_is_one_sentence() {
         let options = TableOptions { scale: Scale::default(), range: 1000, program: ProgramNumber::new(1).unwrap() };
         let table = options.read("program;cam;start;stop\n9;0;1;2\n1;8;1;2\n1;0;1000;2\n1;1;1\n1;2;1;2\n1;2;3;4\n");
-        let told: Vec<String> = table.problems.iter().map(|own| problem(own).to_string_in(Language::English)).collect();
+        let told: Vec<String> =
+            table.problems.iter().map(|own| problem_text(own).to_string_in(Language::English)).collect();
         let expected = [
             "Line 2, column 1: Cam program \"9\" does not exist. Choose 1 to 8.",
             "Line 3, column 2: Cam \"8\" does not exist. Choose 0 to 7.",

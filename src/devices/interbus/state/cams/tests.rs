@@ -3,8 +3,8 @@
 mod session;
 
 use super::{
-    Chart, DragTarget, OutputState, SnapSettings, Stretch, VisibleRange, apply_drag, drawn, moved, next_grid_line,
-    rounded, snap, stretches, ticks, words,
+    Chart, DragTarget, OutputState, PositionRange, SnapSettings, VisibleRange, apply_drag, cam_between, grid_ticks,
+    move_cam, next_grid_line, on_ranges, round_up_1_2_5, snap_distance, words,
 };
 use crate::app::Language;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, Parameters, Scale};
@@ -31,28 +31,28 @@ fn program() -> ProgramNumber {
 fn staged(cams: &[(u8, u32, u32)]) -> StagedEdits {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-    let mut staged = StagedEdits::for_profile(Image::of(parameters), CamNames::default());
+    let mut staged = StagedEdits::for_profile(Image::from_parameters(parameters), CamNames::default());
     for (number, start, stop) in cams {
         let edit = Edit::Cam { program: program(), cam: cam(*number), start: *start, stop: *stop, on: true };
-        staged.edit(&edit).unwrap();
+        staged.apply_edit(&edit).unwrap();
     }
     staged
 }
 
 fn chart(cams: &[(u8, u32, u32)]) -> Chart {
-    Chart::of(&staged(cams), program()).unwrap()
+    Chart::from_edits(&staged(cams), program()).unwrap()
 }
 
 #[test]
 fn a_cam_across_the_end_is_two_segments() {
-    let whole = |start, stop| stretches(edges(start, stop), 1000);
-    assert_eq!(whole(15, 213), [Stretch { first: 15, last: 213 }]);
-    assert_eq!(whole(900, 20), [Stretch { first: 0, last: 20 }, Stretch { first: 900, last: 999 }]);
-    assert_eq!(whole(7, 7), [Stretch { first: 7, last: 7 }]);
-    assert_eq!(whole(900, 1200), [Stretch { first: 900, last: 999 }], "as far as the range goes");
+    let whole = |start, stop| on_ranges(edges(start, stop), 1000);
+    assert_eq!(whole(15, 213), [PositionRange { first: 15, last: 213 }]);
+    assert_eq!(whole(900, 20), [PositionRange { first: 0, last: 20 }, PositionRange { first: 900, last: 999 }]);
+    assert_eq!(whole(7, 7), [PositionRange { first: 7, last: 7 }]);
+    assert_eq!(whole(900, 1200), [PositionRange { first: 900, last: 999 }], "as far as the range goes");
     assert_eq!(whole(1100, 1200), []);
-    assert_eq!(whole(1100, 20), [Stretch { first: 0, last: 20 }]);
-    assert_eq!(stretches(edges(0, 5), 0), []);
+    assert_eq!(whole(1100, 20), [PositionRange { first: 0, last: 20 }]);
+    assert_eq!(on_ranges(edges(0, 5), 0), []);
 }
 
 #[test]
@@ -62,14 +62,14 @@ fn simulated_outputs_are_compared_with_the_encoders() {
     for (position, outputs) in [(15, 0b10_1000), (213, 0b10_1000), (214, 0b10_0000), (5, 0b10_0000), (50, 0b00_1000)] {
         assert_eq!(chart.outputs(position), outputs, "{position}");
     }
-    let lamps = chart.lamps(Some(50), Some(0b10_1000));
+    let lamps = chart.output_states(Some(50), Some(0b10_1000));
     assert_eq!(lamps[3], OutputState { simulated: Some(true), own: Some(true) });
-    assert!(!lamps[3].differs() && lamps[5].differs() && lamps[5].effective_state() == Some(true));
-    assert_eq!(chart.lamps(None, None)[0], OutputState { simulated: None, own: None });
-    assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
-    let says = |lamp| words::lamp(lamp).to_string_in(Language::English);
+    assert!(!lamps[3].is_mismatch() && lamps[5].is_mismatch() && lamps[5].effective_state() == Some(true));
+    assert_eq!(chart.output_states(None, None)[0], OutputState { simulated: None, own: None });
+    assert_eq!(chart.output_states(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
+    let says = |lamp| words::output_text(lamp).to_string_in(Language::English);
     assert_eq!(says(lamps[5]), "Encoder: on, simulation: off");
-    assert_eq!(says(chart.lamps(None, None)[0]), "unknown");
+    assert_eq!(says(chart.output_states(None, None)[0]), "unknown");
 }
 
 #[test]
@@ -100,12 +100,12 @@ fn cams_can_be_moved_and_drawn() {
         ((950, 49), 2050, (0, 99)),
         ((1200, 49), 5, (1200, 49)),
     ] {
-        assert_eq!(pair(moved(edges(cam.0, cam.1), by, 1000)), expected, "{cam:?} {by}");
+        assert_eq!(pair(move_cam(edges(cam.0, cam.1), by, 1000)), expected, "{cam:?} {by}");
     }
     for (from, to, expected) in
         [(100, 199, (100, 199)), (199, 100, (100, 199)), (990, 1010, (990, 10)), (-5, 5, (995, 5)), (0, 5000, (0, 999))]
     {
-        assert_eq!(pair(drawn(from, to, 1000)), expected, "{from} {to}");
+        assert_eq!(pair(cam_between(from, to, 1000)), expected, "{from} {to}");
     }
 }
 
@@ -118,7 +118,7 @@ fn the_keyboard_moves_to_the_next_grid_line() {
     assert_eq!(next_grid_line(&steps, 40.0, 0, false), -50, "over the end of the range");
     assert_eq!(next_grid_line(&steps, 0.01, 7, true), 8);
     // 10° of 1000 steps: 27.8, 55.6, 83.3.
-    let degrees = Scale::degrees(1000.0, 0).unwrap();
+    let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     for (position, forward, expected) in [(28, true, 56), (56, true, 83), (83, false, 56), (0, false, -28)] {
         assert_eq!(next_grid_line(&degrees, 20.0, position, forward), expected, "{position}");
     }
@@ -128,25 +128,25 @@ fn the_keyboard_moves_to_the_next_grid_line() {
 fn grid_lines_are_at_round_values() {
     for (at_least, expected) in [(0.3, 0.5), (1.0, 1.0), (1.1, 2.0), (2.0, 2.0), (3.0, 5.0), (5.5, 10.0), (73.0, 100.0)]
     {
-        assert!((rounded(at_least) - expected).abs() < 1e-12, "{at_least}");
+        assert!((round_up_1_2_5(at_least) - expected).abs() < 1e-12, "{at_least}");
     }
     let seen = |scale: &Scale, view: &VisibleRange, apart| {
-        ticks(scale, view, 8192, apart)
+        grid_ticks(scale, view, 8192, apart)
             .iter()
             .map(|tick| (tick.position.round() as u32, tick.value))
             .collect::<Vec<_>>()
     };
-    let whole = VisibleRange::whole(8192);
+    let whole = VisibleRange::full(8192);
     let expected = [(0, 0.0), (2000, 2000.0), (4000, 4000.0), (6000, 6000.0), (8000, 8000.0)];
     assert_eq!(seen(&Scale::default(), &whole, 1500.0), expected);
-    let degrees = Scale::degrees(8192.0, 0).unwrap();
+    let degrees = Scale::in_degrees(8192.0, 0).unwrap();
     assert_eq!(seen(&degrees, &whole, 1500.0), [(0, 0.0), (2048, 90.0), (4096, 180.0), (6144, 270.0), (8192, 0.0)]);
     // The machine's 0 is at 1024: the range begins at 315°.
-    let turned = Scale::degrees(8192.0, 1024).unwrap();
+    let turned = Scale::in_degrees(8192.0, 1024).unwrap();
     assert_eq!(seen(&turned, &whole, 1500.0), [(1024, 0.0), (3072, 90.0), (5120, 180.0), (7168, 270.0)]);
     let near = whole.zoomed(8192.0 / 100.0, 0.0, 8192);
     assert_eq!(seen(&degrees, &near, 20.0), [(0, 0.0), (23, 1.0), (46, 2.0), (68, 3.0), (91, 4.0)]);
-    let millimetres = Scale::millimetres(100.0, 4000).unwrap();
+    let millimetres = Scale::in_millimetres(100.0, 4000).unwrap();
     assert_eq!(
         seen(&millimetres, &whole, 1500.0),
         [(0, -40.0), (2000, -20.0), (4000, 0.0), (6000, 20.0), (8000, 40.0)]
@@ -155,15 +155,15 @@ fn grid_lines_are_at_round_values() {
 
 #[test]
 fn a_view_stays_within_the_range() {
-    let whole = VisibleRange::whole(1000);
+    let whole = VisibleRange::full(1000);
     assert!(whole.is_whole(1000));
     let near = whole.zoomed(10.0, 900.0, 1000);
-    assert_eq!((near.first(), near.span()), (810.0, 100.0));
-    assert!((near.part(900.0) - 0.9).abs() < 1e-12 && near.position(0.5) == 860.0);
+    assert_eq!((near.first(), near.length()), (810.0, 100.0));
+    assert!((near.fraction_at(900.0) - 0.9).abs() < 1e-12 && near.position(0.5) == 860.0);
     assert_eq!(near.panned(500.0, 1000).first(), 900.0);
     assert_eq!(near.panned(-5000.0, 1000).first(), 0.0);
-    assert_eq!(near.within(50), VisibleRange::whole(50));
-    assert_eq!(near.zoomed(1e9, 850.0, 1000).span(), 8.0);
+    assert_eq!(near.clamped_to(50), VisibleRange::full(50));
+    assert_eq!(near.zoomed(1e9, 850.0, 1000).length(), 8.0);
     assert_eq!(near.zoomed(f64::NAN, 850.0, 1000), near);
     assert_eq!(near.zoomed(0.001, 850.0, 1000), whole);
 }
@@ -172,7 +172,8 @@ fn a_view_stays_within_the_range() {
 fn edges_snap_to_nearby_positions() {
     let chart = chart(&[(0, 100, 199), (1, 403, 555)]);
     let (first, steps) = (edges(100, 199), Scale::default());
-    let pull = |edge, by, with: &SnapSettings| snap(&chart, &steps, DragTarget::Edge(cam(0), edge), first, by, with);
+    let pull =
+        |edge, by, with: &SnapSettings| snap_distance(&chart, &steps, DragTarget::Edge(cam(0), edge), first, by, with);
     let on = SnapSettings { reach: 6.0, apart: None, edges: true };
     // Of the other cam: 403 to 555. A stop snaps to right before its start, or to its stop.
     assert_eq!(199 + pull(Edge::Stop, 200.3, &on), 402);
@@ -180,49 +181,50 @@ fn edges_snap_to_nearby_positions() {
     assert_eq!(100 + pull(Edge::Start, 453.4, &on), 556);
     assert_eq!(100 + pull(Edge::Start, 299.0, &on), 403);
     assert_eq!(100 + pull(Edge::Start, 280.4, &on), 380);
-    assert_eq!(pull(Edge::Stop, 200.3, &SnapSettings::OFF), 200);
+    assert_eq!(pull(Edge::Stop, 200.3, &SnapSettings::DISABLED), 200);
     let grid = SnapSettings { reach: 6.0, apart: Some(50.0), edges: true };
     assert_eq!(100 + pull(Edge::Start, 353.0, &grid), 450);
     assert_eq!(100 + pull(Edge::Start, -104.0, &grid), 0);
     assert_eq!(100 + pull(Edge::Start, -204.0, &grid), -100, "over the end of the range");
     // Moved as a whole, either edge snaps: 199 + 203 = 402.
-    assert_eq!(snap(&chart, &steps, DragTarget::Whole(cam(0)), first, 199.0, &on), 203);
+    assert_eq!(snap_distance(&chart, &steps, DragTarget::Whole(cam(0)), first, 199.0, &on), 203);
     // 90° of 1000 steps is 250; the grid has 30°, which is 83.3.
-    let degrees = Scale::degrees(1000.0, 0).unwrap();
+    let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     let units = SnapSettings { reach: 6.0, apart: Some(80.0), edges: false };
-    assert_eq!(100 + snap(&chart, &degrees, DragTarget::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);
+    assert_eq!(100 + snap_distance(&chart, &degrees, DragTarget::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);
 }
 
 #[test]
 fn a_switched_off_cam_is_free() {
     let mut own = staged(&[(0, 1, 2), (1, 1, 2)]);
-    assert_eq!(Chart::of(&own, program()).unwrap().free(), Some(cam(2)));
-    own.edit(&Edit::Switch { program: program(), cam: cam(0), on: false }).unwrap();
-    assert_eq!(Chart::of(&own, program()).unwrap().free(), Some(cam(0)));
+    assert_eq!(Chart::from_edits(&own, program()).unwrap().unused_cam(), Some(cam(2)));
+    own.apply_edit(&Edit::Switch { program: program(), cam: cam(0), on: false }).unwrap();
+    assert_eq!(Chart::from_edits(&own, program()).unwrap().unused_cam(), Some(cam(0)));
     let all: Vec<(u8, u32, u32)> = (0..8).map(|number| (number, 1, 2)).collect();
-    assert_eq!(chart(&all).free(), None);
-    assert_eq!(Chart::of(&own, ProgramNumber::new(2).unwrap()), None);
+    assert_eq!(chart(&all).unused_cam(), None);
+    assert_eq!(Chart::from_edits(&own, ProgramNumber::new(2).unwrap()), None);
 }
 
 #[test]
 fn a_lane_describes_its_cam_and_its_problems() {
     let mut own = staged(&[(3, 900, 20), (4, 10, 30)]);
     for number in [3, 4] {
-        own.edit(&Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() }).unwrap();
+        own.apply_edit(&Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() }).unwrap();
     }
-    let chart = Chart::of(&own, program()).unwrap();
-    let lane = chart.lane(cam(3)).unwrap();
-    let degrees = Scale::degrees(1000.0, 0).unwrap();
+    let chart = Chart::from_edits(&own, program()).unwrap();
+    let lane = chart.lane_of(cam(3)).unwrap();
+    let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     let says = |text: crate::app::Text| text.to_string_in(Language::English);
     assert_eq!(says(words::cam(lane)), "Cam 3 · glue");
-    assert_eq!(says(words::edge(lane, Edge::Stop)), "Cam 3: stop");
+    assert_eq!(says(words::edge_name(lane, Edge::Stop)), "Cam 3: stop");
     let expected = "On from 900 (324.0°) to 20 (7.2°) across the end of the range, 121 steps";
-    assert_eq!(says(words::lane(lane, &degrees, 1000)), expected);
-    let troubles: Vec<String> = words::troubles(&chart, lane).into_iter().map(says).collect();
+    assert_eq!(says(words::lane_text(lane, &degrees, 1000)), expected);
+    let troubles: Vec<String> = words::lane_problems(&chart, lane).into_iter().map(says).collect();
     assert_eq!(troubles, ["This pulse overlaps another pulse on track glue."]);
-    own.edit(&Edit::Steps(850)).unwrap();
-    let chart = Chart::of(&own, program()).unwrap();
-    let troubles: Vec<String> = words::troubles(&chart, chart.lane(cam(3)).unwrap()).into_iter().map(says).collect();
+    own.apply_edit(&Edit::Steps(850)).unwrap();
+    let chart = Chart::from_edits(&own, program()).unwrap();
+    let troubles: Vec<String> =
+        words::lane_problems(&chart, chart.lane_of(cam(3)).unwrap()).into_iter().map(says).collect();
     assert_eq!(troubles[0], "The position is outside the measuring range, which ends at 849.");
-    assert!(chart.lane(cam(3)).unwrap().edited && !chart.lane(cam(5)).unwrap().edited);
+    assert!(chart.lane_of(cam(3)).unwrap().edited && !chart.lane_of(cam(5)).unwrap().edited);
 }

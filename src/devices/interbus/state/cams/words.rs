@@ -5,27 +5,27 @@ use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, LONGEST_NAME, Scale, Unit};
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, ProgramNumber, TURNS};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::staged::{EditError, Mark};
+use crate::devices::interbus::state::staged::{EditError, EditFinding};
 
 /// Returns the label of a cam, which is its number and its name, if any.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
-        None => bare(lane.cam),
+        None => cam_name(lane.cam),
     }
 }
 
-pub fn bare(cam: CamNumber) -> Text {
+pub fn cam_name(cam: CamNumber) -> Text {
     TEXTS.text("cams.cam").with("cam", cam.get())
 }
 
-pub fn edge(lane: &Lane, edge: Edge) -> Text {
+pub fn edge_name(lane: &Lane, edge: Edge) -> Text {
     TEXTS
         .text(match edge {
             Edge::Start => "cams.start_of",
             Edge::Stop => "cams.stop_of",
         })
-        .with_text("cam", bare(lane.cam))
+        .with_text("cam", cam_name(lane.cam))
 }
 
 /// Formats a position in steps. If the scale has another unit, the position is also given in this unit.
@@ -34,39 +34,39 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
         Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
         unit => {
             let text = TEXTS.text("cams.scaled").with("step", step).with("unit", unit.symbol());
-            text.with_number("value", scale.value(step, range), scale.decimals())
+            text.with_number("value", scale.value(step, range), scale.decimal_places())
         }
     }
 }
 
 /// Formats a number on the ruler.
-pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
+pub fn tick_label(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
-pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
+pub fn range_text(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
-    let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
+    let text = TEXTS.text(if cam.wraps_around() { "cams.stretch_over" } else { "cams.stretch" });
     let text = text.with_text("start", position(start, scale, range)).with_text("stop", position(stop, scale, range));
     let whole = i64::from(range.max(1));
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
 }
 
 /// Describes the position of a cam and whether it is active.
-pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
+pub fn lane_text(own: &Lane, scale: &Scale, range: u32) -> Text {
     let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };
-    TEXTS.text(id).with_text("where", stretch(edges, scale, range))
+    TEXTS.text(id).with_text("where", range_text(edges, scale, range))
 }
 
-pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
+pub fn lane_problems(chart: &Chart, lane: &Lane) -> Vec<Text> {
     let beyond = lane.beyond.then(|| TEXTS.text("cams.beyond").with("last", chart.last()));
     let clash = lane.clashes.then(|| TEXTS.text("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));
     beyond.into_iter().chain(clash).collect()
 }
 
 /// Describes whether an output is on and whether the encoder reports another state.
-pub fn lamp(lamp: OutputState) -> Text {
+pub fn output_text(lamp: OutputState) -> Text {
     let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
         (None, None) => TEXTS.text("cams.lamp_unknown"),
@@ -79,13 +79,13 @@ pub fn lamp(lamp: OutputState) -> Text {
 }
 
 /// Returns the messages of the given marks. Cams of one program share a message if they are beyond the measuring range.
-pub fn marks(marks: &[Mark]) -> Vec<Text> {
-    let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
+pub fn finding_texts(marks: &[EditFinding]) -> Vec<Text> {
+    let beyond_in = |own: &EditFinding| matches!(own, EditFinding::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();
     let mut texts = Vec::new();
     for own in marks {
         let Some(program) = beyond_in(own) else {
-            texts.push(mark(own));
+            texts.push(finding_text(own));
             continue;
         };
         if named.contains(&program) {
@@ -93,30 +93,30 @@ pub fn marks(marks: &[Mark]) -> Vec<Text> {
         }
         named.push(program);
         let cams = marks.iter().filter_map(|other| match *other {
-            Mark::Beyond { program: its, cam, .. } if its == program => Some(cam.get().to_string()),
+            EditFinding::Beyond { program: its, cam, .. } if its == program => Some(cam.get().to_string()),
             _ => None,
         });
         let cams: Vec<String> = cams.collect();
         texts.push(match *own {
-            Mark::Beyond { last, .. } if cams.len() > 1 => {
+            EditFinding::Beyond { last, .. } if cams.len() > 1 => {
                 let text = TEXTS.text("cams.mark_beyond_several").with("program", program.get());
                 text.with("cams", cams.join(", ")).with("last", last)
             }
-            _ => mark(own),
+            _ => finding_text(own),
         });
     }
     texts
 }
 
-fn mark(mark: &Mark) -> Text {
+fn finding_text(mark: &EditFinding) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match *mark {
-        Mark::Gear(error) => gear(&error),
-        Mark::Preset { last } => TEXTS.text("cams.mark_preset").with("last", last),
-        Mark::Beyond { program: own, cam, last, .. } => {
+        EditFinding::Gear(error) => gear(&error),
+        EditFinding::Preset { last } => TEXTS.text("cams.mark_preset").with("last", last),
+        EditFinding::Beyond { program: own, cam, last, .. } => {
             program("cams.mark_beyond", own).with("cam", cam.get()).with("last", last)
         }
-        Mark::Clash { program: own, first, second, at } => {
+        EditFinding::Clash { program: own, first, second, at } => {
             let text = program("cams.mark_clash", own).with("first", first.get()).with("second", second.get());
             text.with("at", at)
         }
@@ -124,7 +124,7 @@ fn mark(mark: &Mark) -> Text {
 }
 
 /// Explains why an edit was refused, and gives a remedy.
-pub fn refused(error: &EditError) -> Text {
+pub fn edit_error_text(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {
         EditError::NothingRead => TEXTS.text("cams.nothing_read"),

@@ -1,17 +1,17 @@
 //! Texts of the device check.
 
-use super::{encoder, implausible, refusal, startup_mode_text, word};
+use super::{encoder, error_word_text, format_word, implausible_value_text, startup_mode_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult};
 use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
 
-pub fn check(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
+pub fn check_lines(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
-fn step(step: CheckStep) -> Text {
+fn check_step_text(step: CheckStep) -> Text {
     TEXTS.text(match step {
         CheckStep::Gateway => "check.gateway",
         CheckStep::WordOrder => "check.word_order",
@@ -29,20 +29,21 @@ fn finding_text(finding: &CheckFinding) -> Text {
             TEXTS.text("ib_check.replies").with("asked", requested).with("slowest", slowest_ms)
         }
         CheckFinding::OrderFits => TEXTS.text("ib_check.order_fits"),
-        CheckFinding::OrderSwapped { input, swapped } => {
-            TEXTS.text("ib_check.order_swapped").with("input", word(*input)).with("swapped", word(*swapped))
-        }
-        CheckFinding::Runs(input) => TEXTS.text("ib_check.runs").with("word", word(*input)),
-        CheckFinding::Stray(input) => TEXTS.text("ib_check.stray").with("word", word(*input)),
+        CheckFinding::OrderSwapped { input, swapped } => TEXTS
+            .text("ib_check.order_swapped")
+            .with("input", format_word(*input))
+            .with("swapped", format_word(*swapped)),
+        CheckFinding::Runs(input) => TEXTS.text("ib_check.runs").with("word", format_word(*input)),
+        CheckFinding::Stray(input) => TEXTS.text("ib_check.stray").with("word", format_word(*input)),
         CheckFinding::Error(error) => TEXTS
             .text("ib_check.error")
-            .with("word", word(Reply::Error(*error).emit()))
-            .with_text("why", refusal(*error)),
-        CheckFinding::Occupied(input) => TEXTS.text("ib_check.occupied").with("word", word(*input)),
+            .with("word", format_word(Reply::Error(*error).emit()))
+            .with_text("why", error_word_text(*error)),
+        CheckFinding::Occupied(input) => TEXTS.text("ib_check.occupied").with("word", format_word(*input)),
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
         CheckFinding::SoftwareVersion(version) => TEXTS.text("ib_check.version").with("version", version),
         CheckFinding::Gear { steps, turns } => TEXTS.text("ib_check.gear").with("steps", steps).with("turns", turns),
-        CheckFinding::Implausible(why) => implausible(*why),
+        CheckFinding::Implausible(why) => implausible_value_text(*why),
         CheckFinding::PresetBeyond { preset, last } => {
             TEXTS.text("ib_check.preset_beyond").with("preset", preset).with("last", last)
         }

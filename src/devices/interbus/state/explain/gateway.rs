@@ -1,7 +1,7 @@
 //! Messages about requests to a gateway, refusals and damaged replies.
 
 use crate::app::Text;
-use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
+use crate::devices::interbus::procedures::{Exception, ReplyDamage, RequestedItem};
 use crate::devices::interbus::state::TEXTS;
 
 pub(super) fn item_text(requested: RequestedItem) -> Text {
@@ -12,7 +12,7 @@ pub(super) fn item_text(requested: RequestedItem) -> Text {
     };
     let text = TEXTS.text(id).with("register", requested.register());
     match requested {
-        RequestedItem::Write { word, .. } => text.with("word", super::word(word)),
+        RequestedItem::Write { word, .. } => text.with("word", super::format_word(word)),
         RequestedItem::Input { .. } | RequestedItem::Output { .. } => text,
     }
 }
@@ -47,13 +47,13 @@ pub fn exception_text(exception: Exception) -> Text {
     })
 }
 
-pub fn damage_text(damage: Damage) -> Text {
+pub fn damage_text(damage: ReplyDamage) -> Text {
     match damage {
-        Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),
-        Damage::Unit { requested, got } => TEXTS.text("ib_damage.unit").with("asked", requested).with("got", got),
-        Damage::Function { requested, got } => {
+        ReplyDamage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),
+        ReplyDamage::Unit { requested, got } => TEXTS.text("ib_damage.unit").with("asked", requested).with("got", got),
+        ReplyDamage::Function { requested, got } => {
             TEXTS.text("ib_damage.function").with("asked", requested).with("got", got)
         }
-        Damage::Registers => TEXTS.text("ib_damage.registers"),
+        ReplyDamage::Registers => TEXTS.text("ib_damage.registers"),
     }
 }

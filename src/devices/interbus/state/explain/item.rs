@@ -18,7 +18,7 @@ pub fn parameter(parameter: Parameter) -> Text {
 }
 
 /// Formats the value of a parameter. A direction is written as a word.
-pub(super) fn number(parameter: Parameter, number: u32) -> Text {
+pub(super) fn parameter_value_text(parameter: Parameter, number: u32) -> Text {
     match Direction::from_code(number) {
         Some(own) if parameter == Parameter::Direction => direction(own),
         _ => literal_text(number),
@@ -38,7 +38,7 @@ pub(super) fn cams(mask: u8) -> Text {
     if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { literal_text(on.join(", ")) }
 }
 
-pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {
+pub(super) fn edge_text(cam: CamNumber, edge: Edge) -> Text {
     TEXTS
         .text(match edge {
             Edge::Start => "ib_item.start",
@@ -58,7 +58,7 @@ pub fn startup_mode_text(mode: StartupMode) -> Text {
 }
 
 pub fn read_out(read_out: ReadOutNumber) -> Text {
-    match (read_out.number(), read_out.register()) {
+    match (read_out.to_u16(), read_out.register()) {
         (_, Some(register)) => TEXTS.text("ib_doing.chip").with("register", register),
         (0x0, _) => TEXTS.text("ib_doing.serial"),
         (0x1, _) => TEXTS.text("ib_item.steps"),

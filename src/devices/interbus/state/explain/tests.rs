@@ -5,12 +5,12 @@ use std::path::Path;
 use super::*;
 use crate::app::Language::{English, German};
 use crate::devices::interbus::jobs::ChangeKind;
-use crate::devices::interbus::procedures::write::{EndState, Interrupted, WrittenChanges};
-use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
+use crate::devices::interbus::procedures::write::{EndState, InterruptedWrite, WrittenChanges};
+use crate::devices::interbus::procedures::{Exception, ReplyDamage, RequestedItem};
 use crate::devices::interbus::profile::{Edge, Item, Op, PlanError, ProgramChange, TypeMismatch};
 use crate::devices::interbus::protocol::{
-    CamNumber, Code, Command, EncoderMode, Flags, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
-    WindowShift,
+    CamNumber, Code, Command, EncoderMode, Flags, ForbiddenCommandError, OutOfRange, Parameter, ProgramNumber,
+    StartupMode, Value, WindowShift,
 };
 use crate::link::LinkErrorKind;
 use crate::worker::NotStarted;
@@ -47,14 +47,17 @@ fn encoder_errors_name_a_remedy() {
     let cases = [
         (Error::NoReply { requested, tries: 3 }, vec!["16", "3"]),
         (
-            Error::Damaged { requested, tries: 5, cause: Damage::Unit { requested: 1, got: 2 } },
+            Error::Damaged { requested, tries: 5, cause: ReplyDamage::Unit { requested: 1, got: 2 } },
             vec!["5", "unit 2", "1"],
         ),
-        (Error::Damaged { requested, tries: 5, cause: Damage::NoFrame { bytes: 7 } }, vec!["7"]),
-        (Error::Damaged { requested, tries: 5, cause: Damage::Function { requested: 4, got: 3 } }, vec!["3", "4"]),
-        (Error::Damaged { requested, tries: 5, cause: Damage::Registers }, vec![]),
+        (Error::Damaged { requested, tries: 5, cause: ReplyDamage::NoFrame { bytes: 7 } }, vec!["7"]),
+        (Error::Damaged { requested, tries: 5, cause: ReplyDamage::Function { requested: 4, got: 3 } }, vec!["3", "4"]),
+        (Error::Damaged { requested, tries: 5, cause: ReplyDamage::Registers }, vec![]),
         (Error::NeverSilent, vec![]),
-        (Error::Illegal(Refused { command: Command::Preset, mode: EncoderMode::Cam }), vec!["0x40000000"]),
+        (
+            Error::Illegal(ForbiddenCommandError { command: Command::Preset, mode: EncoderMode::Cam }),
+            vec!["0x40000000"],
+        ),
         (Error::Refused { sent: set, error: error_word(0x8200_0000) }, vec!["0x02002001", "0x82000000"]),
         (Error::UnknownReadOut { command: Command::ReadShift }, vec!["0x20200040"]),
         (time_out(ExpectedWord::Echo), vec!["0x02002000", "2000", "0x00000012"]),
@@ -151,7 +154,7 @@ fn plan_refusals_name_both_limits() {
         assert!(option.is_none_or(|option| text.terminal_text().contains(option)), "{}", text.terminal_text());
         assert!(option.is_none_or(|option| !text.to_string_in(English).contains(option)), "no options in the window");
     }
-    let worn = job(&JobError::NotStarted(NotStarted::Worn { seen: 448, cost: 2, limit: 449 }));
+    let worn = job_error_texts(&JobError::NotStarted(NotStarted::Worn { seen: 448, cost: 2, limit: 449 }));
     assert_explains(&worn[0], &["448", "2"]);
     assert!(worn[0].terminal_text().contains("450") && worn[0].terminal_text().contains("--force-wear"), "{worn:?}");
 }
@@ -163,7 +166,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
         let shift = Some((WindowShift::default(), WindowShift::default()));
         let program = ProgramNumber::new(1).unwrap();
         let unfinished = Some(Op::Program(ProgramChange { program, cams: Vec::new(), mask: None, shift }));
-        let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, end_state: left };
+        let interrupted = InterruptedWrite { done, unfinished, cause: Error::NeverSilent, end_state: left };
         let texts = write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind);
         assert!(texts.iter().all(|text| text.to_string_in(English) != text.to_string_in(German)), "{texts:?}");
         texts.iter().map(Text::terminal_text).collect()
@@ -191,7 +194,7 @@ fn completing_a_write_is_advised_after_leading_back() {
         let done = WrittenChanges { ops: 1, write_cycles: 1, written: 1, verified: 1 };
         let last = |left| {
             let interrupted =
-                Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, end_state: left };
+                InterruptedWrite { done: done.clone(), unfinished: None, cause: Error::NeverSilent, end_state: left };
             write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
         let (found, unknown) = (last(EndState::AsFound), last(EndState::Unknown(standing)));
@@ -203,14 +206,14 @@ fn completing_a_write_is_advised_after_leading_back() {
             unknown.to_string_in(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "),
             "{unknown:?}"
         );
-        assert_eq!(write::weight(&unknown), write::weight(&found));
+        assert_eq!(write::severity_of(&unknown), write::severity_of(&found));
     }
 }
 
 /// Issue 22.4: an unknown count is reported with the option that permits the write.
 #[test]
 fn a_write_with_unknown_wear_names_the_override() {
-    let refused = job(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));
+    let refused = job_error_texts(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));
     assert_explains(&refused[0], &["2"]);
     assert!(refused[0].terminal_text().contains("--force-wear"), "{refused:?}");
 }
@@ -219,7 +222,7 @@ fn a_write_with_unknown_wear_names_the_override() {
 fn operations_are_described_one_by_one() {
     use crate::devices::interbus::profile::{CamChange, ParameterChange, ProgramChange};
     let words = |op: &Op| {
-        let own = super::op(op);
+        let own = super::operation_texts(op);
         let one = |change: &crate::app::review::ChangeTexts| {
             let part = change.part.as_ref().map(|part| part.to_string_in(English) + ": ").unwrap_or_default();
             format!("{part}{} → {}", change.old.to_string_in(English), change.new.to_string_in(English))

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::encoder;
-use super::item::{cams, edge, number, parameter};
+use super::item::{cams, edge_text, parameter, parameter_value_text};
 use crate::app::explain::{self, literal_text};
 use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
-use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
-use crate::devices::interbus::procedures::write::{EndState, Interrupted, WrittenChanges};
+use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_CONFIRMATION, WEAR_LIMIT, WearAfterPlan};
+use crate::devices::interbus::procedures::write::{EndState, InterruptedWrite, WrittenChanges};
 use crate::devices::interbus::profile::{
     CamChange, Edge, Item, Op, ParameterChange, PlanError, ProgramChange, TypeMismatch,
 };
@@ -16,7 +16,7 @@ use crate::devices::interbus::protocol::{Flags, GearError, Value};
 use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotStarted;
 
-pub fn change(change: &Change) -> Text {
+pub fn change_text(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
             "" => Text::new("ib_change.restore"),
@@ -28,7 +28,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-pub fn op(op: &Op) -> OperationTexts {
+pub fn operation_texts(op: &Op) -> OperationTexts {
     match op {
         Op::Parameterise(changes) => OperationTexts {
             item: TEXTS.text("ib_op.parameters"),
@@ -36,8 +36,8 @@ pub fn op(op: &Op) -> OperationTexts {
                 .iter()
                 .map(|ParameterChange { parameter: own, from, to }| ChangeTexts {
                     part: Some(parameter(*own)),
-                    old: number(*own, *from),
-                    new: number(*own, *to),
+                    old: parameter_value_text(*own, *from),
+                    new: parameter_value_text(*own, *to),
                 })
                 .collect(),
         },
@@ -67,7 +67,7 @@ fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
         }
         own => {
             let each = |own: &CamChange| {
-                words(edge(own.cam, own.edge), literal_text(own.from.get()), literal_text(own.to.get()))
+                words(edge_text(own.cam, own.edge), literal_text(own.from.get()), literal_text(own.to.get()))
             };
             own.iter().map(each).collect()
         }
@@ -85,7 +85,7 @@ pub fn other_type(types: TypeMismatch) -> Text {
 }
 
 fn type_mismatch_text(id: &'static str, types: TypeMismatch) -> Text {
-    let name = |flags: Flags| match (flags.multiturn(), flags.steps_minus_one()) {
+    let name = |flags: Flags| match (flags.counts_turns(), flags.steps_minus_one()) {
         (true, false) => "ib_type.multiturn",
         (false, false) => "ib_type.single_turn",
         (true, true) => "ib_type.multiturn_less_one",
@@ -135,14 +135,14 @@ pub fn plan(error: &PlanError) -> Text {
 }
 
 /// Returns a warning about the wear of the EEPROM if the plan comes close to the limit.
-pub fn wear(prepared: &Prepared) -> Option<Text> {
-    let (id, after) = match prepared.wear()? {
-        Wear::Known(after) => ("ib_stores.known", after),
-        Wear::Ask(after) => ("ib_stores.ask", after),
-        Wear::Worn(after) => ("ib_stores.worn", after),
-        Wear::Unknown => return Some(TEXTS.text("ib_stores.unknown")),
+pub fn wear_warning(prepared: &Prepared) -> Option<Text> {
+    let (id, after) = match prepared.wear_to_report()? {
+        WearAfterPlan::Known(after) => ("ib_stores.known", after),
+        WearAfterPlan::Ask(after) => ("ib_stores.ask", after),
+        WearAfterPlan::Worn(after) => ("ib_stores.worn", after),
+        WearAfterPlan::Unknown => return Some(TEXTS.text("ib_stores.unknown")),
     };
-    Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
+    Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_CONFIRMATION).with("limit", WEAR_LIMIT))
 }
 
 pub(super) fn not_started_text(why: &NotStarted) -> Text {
@@ -156,7 +156,7 @@ pub(super) fn not_started_text(why: &NotStarted) -> Text {
     }
 }
 
-pub fn written(written: &WrittenChanges) -> Text {
+pub fn written_text(written: &WrittenChanges) -> Text {
     // The values of the factory settings are unknown, so none of them is verified.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
@@ -165,13 +165,13 @@ pub fn written(written: &WrittenChanges) -> Text {
 /// Describes an interrupted write with its progress, its cause, the state of the encoder and the location of the
 /// backup.
 pub(super) fn interruption_text(
-    interrupted: &Interrupted,
+    interrupted: &InterruptedWrite,
     backup: &Path,
     planned: usize,
     kind: ChangeKind,
 ) -> Vec<Text> {
-    let Interrupted { done, unfinished, cause, end_state: left } = interrupted;
-    let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();
+    let InterruptedWrite { done, unfinished, cause, end_state: left } = interrupted;
+    let unclear = unfinished.as_ref().map(Op::affected_items).unwrap_or_default();
     let mut texts = vec![if cause.is_cancelled() && *left == EndState::AsFound {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {
@@ -204,7 +204,7 @@ pub(super) fn interruption_text(
     texts
 }
 
-pub fn weight(text: &Text) -> Severity {
+pub fn severity_of(text: &Text) -> Severity {
     match text.id() {
         "ib_left.as_found" => Severity::Good,
         "write.after_lead_back"

@@ -23,7 +23,7 @@ pub struct ValueDifference {
 }
 
 /// Parameters that are settings, in the order of the manual.
-const SET: [Parameter; 5] =
+const SETTINGS: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
 impl ValueId {
@@ -37,7 +37,7 @@ impl ValueId {
                 ValueId::On(program, cam),
             ]
         });
-        SET.into_iter().map(ValueId::Parameter).chain([ValueId::Shift]).chain(cams)
+        SETTINGS.into_iter().map(ValueId::Parameter).chain([ValueId::Shift]).chain(cams)
     }
 }
 
@@ -58,7 +58,7 @@ impl EditedValues {
 
 impl StagedEdits {
     /// Returns the difference of a value, or `None` if it was not edited.
-    pub fn differs(&self, place: ValueId) -> Option<ValueDifference> {
+    pub fn difference_of(&self, place: ValueId) -> Option<ValueDifference> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
         (from != to).then_some(ValueDifference { place, from, to })
@@ -66,7 +66,7 @@ impl StagedEdits {
 
     /// Returns the differences of all edited values, except names.
     pub fn differences(&self) -> Vec<ValueDifference> {
-        ValueId::all().filter_map(|place| self.differs(place)).collect()
+        ValueId::all().filter_map(|place| self.difference_of(place)).collect()
     }
 
     /// Returns whether a cam was edited, apart from its name. An inactive cam that is added to a profile does not

@@ -31,7 +31,7 @@ pub enum SavedEdit {
 
 impl StagedEdits {
     /// Returns the edits for a draft. They include those that wait until their program is read.
-    pub fn edits(&self) -> Vec<SavedEdit> {
+    pub fn draft_edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
             collect_parameter_edits(base, wanted, &mut kept);
@@ -54,10 +54,10 @@ impl StagedEdits {
             if kept.changes_unread_value(&wanted, self.base_source) {
                 self.waiting.push(kept);
             } else {
-                kept.put(&mut wanted, self.base_source);
+                kept.apply_to(&mut wanted, self.base_source);
             }
         }
-        self.step(wanted);
+        self.apply_step(wanted);
     }
 
     /// Returns the programs whose edits wait until they are read.
@@ -112,12 +112,12 @@ fn collect_program_edits(
 
 impl SavedEdit {
     /// Applies the edit unless one of its numbers is invalid. Values beyond the measuring range are not adjusted.
-    fn put(self, wanted: &mut EditedValues, ground: BaseSource) {
+    fn apply_to(self, wanted: &mut EditedValues, ground: BaseSource) {
         let parameters = &mut wanted.image.parameters;
         match self {
             SavedEdit::Gear(steps, revolutions) => {
                 if let Ok(gear) = Gear::new(steps, revolutions) {
-                    (parameters.steps, parameters.revolutions) = (gear.steps(), gear.turns());
+                    (parameters.steps, parameters.revolutions) = (gear.total_steps(), gear.turns());
                 }
             }
             SavedEdit::Direction(code) => {

@@ -1,7 +1,7 @@
 //! Edits, their effect on the edited values, and the reasons why an edit is refused.
 
 use super::{BaseSource, EditedValues};
-use crate::devices::interbus::profile::{Direction, Edge, Filled, LONGEST_NAME};
+use crate::devices::interbus::profile::{Direction, Edge, ImportedProgram, LONGEST_NAME};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
@@ -73,7 +73,7 @@ pub enum Edit {
         by: i64,
     },
     /// Sets the programs of an imported table.
-    Table(Vec<Filled>),
+    Table(Vec<ImportedProgram>),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -103,16 +103,16 @@ pub enum EditError {
     Name,
 }
 
-pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> Result<EditedValues, EditError> {
+pub(super) fn apply_edit(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> Result<EditedValues, EditError> {
     let mut after = wanted.clone();
     let parameters = &mut after.image.parameters;
     match *edit {
         Edit::Steps(steps) => set_gear(&mut after, steps, wanted.image.parameters.revolutions)?,
-        Edit::Revolutions(revolutions) => set_gear(&mut after, wanted.range(), revolutions)?,
+        Edit::Revolutions(revolutions) => set_gear(&mut after, wanted.step_count(), revolutions)?,
         Edit::Gear { steps, revolutions } => set_gear(&mut after, steps, revolutions)?,
         Edit::Direction(direction) => parameters.direction = direction,
-        Edit::Preset(to) => parameters.preset = within(Parameter::Preset, to, last(wanted))?,
-        Edit::ZeroShift(to) => parameters.zero_shift = within(Parameter::ZeroShift, to, last(wanted))?,
+        Edit::Preset(to) => parameters.preset = check_in_range(Parameter::Preset, to, last(wanted))?,
+        Edit::ZeroShift(to) => parameters.zero_shift = check_in_range(Parameter::ZeroShift, to, last(wanted))?,
         Edit::Shift(shift) => {
             if ground == BaseSource::Encoder && wanted.image.shift.is_none() {
                 return Err(EditError::ShiftNotRead);
@@ -161,7 +161,7 @@ pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> 
             })?;
         }
         Edit::Rotate { program, by } => {
-            let range = i64::from(wanted.range().max(1));
+            let range = i64::from(wanted.step_count().max(1));
             // The numbers are below the range, which has at most 25 bits.
             let by = by.rem_euclid(range);
             let moved = |edge: Value| Value::from_word(((i64::from(edge.get()) + by) % range) as u32);
@@ -169,7 +169,7 @@ pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> 
         }
         Edit::Table(ref table) => {
             for filled in table {
-                fill(&mut after, filled, ground)?;
+                fill_program(&mut after, filled, ground)?;
             }
         }
     }
@@ -178,17 +178,17 @@ pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> 
 
 fn set_gear(after: &mut EditedValues, steps: u32, revolutions: u32) -> Result<(), EditError> {
     let gear = Gear::new(steps, revolutions)?;
-    after.image.parameters.steps = gear.steps();
+    after.image.parameters.steps = gear.total_steps();
     after.image.parameters.revolutions = gear.turns();
     Ok(())
 }
 
-fn within(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError> {
+fn check_in_range(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError> {
     if value <= high { Ok(value) } else { Err(OutOfRange { parameter, value, low: 0, high }.into()) }
 }
 
 const fn last(wanted: &EditedValues) -> u32 {
-    wanted.range().saturating_sub(1)
+    wanted.step_count().saturating_sub(1)
 }
 
 fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditError> {
@@ -224,7 +224,7 @@ fn move_cams(after: &mut EditedValues, program: ProgramNumber, to: impl Fn(Cam) 
     Ok(())
 }
 
-fn fill(after: &mut EditedValues, filled: &Filled, ground: BaseSource) -> Result<(), EditError> {
+fn fill_program(after: &mut EditedValues, filled: &ImportedProgram, ground: BaseSource) -> Result<(), EditError> {
     for cam in filled.cams.iter().flatten() {
         position(Edge::Start, cam.start.get(), after)?;
         position(Edge::Stop, cam.stop.get(), after)?;

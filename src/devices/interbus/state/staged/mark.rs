@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumbe
 /// A problem of the edited values that the user should check. For example, cams may be beyond the range after the
 /// number of steps was reduced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mark {
+pub enum EditFinding {
     Gear(GearError),
     Preset {
         last: u32,
@@ -30,30 +30,30 @@ pub enum Mark {
     },
 }
 
-impl Mark {
+impl EditFinding {
     pub fn refers_to(&self, number: ProgramNumber, own: CamNumber) -> bool {
         match *self {
-            Mark::Beyond { program, cam, .. } => (program, cam) == (number, own),
-            Mark::Clash { program, first, second, .. } => program == number && (first == own || second == own),
-            Mark::Gear(_) | Mark::Preset { .. } => false,
+            EditFinding::Beyond { program, cam, .. } => (program, cam) == (number, own),
+            EditFinding::Clash { program, first, second, .. } => program == number && (first == own || second == own),
+            EditFinding::Gear(_) | EditFinding::Preset { .. } => false,
         }
     }
 
     pub const fn program(&self) -> Option<ProgramNumber> {
         match self {
-            Mark::Beyond { program, .. } | Mark::Clash { program, .. } => Some(*program),
-            Mark::Gear(_) | Mark::Preset { .. } => None,
+            EditFinding::Beyond { program, .. } | EditFinding::Clash { program, .. } => Some(*program),
+            EditFinding::Gear(_) | EditFinding::Preset { .. } => None,
         }
     }
 }
 
 impl EditedValues {
-    pub fn marks(&self) -> Vec<Mark> {
+    pub fn findings(&self) -> Vec<EditFinding> {
         let parameters = &self.image.parameters;
-        let mut marks: Vec<Mark> = parameters.gear().err().map(Mark::Gear).into_iter().collect();
-        let last = self.range().saturating_sub(1);
+        let mut marks: Vec<EditFinding> = parameters.gear().err().map(EditFinding::Gear).into_iter().collect();
+        let last = self.step_count().saturating_sub(1);
         if parameters.preset > last {
-            marks.push(Mark::Preset { last });
+            marks.push(EditFinding::Preset { last });
         }
         for program in ProgramNumber::all() {
             self.mark_program(program, last, &mut marks);
@@ -61,13 +61,13 @@ impl EditedValues {
         marks
     }
 
-    fn mark_program(&self, program: ProgramNumber, last: u32, marks: &mut Vec<Mark>) {
+    fn mark_program(&self, program: ProgramNumber, last: u32, marks: &mut Vec<EditFinding>) {
         let on = |cam: &CamNumber| self.is_on(program, *cam);
         for number in CamNumber::all().filter(on) {
             let Some(cam) = self.cam(program, number) else { continue };
             let beyond = [(Edge::Start, cam.start), (Edge::Stop, cam.stop)];
             if let Some((edge, _)) = beyond.into_iter().find(|(_, position)| position.get() > last) {
-                marks.push(Mark::Beyond { program, cam: number, edge, last });
+                marks.push(EditFinding::Beyond { program, cam: number, edge, last });
             }
             let Some(track) = self.name(program, number) else { continue };
             for other in CamNumber::all().filter(on).filter(|other| *other > number) {
@@ -75,7 +75,7 @@ impl EditedValues {
                 let both =
                     self.cam(program, other).filter(|_| is_same).and_then(|other| first_common_position(cam, other));
                 if let Some(at) = both {
-                    marks.push(Mark::Clash { program, first: number, second: other, at });
+                    marks.push(EditFinding::Clash { program, first: number, second: other, at });
                 }
             }
         }
@@ -89,7 +89,7 @@ pub(super) fn is_same_track_name(one: &str, other: &str) -> bool {
 
 /// Returns the first position at which both cams are on. It is the start of one of them.
 fn first_common_position(one: Cam, other: Cam) -> Option<u32> {
-    let wrapped = one.wraps() && other.wraps();
+    let wrapped = one.wraps_around() && other.wraps_around();
     let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));
     if wrapped { Some(0) } else { begins.map(|at| at.get()).min() }
 }

@@ -5,7 +5,7 @@ use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
 /// Returns the values just read. Values that were not read are taken from the known ones.
-pub(super) fn over(known: &Image, read: Image) -> Image {
+pub(super) fn merge_known(known: &Image, read: Image) -> Image {
     let mut programs = read.programs;
     for (own, known) in programs.iter_mut().zip(&known.programs) {
         *own = own.or(*known);
@@ -14,19 +14,19 @@ pub(super) fn over(known: &Image, read: Image) -> Image {
 }
 
 /// Transfers edits from the previous base values to the new ones.
-pub(super) fn rebase(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
+pub(super) fn rebase_edits(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
-    follow(&mut parameters.steps, &was.steps, &is.steps);
-    follow(&mut parameters.revolutions, &was.revolutions, &is.revolutions);
-    follow(&mut parameters.direction, &was.direction, &is.direction);
-    follow(&mut parameters.preset, &was.preset, &is.preset);
-    follow(&mut parameters.zero_shift, &was.zero_shift, &is.zero_shift);
-    follow(&mut own.image.shift, &before.image.shift, &now.image.shift);
+    follow_base(&mut parameters.steps, &was.steps, &is.steps);
+    follow_base(&mut parameters.revolutions, &was.revolutions, &is.revolutions);
+    follow_base(&mut parameters.direction, &was.direction, &is.direction);
+    follow_base(&mut parameters.preset, &was.preset, &is.preset);
+    follow_base(&mut parameters.zero_shift, &was.zero_shift, &is.zero_shift);
+    follow_base(&mut own.image.shift, &before.image.shift, &now.image.shift);
     let programs = own.image.programs.iter_mut().zip(&before.image.programs).zip(&now.image.programs);
     for ((program, was), is) in programs {
         match (program.as_mut(), was, is) {
             (Some(program), Some(was), Some(is)) => rebase_program(program, was, is),
-            _ => follow(program, was, is),
+            _ => follow_base(program, was, is),
         }
     }
     for program in ProgramNumber::all() {
@@ -45,10 +45,10 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     for ((cam, was), is) in program.cams.iter_mut().zip(&was.cams).zip(&is.cams) {
         match (cam.as_mut(), was, is) {
             (Some(Cam { start, stop }), Some(was), Some(is)) => {
-                follow(start, &was.start, &is.start);
-                follow(stop, &was.stop, &is.stop);
+                follow_base(start, &was.start, &is.start);
+                follow_base(stop, &was.stop, &is.stop);
             }
-            _ => follow(cam, was, is),
+            _ => follow_base(cam, was, is),
         }
     }
     let edited = program.mask ^ was.mask;
@@ -56,7 +56,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
 }
 
 /// Sets an edited value to the new base value unless the user has changed it.
-fn follow<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
+fn follow_base<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);
     }

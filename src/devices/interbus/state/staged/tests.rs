@@ -1,8 +1,8 @@
 //! Edits, steps and drafts of a K3 encoder.
 
-use super::{Edit, EditError, EditedValues, Mark, SavedEdit, StagedEdits, ValueDifference, ValueId};
+use super::{Edit, EditError, EditFinding, EditedValues, SavedEdit, StagedEdits, ValueDifference, ValueId};
 use crate::app::PendingEdits;
-use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
+use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, ImportedProgram, Parameters};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GearError, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
@@ -46,7 +46,7 @@ fn name(own: u8, name: &str) -> Edit {
 }
 
 fn cam_edges(staged: &StagedEdits, own: u8) -> (u32, u32) {
-    let cam = staged.wanted().unwrap().cam(number(1), cam(own)).unwrap();
+    let cam = staged.edited_values().unwrap().cam(number(1), cam(own)).unwrap();
     (cam.start.get(), cam.stop.get())
 }
 
@@ -54,10 +54,14 @@ fn cam_edges(staged: &StagedEdits, own: u8) -> (u32, u32) {
 fn an_edit_is_separate_from_the_encoder() {
     let mut staged = staged();
     assert!(!staged.is_dirty() && staged.differences().is_empty());
-    assert_eq!(staged.edit(&edge(1, 3, Edge::Stop, 399)), Ok(true));
-    assert_eq!(staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }), Ok(true));
-    assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(true));
-    assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(false), "nothing is other than before");
+    assert_eq!(staged.apply_edit(&edge(1, 3, Edge::Stop, 399)), Ok(true));
+    assert_eq!(staged.apply_edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }), Ok(true));
+    assert_eq!(staged.apply_edit(&Edit::Direction(Direction::Counterclockwise)), Ok(true));
+    assert_eq!(
+        staged.apply_edit(&Edit::Direction(Direction::Counterclockwise)),
+        Ok(false),
+        "nothing is other than before"
+    );
     let differs = |place, from, to| ValueDifference { place, from: Some(from), to: Some(to) };
     let expected = [
         differs(ValueId::Parameter(Parameter::Direction), 3, 4),
@@ -73,7 +77,7 @@ fn an_edit_is_separate_from_the_encoder() {
 #[test]
 fn refused_edits_name_the_limits_and_change_nothing() {
     let mut staged = StagedEdits::default();
-    assert_eq!(staged.edit(&Edit::Preset(1)), Err(EditError::NothingRead));
+    assert_eq!(staged.apply_edit(&Edit::Preset(1)), Err(EditError::NothingRead));
     staged = self::staged();
     let beyond = |parameter, value, low, high| {
         EditError::Parameter(crate::devices::interbus::protocol::OutOfRange { parameter, value, low, high })
@@ -95,38 +99,38 @@ fn refused_edits_name_the_limits_and_change_nothing() {
         (name(0, &"n".repeat(41)), EditError::Name),
     ];
     for (edit, why) in cases {
-        assert_eq!(staged.edit(&edit), Err(why), "{edit:?}");
+        assert_eq!(staged.apply_edit(&edit), Err(why), "{edit:?}");
     }
     assert!(!staged.is_dirty() && !staged.can_undo());
     let mut unread = StagedEdits::default();
     unread.refresh_parameters(parameters(1000, 1));
-    assert_eq!(unread.edit(&Edit::Shift(WindowShift::default())), Err(EditError::ShiftNotRead));
+    assert_eq!(unread.apply_edit(&Edit::Shift(WindowShift::default())), Err(EditError::ShiftNotRead));
 }
 
 #[test]
 fn both_parts_of_a_gear_can_change_together() {
     let mut staged = staged();
-    assert_eq!(staged.edit(&Edit::Gear { steps: 40_960, revolutions: 10 }), Ok(true));
+    assert_eq!(staged.apply_edit(&Edit::Gear { steps: 40_960, revolutions: 10 }), Ok(true));
     let refused = GearError::Steps { steps: 40_960, turns: 4, most: 32_768 };
-    assert_eq!(staged.edit(&Edit::Revolutions(4)), Err(EditError::Gear(refused)));
-    assert_eq!(staged.edit(&Edit::Gear { steps: 0x1FF_FFFF, revolutions: 4096 }), Ok(true));
+    assert_eq!(staged.apply_edit(&Edit::Revolutions(4)), Err(EditError::Gear(refused)));
+    assert_eq!(staged.apply_edit(&Edit::Gear { steps: 0x1FF_FFFF, revolutions: 4096 }), Ok(true));
 }
 
 #[test]
 fn programs_are_copied_mirrored_and_shifted() {
     let mut staged = staged();
     staged.refresh_programs(&[(number(5), Program { cams: [Some(edges(0, 0)); 8], mask: 0 })], None);
-    staged.edit(&name(3, " feed ")).unwrap();
+    staged.apply_edit(&name(3, " feed ")).unwrap();
     // 999 - 350 = 649 and 999 - 300 = 699.
-    staged.edit(&Edit::Mirror(number(1))).unwrap();
+    staged.apply_edit(&Edit::Mirror(number(1))).unwrap();
     assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((949, 999), (649, 699)));
     // 949 + 60 = 1009 and 999 + 60 = 1059, less 1000.
-    staged.edit(&Edit::Rotate { program: number(1), by: 60 }).unwrap();
+    staged.apply_edit(&Edit::Rotate { program: number(1), by: 60 }).unwrap();
     assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((9, 59), (709, 759)));
-    staged.edit(&Edit::Rotate { program: number(1), by: -1_000_020 }).unwrap();
+    staged.apply_edit(&Edit::Rotate { program: number(1), by: -1_000_020 }).unwrap();
     assert_eq!(cam_edges(&staged, 0), (989, 39), "over the end");
-    staged.edit(&Edit::Copy { from: number(1), to: number(5) }).unwrap();
-    let wanted = staged.wanted().unwrap();
+    staged.apply_edit(&Edit::Copy { from: number(1), to: number(5) }).unwrap();
+    let wanted = staged.edited_values().unwrap();
     assert_eq!(wanted.image.program(number(5)), wanted.image.program(number(1)));
     assert_eq!(wanted.name(number(5), cam(3)), Some("feed"));
 }
@@ -134,29 +138,29 @@ fn programs_are_copied_mirrored_and_shifted() {
 #[test]
 fn only_an_enabled_cam_beyond_the_range_blocks_mirroring() {
     let mut staged = staged();
-    staged.edit(&Edit::Steps(340)).unwrap();
+    staged.apply_edit(&Edit::Steps(340)).unwrap();
     let refused = EditError::Beyond { program: number(1), cam: cam(3), last: 339 };
-    assert_eq!(staged.edit(&Edit::Mirror(number(1))), Err(refused.clone()));
-    assert_eq!(staged.edit(&Edit::Rotate { program: number(1), by: 1 }), Err(refused));
-    staged.edit(&Edit::Switch { program: number(1), cam: cam(3), on: false }).unwrap();
-    staged.edit(&Edit::Mirror(number(1))).unwrap();
+    assert_eq!(staged.apply_edit(&Edit::Mirror(number(1))), Err(refused.clone()));
+    assert_eq!(staged.apply_edit(&Edit::Rotate { program: number(1), by: 1 }), Err(refused));
+    staged.apply_edit(&Edit::Switch { program: number(1), cam: cam(3), on: false }).unwrap();
+    staged.apply_edit(&Edit::Mirror(number(1))).unwrap();
     assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((289, 339), (300, 350)), "that one stays where it is");
 }
 
 #[test]
 fn a_table_is_one_edit_and_enables_its_cams() {
     let mut staged = staged();
-    let mut filled = Filled { program: number(1), cams: [None; 8], names: Default::default() };
+    let mut filled = ImportedProgram { program: number(1), cams: [None; 8], names: Default::default() };
     filled.cams[1] = Some(edges(900, 20));
     filled.names[1] = "glue".to_owned();
-    staged.edit(&Edit::Table(vec![filled.clone()])).unwrap();
-    let wanted = staged.wanted().unwrap();
+    staged.apply_edit(&Edit::Table(vec![filled.clone()])).unwrap();
+    let wanted = staged.edited_values().unwrap();
     assert_eq!(wanted.image.program(number(1)).unwrap().mask, 0b10);
     assert_eq!(cam_edges(&staged, 1), (900, 20));
     assert_eq!(cam_edges(&staged, 0), (0, 50), "its edges cost nothing where they are");
     filled.cams[4] = Some(edges(0, 1000));
     let refused = EditError::Edge { edge: Edge::Stop, to: 1000, last: 999 };
-    assert_eq!(staged.edit(&Edit::Table(vec![filled])), Err(refused));
+    assert_eq!(staged.apply_edit(&Edit::Table(vec![filled])), Err(refused));
     assert!(staged.undo() && !staged.is_dirty() && !staged.undo());
 }
 
@@ -164,20 +168,20 @@ fn a_table_is_one_edit_and_enables_its_cams() {
 fn edits_can_be_undone_and_redone() {
     let mut staged = staged();
     for to in [310, 320, 330] {
-        staged.edit(&edge(1, 3, Edge::Start, to)).unwrap();
+        staged.apply_edit(&edge(1, 3, Edge::Start, to)).unwrap();
     }
     assert!(staged.undo() && staged.undo());
     assert_eq!(cam_edges(&staged, 3), (310, 350));
     assert!(staged.redo());
     assert_eq!(cam_edges(&staged, 3), (320, 350));
-    staged.edit(&edge(1, 3, Edge::Start, 0)).unwrap();
+    staged.apply_edit(&edge(1, 3, Edge::Start, 0)).unwrap();
     assert!(!staged.redo(), "another way was taken");
     staged.discard_all();
     assert!(!staged.is_dirty());
     assert!(staged.undo());
     assert_eq!(cam_edges(&staged, 3), (0, 350));
     for to in 0..500 {
-        staged.edit(&edge(1, 0, Edge::Stop, 100 + to)).unwrap();
+        staged.apply_edit(&edge(1, 0, Edge::Stop, 100 + to)).unwrap();
     }
     let mut steps = 0;
     while staged.undo() {
@@ -189,17 +193,17 @@ fn edits_can_be_undone_and_redone() {
 #[test]
 fn edits_and_undo_survive_a_fresh_reading() {
     let mut staged = staged();
-    staged.edit(&edge(1, 3, Edge::Stop, 399)).unwrap();
-    staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }).unwrap();
-    staged.edit(&Edit::Preset(7)).unwrap();
+    staged.apply_edit(&edge(1, 3, Edge::Stop, 399)).unwrap();
+    staged.apply_edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }).unwrap();
+    staged.apply_edit(&Edit::Preset(7)).unwrap();
     let mut now = program();
     now.cams[3] = Some(edges(305, 350)); // by another master
     now.mask = 0b1000_1011; // cam 1 too, and our edit was written
     staged.refresh_programs(&[(number(1), now)], None);
     staged.refresh_parameters(Parameters { preset: 7, ..parameters(2000, 1) });
     assert_eq!(cam_edges(&staged, 3), (305, 399));
-    let wanted = staged.wanted().unwrap();
-    assert_eq!((wanted.image.program(number(1)).unwrap().mask, wanted.range()), (0b1000_1011, 2000));
+    let wanted = staged.edited_values().unwrap();
+    assert_eq!((wanted.image.program(number(1)).unwrap().mask, wanted.step_count()), (0b1000_1011, 2000));
     assert_eq!(staged.count(), 1, "{:?}", staged.differences());
     assert!(staged.undo(), "the edit of the stop is one step still");
     assert_eq!(cam_edges(&staged, 3), (305, 350));
@@ -212,7 +216,10 @@ fn values_not_read_again_stay_as_known() {
     staged.refresh_programs(&[(number(2), Program { mask: 0x93, ..program() })], None);
     staged.refresh_parameters(parameters(500, 1));
     let known = staged.device().unwrap();
-    assert_eq!(known.known().map(|(program, own)| (program.get(), own.mask)).collect::<Vec<_>>(), [(1, 9), (2, 0x93)]);
+    assert_eq!(
+        known.known_programs().map(|(program, own)| (program.get(), own.mask)).collect::<Vec<_>>(),
+        [(1, 9), (2, 0x93)]
+    );
     assert_eq!(known.shift, WindowShift::new(8));
     assert!(!staged.is_dirty());
 }
@@ -227,7 +234,7 @@ fn a_draft_is_restored_and_waits_for_unread_values() {
         Edit::Steps(360),
         Edit::Shift(WindowShift::new(3).unwrap()),
     ] {
-        staged.edit(&edit).unwrap();
+        staged.apply_edit(&edit).unwrap();
     }
     let expected = [
         SavedEdit::Gear(360, 1),
@@ -236,7 +243,7 @@ fn a_draft_is_restored_and_waits_for_unread_values() {
         SavedEdit::Cam(1, 3, 300, 399),
         SavedEdit::Name(1, 3, "feed".to_owned()),
     ];
-    let kept = staged.edits();
+    let kept = staged.draft_edits();
     assert_eq!(kept, expected);
 
     let mut other = StagedEdits::default();
@@ -248,14 +255,14 @@ fn a_draft_is_restored_and_waits_for_unread_values() {
         SavedEdit::Shift(26),
     ];
     other.take_draft(kept.iter().cloned().chain(none));
-    assert_eq!(other.edits().len(), 10, "nothing is lost before anything was read");
+    assert_eq!(other.draft_edits().len(), 10, "nothing is lost before anything was read");
     other.refresh_parameters(parameters(1000, 1));
-    assert_eq!(other.wanted().unwrap().range(), 360);
+    assert_eq!(other.edited_values().unwrap().step_count(), 360);
     assert_eq!(other.pending_programs(), [number(1)]);
     other.refresh_programs(&[(number(1), program())], WindowShift::new(8));
-    assert_eq!(other.wanted(), staged.wanted(), "the cam beyond the range too");
-    assert_eq!((other.edits(), other.pending_programs()), (kept, Vec::new()));
-    let mask = other.wanted().unwrap().image.program(number(1)).unwrap().mask;
+    assert_eq!(other.edited_values(), staged.edited_values(), "the cam beyond the range too");
+    assert_eq!((other.draft_edits(), other.pending_programs()), (kept, Vec::new()));
+    let mask = other.edited_values().unwrap().image.program(number(1)).unwrap().mask;
     assert_eq!(mask, 0b1000);
 }
 
@@ -269,58 +276,61 @@ fn drafts_round_trip_as_text() {
 
 #[test]
 fn missing_values_can_be_added_to_a_profile() {
-    let mut staged = StagedEdits::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
+    let mut staged = StagedEdits::for_profile(Image::from_parameters(parameters(1000, 1)), CamNames::default());
     let switch = Edit::Switch { program: number(2), cam: cam(4), on: true };
-    assert_eq!(staged.edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
+    assert_eq!(staged.apply_edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
     let drawn = Edit::Cam { program: number(2), cam: cam(4), start: 900, stop: 99, on: true };
-    assert_eq!(staged.edit(&drawn), Ok(true));
-    assert_eq!(staged.edit(&edge(2, 5, Edge::Stop, 3)), Err(EditError::NoCam { program: number(2), cam: cam(5) }));
+    assert_eq!(staged.apply_edit(&drawn), Ok(true));
+    assert_eq!(
+        staged.apply_edit(&edge(2, 5, Edge::Stop, 3)),
+        Err(EditError::NoCam { program: number(2), cam: cam(5) })
+    );
     assert_eq!(staged.program(number(2)).unwrap().cams.iter().flatten().count(), 1);
-    assert_eq!(staged.edit(&Edit::Shift(WindowShift::new(3).unwrap())), Ok(true));
-    let kept = staged.edits();
+    assert_eq!(staged.apply_edit(&Edit::Shift(WindowShift::new(3).unwrap())), Ok(true));
+    let kept = staged.draft_edits();
     assert_eq!(kept, [SavedEdit::Shift(3), SavedEdit::Cam(2, 4, 900, 99), SavedEdit::On(2, 4, true)]);
-    let mut other = StagedEdits::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
+    let mut other = StagedEdits::for_profile(Image::from_parameters(parameters(1000, 1)), CamNames::default());
     other.take_draft(kept);
-    assert_eq!(other.wanted(), staged.wanted());
-    let EditedValues { image, names } = staged.wanted().unwrap().clone();
-    staged.saved(image, names);
+    assert_eq!(other.edited_values(), staged.edited_values());
+    let EditedValues { image, names } = staged.edited_values().unwrap().clone();
+    staged.adopt_saved(image, names);
     assert!(!staged.is_dirty() && staged.undo() && staged.is_dirty(), "what was saved can still be undone");
 }
 
 #[test]
 fn names_are_saved_and_not_written() {
     let mut encoder = staged();
-    encoder.edit(&name(0, "feed")).unwrap();
-    encoder.edit(&Edit::ProgramName { program: number(1), name: "size 2".to_owned() }).unwrap();
+    encoder.apply_edit(&name(0, "feed")).unwrap();
+    encoder.apply_edit(&Edit::ProgramName { program: number(1), name: "size 2".to_owned() }).unwrap();
     assert!(!encoder.is_dirty() && !encoder.is_program_edited(number(1)) && encoder.can_undo());
-    let kept = encoder.edits();
+    let kept = encoder.draft_edits();
     assert_eq!(kept, [SavedEdit::ProgramName(1, "size 2".to_owned()), SavedEdit::Name(1, 0, "feed".to_owned())]);
     let mut other = staged();
     other.take_draft(kept);
-    assert_eq!(other.wanted(), encoder.wanted());
-    let mut profile = StagedEdits::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
-    profile.edit(&name(0, "feed")).unwrap();
+    assert_eq!(other.edited_values(), encoder.edited_values());
+    let mut profile = StagedEdits::for_profile(Image::from_parameters(parameters(1000, 1)), CamNames::default());
+    profile.apply_edit(&name(0, "feed")).unwrap();
     assert!(profile.is_dirty() && profile.is_program_edited(number(1)));
-    profile.edit(&name(0, "  ")).unwrap();
+    profile.apply_edit(&name(0, "  ")).unwrap();
     assert!(!profile.is_dirty());
 }
 
 #[test]
 fn marks_show_values_beyond_the_range_and_conflicts() {
     let mut staged = staged();
-    staged.edit(&Edit::Preset(400)).unwrap();
-    staged.edit(&Edit::Steps(340)).unwrap();
-    let beyond = Mark::Beyond { program: number(1), cam: cam(3), edge: Edge::Stop, last: 339 };
-    assert_eq!(staged.wanted().unwrap().marks(), [Mark::Preset { last: 339 }, beyond]);
+    staged.apply_edit(&Edit::Preset(400)).unwrap();
+    staged.apply_edit(&Edit::Steps(340)).unwrap();
+    let beyond = EditFinding::Beyond { program: number(1), cam: cam(3), edge: Edge::Stop, last: 339 };
+    assert_eq!(staged.edited_values().unwrap().findings(), [EditFinding::Preset { last: 339 }, beyond]);
     assert!(beyond.refers_to(number(1), cam(3)) && !beyond.refers_to(number(1), cam(0)));
     staged.undo();
     staged.undo();
-    assert!(staged.wanted().unwrap().marks().is_empty());
+    assert!(staged.edited_values().unwrap().findings().is_empty());
 
     // Pulses of one track: 300 to 350 and one that begins within it.
     let drawn = |start, stop| Edit::Cam { program: number(1), cam: cam(5), start, stop, on: true };
-    staged.edit(&name(3, "Feed")).unwrap();
-    staged.edit(&name(5, "feed")).unwrap();
+    staged.apply_edit(&name(3, "Feed")).unwrap();
+    staged.apply_edit(&name(5, "feed")).unwrap();
     for (start, stop, at) in [
         (350, 400, Some(350)),
         (351, 400, None),
@@ -331,13 +341,13 @@ fn marks_show_values_beyond_the_range_and_conflicts() {
         (900, 299, None),
         (340, 10, Some(340)),
     ] {
-        staged.edit(&drawn(start, stop)).unwrap();
-        let expected = at.map(|at| Mark::Clash { program: number(1), first: cam(3), second: cam(5), at });
-        assert_eq!(staged.wanted().unwrap().marks(), Vec::from_iter(expected), "{start} to {stop}");
+        staged.apply_edit(&drawn(start, stop)).unwrap();
+        let expected = at.map(|at| EditFinding::Clash { program: number(1), first: cam(3), second: cam(5), at });
+        assert_eq!(staged.edited_values().unwrap().findings(), Vec::from_iter(expected), "{start} to {stop}");
     }
-    staged.edit(&edge(1, 3, Edge::Start, 990)).unwrap();
-    let clash = Mark::Clash { program: number(1), first: cam(3), second: cam(5), at: 0 };
-    assert_eq!(staged.wanted().unwrap().marks(), [clash], "both go over the end");
-    staged.edit(&name(5, "other")).unwrap();
-    assert!(staged.wanted().unwrap().marks().is_empty());
+    staged.apply_edit(&edge(1, 3, Edge::Start, 990)).unwrap();
+    let clash = EditFinding::Clash { program: number(1), first: cam(3), second: cam(5), at: 0 };
+    assert_eq!(staged.edited_values().unwrap().findings(), [clash], "both go over the end");
+    staged.apply_edit(&name(5, "other")).unwrap();
+    assert!(staged.edited_values().unwrap().findings().is_empty());
 }

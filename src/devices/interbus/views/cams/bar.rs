@@ -6,7 +6,7 @@ use super::CamsUiState as Page;
 use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::controls::{
     entry, icon_button, icon_menu, labelled_button, name, paragraph, show_error_below, text_entry,
 };
@@ -26,9 +26,9 @@ pub(super) fn bar_ui(
     view: &mut Page,
     actions: &mut Vec<Action>,
 ) {
-    let marks = encoder.staged.wanted().map(|wanted| wanted.marks()).unwrap_or_default();
+    let marks = encoder.staged.edited_values().map(|wanted| wanted.findings()).unwrap_or_default();
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme.label(say(theme, "ib_cams.program")));
+        ui.label(theme.label(translate(theme, "ib_cams.program")));
         for own in ProgramNumber::all() {
             let content = encoder.staged.program(own);
             let ink = match content {
@@ -55,7 +55,7 @@ pub(super) fn bar_ui(
 fn reread_button_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
-    let button = icon_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_again"));
+    let button = icon_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "ib_cams.read_again"));
     if button.on_hover_text(theme.format_text(&cost)).clicked() {
         actions.push(Action::device(encoder.session.id, Interbus::ReadPrograms(vec![program])));
     }
@@ -71,9 +71,9 @@ fn program_menu_ui(
 ) {
     let id = encoder.session.id;
     let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
-    icon_menu(ui, icons::PENCIL_SIMPLE, &say(theme, "ib_cams.whole"), |ui| {
+    icon_menu(ui, icons::PENCIL_SIMPLE, &translate(theme, "ib_cams.whole"), |ui| {
         ui.set_max_width(300.0);
-        ui.label(theme.heading(say(theme, "ib_cams.copy")));
+        ui.label(theme.heading(translate(theme, "ib_cams.copy")));
         ui.horizontal_wrapped(|ui| {
             for to in ProgramNumber::all().filter(|to| *to != program) {
                 let word = to.get().to_string();
@@ -84,14 +84,14 @@ fn program_menu_ui(
             }
         });
         ui.add_space(theme.space.inside);
-        ui.label(theme.heading(say(theme, "ib_cams.move")));
-        if labelled_button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &say(theme, "ib_cams.mirror")).clicked() {
+        ui.label(theme.heading(translate(theme, "ib_cams.move")));
+        if labelled_button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &translate(theme, "ib_cams.mirror")).clicked() {
             put(Edit::Mirror(program));
         }
-        let word = say(theme, "ib_cams.by");
+        let word = translate(theme, "ib_cams.by");
         entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.by, 80.0, &word, "-100");
-            if labelled_button(ui, icons::CHECK, &say(theme, "ib_cams.rotate")).clicked() {
+            if labelled_button(ui, icons::CHECK, &translate(theme, "ib_cams.rotate")).clicked() {
                 match forms::offset(&view.by) {
                     Ok(by) => {
                         view.refused = None;
@@ -102,27 +102,27 @@ fn program_menu_ui(
             }
         });
         show_error_below(ui, theme, view.refused.as_ref());
-        paragraph(ui, theme.caption(say(theme, "ib_cams.move_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_cams.move_words")));
     });
 }
 
 fn tables_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    icon_menu(ui, icons::TABLE, &say(theme, "ib_cams.tables"), |ui| {
+    icon_menu(ui, icons::TABLE, &translate(theme, "ib_cams.tables"), |ui| {
         ui.set_max_width(300.0);
-        if labelled_button(ui, icons::FOLDER_OPEN, &say(theme, "ib_table.open")).clicked() {
+        if labelled_button(ui, icons::FOLDER_OPEN, &translate(theme, "ib_table.open")).clicked() {
             actions.push(Action::device(id, Interbus::AskTable(program)));
             ui.close();
         }
-        if labelled_button(ui, icons::COPY, &say(theme, "ib_table.paste")).clicked() {
+        if labelled_button(ui, icons::COPY, &translate(theme, "ib_table.paste")).clicked() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
             ui.close();
         }
-        if labelled_button(ui, icons::FLOPPY_DISK, &say(theme, "ib_table.save")).clicked() {
+        if labelled_button(ui, icons::FLOPPY_DISK, &translate(theme, "ib_table.save")).clicked() {
             actions
                 .push(Action::device(id, Interbus::AskSaveTable { decimal_comma: theme.language == Language::German }));
             ui.close();
         }
-        paragraph(ui, theme.caption(say(theme, "ib_table.words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_table.words")));
     });
 }

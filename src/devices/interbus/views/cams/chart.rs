@@ -7,7 +7,7 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::devices::interbus::state::cams::{Chart, VisibleRange as Stretch};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, Preview, TEXTS};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::controls::{card_with_trailing, icon_button, name, paragraph};
 use crate::ui::{Theme, icons};
@@ -27,7 +27,7 @@ impl Default for CamChartUiState {
 }
 
 /// Maximum side length of the ring in points.
-const RING: f32 = 420.0;
+const MAX_RING_SIDE: f32 = 420.0;
 
 pub(super) fn card_ui(
     ui: &mut Ui,
@@ -40,13 +40,14 @@ pub(super) fn card_ui(
     let CamChartUiState { ring: is_ring, snaps, stretch, selected } = *view;
     let aside = |ui: &mut Ui| {
         for (own, id) in [(true, "ib_cams.ring"), (false, "ib_cams.lanes")] {
-            let word = say(theme, id);
+            let word = translate(theme, id);
             if name(ui.add(egui::Button::selectable(is_ring == own, &word)), true, &word).clicked() {
                 view.ring = own;
             }
         }
-        ui.checkbox(&mut view.snaps, say(theme, "ib_cams.snap")).on_hover_text(say(theme, "ib_cams.snap_words"));
-        let word = say(theme, "ib_cams.whole_range");
+        ui.checkbox(&mut view.snaps, translate(theme, "ib_cams.snap"))
+            .on_hover_text(translate(theme, "ib_cams.snap_words"));
+        let word = translate(theme, "ib_cams.whole_range");
         if !is_ring && icon_button(ui, stretch.is_some(), icons::CORNERS_OUT, &word).clicked() {
             view.stretch = None;
         }
@@ -70,19 +71,19 @@ pub(super) fn card_ui(
         };
         ui.push_id(chart.program.get(), |ui| {
             event = if is_ring {
-                let side = ui.available_width().min(RING);
+                let side = ui.available_width().min(MAX_RING_SIDE);
                 ui.vertical_centered(|ui| cam_ring(ui, theme, &model, side)).inner
             } else {
-                let stretch = stretch.unwrap_or_else(|| Stretch::whole(chart.range));
+                let stretch = stretch.unwrap_or_else(|| Stretch::full(chart.range));
                 cam_lanes(ui, theme, &model, stretch)
             };
         });
         if sends.is_some() {
             output_comparison_ui(ui, theme, &encoder.preview);
         } else if reading.is_none() && encoder.session.live_session().is_some() {
-            paragraph(ui, theme.caption(say(theme, "ib_cams.not_live")));
+            paragraph(ui, theme.caption(translate(theme, "ib_cams.not_live")));
         }
-        paragraph(ui, theme.caption(say(theme, "ib_cams.chart_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_cams.chart_words")));
     });
     let program = chart.program;
     match event {

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::{Action, Text};
 use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{committed_entry, dropdown, entry, folding_card, paragraph, show_error_below};
 
@@ -16,7 +16,7 @@ pub(super) struct CamScaleUiState {
     zero: Option<(String, Option<Text>)>,
 }
 
-const NUMBER: f32 = 112.0;
+const ENTRY_WIDTH: f32 = 112.0;
 
 pub(super) fn card_ui(
     ui: &mut Ui,
@@ -26,11 +26,11 @@ pub(super) fn card_ui(
     actions: &mut Vec<Action>,
 ) {
     folding_card(ui, theme, TEXTS.text("ib_scale.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ib_scale.words")));
-        let (scale, range) = (&encoder.scale, encoder.range());
+        paragraph(ui, theme.label(translate(theme, "ib_scale.words")));
+        let (scale, range) = (&encoder.scale, encoder.step_count());
         let id = encoder.session.id;
         let mut set = |scale: Scale| actions.push(Action::device(id, Interbus::SetScale(scale)));
-        let word = say(theme, "ib_scale.unit");
+        let word = translate(theme, "ib_scale.unit");
         let mut unit = scale.unit();
         entry(ui, theme, &word, |ui| {
             let units = [
@@ -38,12 +38,12 @@ pub(super) fn card_ui(
                 (Unit::Degrees, "ib_scale.degrees"),
                 (Unit::Millimetres, "ib_scale.millimetres"),
             ];
-            if dropdown(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(theme, id)))) {
+            if dropdown(ui, &word, &mut unit, units.map(|(unit, id)| (unit, translate(theme, id)))) {
                 set(forms::default_scale(unit, scale.zero(), range));
             }
         });
-        if let Some(steps) = forms::steps_of(scale) {
-            let word = say(
+        if let Some(steps) = forms::steps_per_unit(scale) {
+            let word = translate(
                 theme,
                 match scale.unit() {
                     Unit::Degrees => "ib_scale.steps_in_turn",
@@ -51,16 +51,16 @@ pub(super) fn card_ui(
                 },
             );
             entry(ui, theme, &word, |ui| {
-                committed_entry(ui, &mut view.steps, &theme.format_plain(steps), NUMBER, &word, |text| {
+                committed_entry(ui, &mut view.steps, &theme.format_plain(steps), ENTRY_WIDTH, &word, |text| {
                     set(forms::scale(scale.unit(), text, scale.zero())?);
                     Ok(())
                 });
             });
             show_error_below(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
         }
-        let word = say(theme, "ib_scale.zero");
+        let word = translate(theme, "ib_scale.zero");
         entry(ui, theme, &word, |ui| {
-            committed_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
+            committed_entry(ui, &mut view.zero, &scale.zero().to_string(), ENTRY_WIDTH, &word, |text| {
                 set(forms::scale_with_zero(scale, text, range)?);
                 Ok(())
             });

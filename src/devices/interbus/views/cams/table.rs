@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 
 use egui::{RichText, Ui};
 
@@ -31,11 +31,11 @@ enum Column {
     Stop,
 }
 
-const CAM: f32 = 48.0;
-const NAME: f32 = 160.0;
-const NUMBER: f32 = 104.0;
+const CAM_WIDTH: f32 = 48.0;
+const NAME_WIDTH: f32 = 160.0;
+const NUMBER_WIDTH: f32 = 104.0;
 /// Width that the frame of an entry adds to its text.
-const MARGIN: f32 = 16.0;
+const ENTRY_MARGIN: f32 = 16.0;
 
 pub(super) fn card_ui(
     ui: &mut Ui,
@@ -48,10 +48,14 @@ pub(super) fn card_ui(
     card(ui, theme, TEXTS.text("ib_cams.table"), |ui| {
         let wide = ui.available_width() > 680.0;
         ui.horizontal(|ui| {
-            let heads =
-                [(CAM, "ib_cams.cam"), (NAME, "ib_cams.name"), (NUMBER, "ib_cams.start"), (NUMBER, "ib_cams.stop")];
+            let heads = [
+                (CAM_WIDTH, "ib_cams.cam"),
+                (NAME_WIDTH, "ib_cams.name"),
+                (NUMBER_WIDTH, "ib_cams.start"),
+                (NUMBER_WIDTH, "ib_cams.stop"),
+            ];
             for (width, id) in heads {
-                cell(ui, width, |ui| ui.label(theme.caption(say(theme, id))));
+                cell_ui(ui, width, |ui| ui.label(theme.caption(translate(theme, id))));
             }
         });
         for lane in &chart.lanes {
@@ -63,11 +67,11 @@ pub(super) fn card_ui(
                 problem_ui(ui, theme, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
             }
         }
-        paragraph(ui, theme.caption(say(theme, "ib_cams.table_words")));
+        paragraph(ui, theme.caption(translate(theme, "ib_cams.table_words")));
     });
 }
 
-fn cell<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
+fn cell_ui<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let cell = ui.allocate_ui_with_layout(egui::vec2(width, ui.spacing().interact_size.y), layout, |ui| {
         ui.set_min_width(width);
@@ -89,26 +93,27 @@ fn row_ui(
     let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
     let ink = if lane.edited { theme.palette.staged } else { theme.palette.text };
     let mut on = lane.on;
-    let response = cell(ui, CAM, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));
-    if name(response, true, &theme.format_text(&words::bare(cam))).clicked() {
+    let response = cell_ui(ui, CAM_WIDTH, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));
+    if name(response, true, &theme.format_text(&words::cam_name(cam))).clicked() {
         put(Edit::Switch { program, cam, on });
     }
     let word = TEXTS.text("ib_cams.name_of").with("cam", cam.get());
     let draft = view.drafts.entry((program, cam, Column::Name)).or_default();
     let shown = lane.name.as_deref().unwrap_or_default();
-    cell(ui, NAME, |ui| {
-        committed_entry(ui, draft, shown, NAME - MARGIN, &theme.format_text(&word), |text| {
+    cell_ui(ui, NAME_WIDTH, |ui| {
+        committed_entry(ui, draft, shown, NAME_WIDTH - ENTRY_MARGIN, &theme.format_text(&word), |text| {
             put(Edit::Name { program, cam, name: text.to_owned() });
             Ok(())
         })
     });
     for (column, edge) in [(Column::Start, Edge::Start), (Column::Stop, Edge::Stop)] {
         let draft = view.drafts.entry((program, cam, column)).or_default();
-        let shown =
-            chart.edge(cam, edge).map_or_else(String::new, |own| forms::typed(own, &encoder.scale, chart.range));
-        let word = theme.format_text(&words::edge(lane, edge));
-        cell(ui, NUMBER, |ui| {
-            committed_entry(ui, draft, &shown, NUMBER - MARGIN, &word, |text| {
+        let shown = chart
+            .edge_position(cam, edge)
+            .map_or_else(String::new, |own| forms::format_position(own, &encoder.scale, chart.range));
+        let word = theme.format_text(&words::edge_name(lane, edge));
+        cell_ui(ui, NUMBER_WIDTH, |ui| {
+            committed_entry(ui, draft, &shown, NUMBER_WIDTH - ENTRY_MARGIN, &word, |text| {
                 let to = forms::position(text, &encoder.scale, chart.range)?;
                 put(match lane.edges {
                     Some(_) => Edit::Edge { program, cam, edge, to },
@@ -119,11 +124,11 @@ fn row_ui(
             })
         });
     }
-    for trouble in words::troubles(chart, lane) {
+    for trouble in words::lane_problems(chart, lane) {
         ui.label(RichText::new(icons::WARNING).color(theme.palette.warn)).on_hover_text(theme.format_text(&trouble));
     }
     if wide && let Some(edges) = lane.edges {
-        let text = words::stretch(edges, &encoder.scale, chart.range);
+        let text = words::range_text(edges, &encoder.scale, chart.range);
         let ink = if lane.on { theme.label(theme.format_text(&text)) } else { theme.caption(theme.format_text(&text)) };
         ui.add(egui::Label::new(ink).truncate());
     }

@@ -5,16 +5,16 @@ use egui::Ui;
 use crate::app::Action;
 use crate::devices::interbus::protocol::{StartupMode, WindowShift};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::devices::interbus::views::widgets::{WordLayout, word_layout};
 use crate::ui::Theme;
 use crate::ui::controls::{dropdown, entry, folding_card, paragraph};
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("ib_window.title"), |ui| {
-        let known = encoder.staged.wanted().and_then(|wanted| wanted.image.shift);
+        let known = encoder.staged.edited_values().and_then(|wanted| wanted.image.shift);
         let own = known.unwrap_or_default();
-        let word = say(theme, "ib_cams.shift");
+        let word = translate(theme, "ib_cams.shift");
         let mut wanted = own;
         entry(ui, theme, &word, |ui| {
             let shifts = (0..=25).filter_map(WindowShift::new).map(|own| (own, own.get().to_string()));
@@ -28,14 +28,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
                 ui.label(egui::RichText::new(theme.format_text(&was)).color(theme.palette.staged));
             }
         });
-        let label = say(theme, "ib_window.label");
+        let label = translate(theme, "ib_window.label");
         let sends = encoder
             .record
             .last()
             .filter(|_| encoder.session.is_polling())
             .filter(|own| matches!(own.mode, Some(StartupMode::Cams(_))));
         let shown = sends.filter(|_| encoder.shift() == Some(own)).map(|own| own.word);
-        word_layout(ui, theme, &WordLayout { label: &label, shift: own, word: shown, range: encoder.range() });
-        paragraph(ui, theme.caption(say(theme, "ib_window.words")));
+        word_layout(ui, theme, &WordLayout { label: &label, shift: own, word: shown, range: encoder.step_count() });
+        paragraph(ui, theme.caption(translate(theme, "ib_window.words")));
     });
 }

@@ -7,7 +7,7 @@ use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 use crate::devices::interbus::state::cams::{self, Chart, DragTarget, SnapSettings, VisibleRange, words};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::Theme;
 use crate::ui::widgets::series_colour;
 
@@ -61,11 +61,11 @@ impl CamChart<'_> {
     /// Returns the cam after a drag from one position to another.
     pub(super) fn apply_drag(&self, hold: DragTarget, from: f64, at: f64, snap: &SnapSettings) -> Option<Cam> {
         let range = self.chart.range;
-        let own = self.chart.lane(hold.cam())?.edges;
-        let by = |hold, cam| cams::snap(self.chart, self.scale, hold, cam, at - from, snap);
+        let own = self.chart.lane_of(hold.cam())?.edges;
+        let by = |hold, cam| cams::snap_distance(self.chart, self.scale, hold, cam, at - from, snap);
         match hold {
             DragTarget::Edge(_, edge) => own.map(|cam| cams::apply_drag(cam, edge, by(hold, cam), range)),
-            DragTarget::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
+            DragTarget::Whole(_) => own.map(|cam| cams::move_cam(cam, by(hold, cam), range)),
             DragTarget::New(number) => {
                 let (anchor, edge) = if at < from { (Edge::Stop, Edge::Start) } else { (Edge::Start, Edge::Stop) };
                 // An edge that starts at `begin` and is dragged to `to` snaps to this step.
@@ -73,10 +73,10 @@ impl CamChart<'_> {
                     let place = Value::from_word(begin.rem_euclid(i64::from(range.max(1))) as u32);
                     let one = Cam { start: place, stop: place };
                     let hold = DragTarget::Edge(number, edge);
-                    begin + cams::snap(self.chart, self.scale, hold, one, to - begin as f64, snap)
+                    begin + cams::snap_distance(self.chart, self.scale, hold, one, to - begin as f64, snap)
                 };
                 let first = snapped(anchor, from.floor() as i64, from.floor());
-                Some(cams::drawn(first, snapped(edge, first, at), range))
+                Some(cams::cam_between(first, snapped(edge, first, at), range))
             }
         }
     }
@@ -91,13 +91,13 @@ impl CamChart<'_> {
         snap: &SnapSettings,
     ) -> Option<CamEvent> {
         let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_drag_cancelled(ui, base);
-        let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { SnapSettings::OFF };
+        let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { SnapSettings::DISABLED };
         let to = self.apply_drag(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
         let cam = drag.hold.cam();
         if response.drag_stopped() {
             ui.data_mut(|data| data.remove::<Drag>(base));
             let is_new = matches!(drag.hold, DragTarget::New(_));
-            let other = to.filter(|to| is_new || self.chart.lane(cam).is_some_and(|lane| lane.edges != Some(*to)));
+            let other = to.filter(|to| is_new || self.chart.lane_of(cam).is_some_and(|lane| lane.edges != Some(*to)));
             return Some(match other {
                 Some(to) => CamEvent::Moved { cam, to, drawn: is_new },
                 None => CamEvent::Selected(cam),
@@ -111,14 +111,14 @@ impl CamChart<'_> {
         to.map(|to| CamEvent::Preview(cam, to))
     }
 
-    pub(super) fn shown(&self, drag: Option<Drag>) -> Option<Chart> {
+    pub(super) fn displayed_chart(&self, drag: Option<Drag>) -> Option<Chart> {
         let drag = drag?;
-        Some(self.chart.with(drag.hold.cam(), drag.to?))
+        Some(self.chart.with_cam(drag.hold.cam(), drag.to?))
     }
 
     /// Handles the keyboard. The arrow keys move an edge or the cam by one step or to the next grid line, and other
     /// keys switch the cam on and off.
-    pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: DragTarget, apart: f64) -> Option<CamEvent> {
+    pub(super) fn handle_keys(&self, ui: &Ui, response: &Response, hold: DragTarget, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;
         }
@@ -126,12 +126,12 @@ impl CamChart<'_> {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
         let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
         let cam = hold.cam();
-        let lane = self.chart.lane(cam)?;
+        let lane = self.chart.lane_of(cam)?;
         let edge = match hold {
             DragTarget::Edge(_, edge) => edge,
             DragTarget::Whole(_) | DragTarget::New(_) => Edge::Start,
         };
-        let at = self.chart.edge(cam, edge)?;
+        let at = self.chart.edge_position(cam, edge)?;
         for (key, forward) in [(Key::ArrowLeft, false), (Key::ArrowRight, true)] {
             let by = if pressed(Modifiers::SHIFT, key) {
                 cams::next_grid_line(self.scale, apart, at, forward) - i64::from(at)
@@ -140,7 +140,7 @@ impl CamChart<'_> {
             } else {
                 continue;
             };
-            return self.by(hold, by);
+            return self.move_by(hold, by);
         }
         if lane.on && (pressed(Modifiers::NONE, Key::Delete) || pressed(Modifiers::NONE, Key::Backspace)) {
             return Some(CamEvent::Switched(cam, false));
@@ -148,12 +148,12 @@ impl CamChart<'_> {
         pressed(Modifiers::NONE, Key::Space).then_some(CamEvent::Switched(cam, !lane.on))
     }
 
-    fn by(&self, hold: DragTarget, by: i64) -> Option<CamEvent> {
+    fn move_by(&self, hold: DragTarget, by: i64) -> Option<CamEvent> {
         let cam = hold.cam();
-        let own = self.chart.lane(cam)?.edges?;
+        let own = self.chart.lane_of(cam)?.edges?;
         let to = match hold {
             DragTarget::Edge(_, edge) => cams::apply_drag(own, edge, by, self.chart.range),
-            DragTarget::Whole(_) | DragTarget::New(_) => cams::moved(own, by, self.chart.range),
+            DragTarget::Whole(_) | DragTarget::New(_) => cams::move_cam(own, by, self.chart.range),
         };
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
     }
@@ -168,7 +168,7 @@ impl CamChart<'_> {
         label: &Text,
     ) -> Option<CamEvent> {
         let DragTarget::Edge(cam, edge) = hold else { return None };
-        let at = self.chart.edge(cam, edge)?;
+        let at = self.chart.edge_position(cam, edge)?;
         let last = self.chart.last();
         response.widget_info(|| {
             let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), theme.format_text(label));
@@ -196,7 +196,7 @@ impl CamChart<'_> {
             });
             (set.last(), count(Action::Increment), count(Action::Decrement))
         });
-        let own = self.chart.lane(cam)?.edges?;
+        let own = self.chart.lane_of(cam)?.edges?;
         if let Some(value) = set {
             // The value is within the range, which has at most 25 bits.
             let value = Value::from_word(value.round().clamp(0.0, f64::from(last)) as u32);
@@ -206,17 +206,17 @@ impl CamChart<'_> {
             };
             return (to != own).then_some(CamEvent::Moved { cam, to, drawn: false });
         }
-        if more == less { None } else { self.by(hold, more - less) }
+        if more == less { None } else { self.move_by(hold, more - less) }
     }
 
     pub(super) fn show_tooltip(&self, theme: &Theme, response: Response, hold: DragTarget) {
-        let Some(lane) = self.chart.lane(hold.cam()) else { return };
+        let Some(lane) = self.chart.lane_of(hold.cam()) else { return };
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
             ui.label(theme.format_text(&words::cam(lane)));
-            ui.label(theme.format_text(&words::lane(lane, self.scale, self.chart.range)));
-            for trouble in words::troubles(self.chart, lane) {
+            ui.label(theme.format_text(&words::lane_text(lane, self.scale, self.chart.range)));
+            for trouble in words::lane_problems(self.chart, lane) {
                 ui.label(egui::RichText::new(theme.format_text(&trouble)).color(theme.palette.bad));
             }
             if self.movable {
@@ -225,7 +225,7 @@ impl CamChart<'_> {
                     DragTarget::Whole(_) => "cams.hint_whole",
                     DragTarget::New(_) => "cams.hint_new",
                 };
-                ui.label(theme.caption(say(theme, hint)));
+                ui.label(theme.caption(translate(theme, hint)));
             }
         });
     }
@@ -236,7 +236,7 @@ impl CamChart<'_> {
         let range = self.chart.range;
         let words = match drag.hold {
             DragTarget::Edge(_, edge) => words::position(cams::edge_value(to, edge).get(), self.scale, range),
-            DragTarget::Whole(_) | DragTarget::New(_) => words::stretch(to, self.scale, range),
+            DragTarget::Whole(_) | DragTarget::New(_) => words::range_text(to, self.scale, range),
         };
         let font = FontId::proportional(theme.sizes.caption);
         let galley = painter.layout_no_wrap(theme.format_text(&words), font, theme.palette.on_accent.into());
@@ -250,10 +250,10 @@ impl CamChart<'_> {
     }
 }
 
-pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
+pub(super) fn current_drag(ui: &Ui, base: Id) -> Option<Drag> {
     ui.data(|data| data.get_temp(base))
 }
 
 fn is_drag_cancelled(ui: &Ui, base: Id) -> bool {
-    drag(ui, base).is_some_and(|drag| drag.to.is_none())
+    current_drag(ui, base).is_some_and(|drag| drag.to.is_none())
 }

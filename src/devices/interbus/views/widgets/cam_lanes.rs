@@ -42,18 +42,18 @@ struct LanePainter<'a> {
 /// further charts have a separate id with `push_id`.
 pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
-    let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
-    let preview = model.shown(drag);
+    let drag = cam_chart::current_drag(ui, base).filter(|_| model.movable);
+    let preview = model.displayed_chart(drag);
     let shown = preview.as_ref().unwrap_or(model.chart);
     let range = model.chart.range;
-    let view = view.within(range);
+    let view = view.clamped_to(range);
     let size = PlotArea::size(ui.available_width(), model.scale.unit() != Unit::Steps);
     let (outer, response) = ui.allocate_exact_size(size, Sense::hover());
     let place = PlotArea::new(outer, view, theme.space.between);
     response.widget_info(|| WidgetInfo::labeled(Role::Group, true, model.label));
 
     let lanes = LanePainter { ui, theme, model, shown, place: &place, base };
-    let looked = lanes.look(range);
+    let looked = lanes.handle_wheel(range);
     lanes.paint(drag);
     let pulled = lanes.draw_handles(drag);
     let switched = lanes.draw_lane_headers();
@@ -64,12 +64,12 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
 }
 
 impl LanePainter<'_> {
-    fn snap(&self) -> SnapSettings {
-        SnapSettings::on(self.place.steps_per_point())
+    fn snap_settings(&self) -> SnapSettings {
+        SnapSettings::enabled(self.place.steps_per_point())
     }
 
     /// Handles the mouse wheel, which zooms and scrolls the view.
-    fn look(&self, range: u32) -> Option<CamEvent> {
+    fn handle_wheel(&self, range: u32) -> Option<CamEvent> {
         let pointer = self.ui.input(|input| input.pointer.hover_pos())?;
         if !self.place.plot.contains(pointer) || !self.ui.rect_contains_pointer(self.place.plot) {
             return None;

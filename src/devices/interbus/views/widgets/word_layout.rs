@@ -18,7 +18,7 @@ use egui::{
 use crate::app::Text;
 use crate::devices::interbus::protocol::{CamBit, CamOutput, Value, WindowShift};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::ui::Theme;
 use crate::ui::widgets::{BitCell, series_colour};
 
@@ -49,17 +49,17 @@ enum Kind {
     Cams,
 }
 
-const LEAST: f32 = 17.0;
-const MOST: f32 = 26.0;
-const NUMBERS: f32 = 15.0;
-const CELL: f32 = 24.0;
-const NAMES: f32 = 20.0;
-const GAP: f32 = 8.0;
+const MIN_CELL_WIDTH: f32 = 17.0;
+const MAX_CELL_WIDTH: f32 = 26.0;
+const NUMBER_HEIGHT: f32 = 15.0;
+const CELL_HEIGHT: f32 = 24.0;
+const NAME_HEIGHT: f32 = 20.0;
+const GAP_HEIGHT: f32 = 8.0;
 const BITS: u8 = 32;
 const POSITION: u8 = Value::BITS as u8;
 
 impl Kind {
-    const fn of(bit: CamBit) -> Self {
+    const fn from_bit(bit: CamBit) -> Self {
         match bit {
             CamBit::Invalid => Kind::Invalid,
             CamBit::Zero => Kind::Zero,
@@ -84,10 +84,10 @@ impl WordLayout<'_> {
     }
 
     /// Returns the groups in descending order of their bits.
-    fn groups(&self) -> Vec<Group> {
+    fn bit_groups(&self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for bit in (0..BITS).rev() {
-            let kind = Kind::of(self.bit(bit));
+            let kind = Kind::from_bit(self.bit(bit));
             match groups.last_mut() {
                 Some(group) if group.kind == kind => group.low = bit,
                 _ => groups.push(Group { kind, high: bit, low: bit }),
@@ -97,7 +97,7 @@ impl WordLayout<'_> {
     }
 
     /// Returns the highest and the lowest position bit that the window contains.
-    fn window(&self) -> Option<(u8, u8)> {
+    fn window_bits(&self) -> Option<(u8, u8)> {
         let mask = self.shift.mask();
         let high = mask.checked_ilog2()?;
         u8::try_from(high).ok().zip(u8::try_from(mask.trailing_zeros()).ok())
@@ -110,13 +110,13 @@ impl WordLayout<'_> {
             Kind::Zero => TEXTS.text("cams.word_zero"),
             Kind::Cams => TEXTS.text("cams.word_cams"),
             Kind::Window => {
-                let (high, low) = self.window().unwrap_or_default();
+                let (high, low) = self.window_bits().unwrap_or_default();
                 TEXTS.text("cams.word_window").with("high", high).with("low", low)
             }
         }
     }
 
-    fn says(&self, bit: u8) -> Text {
+    fn bit_text(&self, bit: u8) -> Text {
         let own = match self.bit(bit) {
             CamBit::Invalid => TEXTS.text("cams.word_invalid"),
             CamBit::Zero => TEXTS.text("cams.word_zero"),
@@ -140,18 +140,18 @@ struct CellGrid {
 
 impl CellGrid {
     fn new(room: f32) -> Self {
-        let columns = if room >= f32::from(BITS) * LEAST { BITS } else { BITS / 2 };
-        let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
+        let columns = if room >= f32::from(BITS) * MIN_CELL_WIDTH { BITS } else { BITS / 2 };
+        let cell = (room / f32::from(columns)).floor().clamp(MIN_CELL_WIDTH, MAX_CELL_WIDTH);
         CellGrid { left: 0.0, top: 0.0, cell, columns }
     }
 
     fn line_height() -> f32 {
-        NUMBERS + CELL + NAMES + GAP
+        NUMBER_HEIGHT + CELL_HEIGHT + NAME_HEIGHT + GAP_HEIGHT
     }
 
     fn size(&self) -> Vec2 {
         let lines = f32::from(BITS / self.columns) * CellGrid::line_height();
-        Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
+        Vec2::new(f32::from(self.columns) * self.cell, lines + CELL_HEIGHT * f32::from(self.position_lines()))
     }
 
     /// Returns the number of lines for the position bits.
@@ -159,13 +159,13 @@ impl CellGrid {
         POSITION.div_ceil(self.columns)
     }
 
-    fn at(self, origin: egui::Pos2) -> Self {
+    fn at_origin(self, origin: egui::Pos2) -> Self {
         CellGrid { left: origin.x, top: origin.y, ..self }
     }
 
-    fn word(&self, bit: u8) -> Rect {
+    fn bit_rect(&self, bit: u8) -> Rect {
         let place = BITS - 1 - bit.min(BITS - 1);
-        let line = f32::from(place / self.columns) * CellGrid::line_height() + NUMBERS;
+        let line = f32::from(place / self.columns) * CellGrid::line_height() + NUMBER_HEIGHT;
         self.cell_at(place % self.columns, line)
     }
 
@@ -173,19 +173,19 @@ impl CellGrid {
         let lines = self.position_lines() * self.columns;
         let place = lines - 1 - bit.min(lines - 1);
         let word = f32::from(BITS / self.columns) * CellGrid::line_height();
-        self.cell_at(place % self.columns, word + f32::from(place / self.columns) * CELL)
+        self.cell_at(place % self.columns, word + f32::from(place / self.columns) * CELL_HEIGHT)
     }
 
     fn cell_at(&self, column: u8, line: f32) -> Rect {
         let at = pos2(self.left + f32::from(column) * self.cell, self.top + line);
-        Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL - 1.0))
+        Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL_HEIGHT - 1.0))
     }
 
     /// Returns the rectangles of the bits from `high` down to `low`, with one rectangle for each line.
-    fn runs(&self, high: u8, low: u8) -> Vec<Rect> {
+    fn range_rects(&self, high: u8, low: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for bit in (low..=high).rev() {
-            let cell = self.word(bit);
+            let cell = self.bit_rect(bit);
             match runs.last_mut().filter(|run| (run.top() - cell.top()).abs() < 1.0) {
                 Some(run) => *run = run.union(cell),
                 None => runs.push(cell),
@@ -198,8 +198,8 @@ impl CellGrid {
 pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     let cells = CellGrid::new(ui.available_width());
     let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());
-    let cells = cells.at(outer.min);
-    let values: Vec<String> = layout.groups().iter().map(|group| tells(theme, layout, *group)).collect();
+    let cells = cells.at_origin(outer.min);
+    let values: Vec<String> = layout.bit_groups().iter().map(|group| describe_group(theme, layout, *group)).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, layout.label);
         info.current_text_value = Some(values.join(", "));
@@ -207,27 +207,28 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     });
     let base = response.id;
     for bit in (0..BITS).rev() {
-        word_bit(ui, theme, layout, bit, cells.word(bit));
-        let own = ui.interact(cells.word(bit), base.with(bit), Sense::hover());
-        own.on_hover_text(theme.format_text(&layout.says(bit)));
+        word_bit(ui, theme, layout, bit, cells.bit_rect(bit));
+        let own = ui.interact(cells.bit_rect(bit), base.with(bit), Sense::hover());
+        own.on_hover_text(theme.format_text(&layout.bit_text(bit)));
     }
-    for (group, words) in layout.groups().into_iter().zip(&values) {
+    for (group, words) in layout.bit_groups().into_iter().zip(&values) {
         name(ui, theme, layout, &cells, group);
-        let Some(run) = cells.runs(group.high, group.low).into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))
+        let Some(run) =
+            cells.range_rects(group.high, group.low).into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))
         else {
             continue;
         };
-        let lane = Rect::from_min_size(run.left_bottom(), Vec2::new(run.width(), NAMES));
+        let lane = Rect::from_min_size(run.left_bottom(), Vec2::new(run.width(), NAME_HEIGHT));
         let own = ui.interact(lane, base.with((group.high, group.low)), Sense::hover());
         own.widget_info(|| WidgetInfo::labeled(Role::Label, true, words));
         own.on_hover_text(words);
     }
     paint_position(ui.painter(), theme, layout, &cells);
-    ui.add(egui::Label::new(theme.caption(say(theme, "cams.word_of_position"))).wrap());
+    ui.add(egui::Label::new(theme.caption(translate(theme, "cams.word_of_position"))).wrap());
 }
 
 /// Describes a group, its location in the word and, if there is a word, its bits.
-fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
+fn describe_group(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
     let name = theme.format_text(&layout.name(group));
     let place = if group.high == group.low {
         TEXTS.text("cams.word_place").with("bit", group.high)
@@ -244,7 +245,7 @@ fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
 }
 
 fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect) {
-    let kind = Kind::of(layout.bit(bit));
+    let kind = Kind::from_bit(layout.bit(bit));
     let blank = match layout.bit(bit) {
         CamBit::Invalid => "!".to_owned(),
         CamBit::Zero => "0".to_owned(),
@@ -255,7 +256,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
     let painter = ui.painter();
     BitCell { ink: kind.display_colour(theme), bit: set, blank: &blank, alarm: is_wrong }.paint(painter, theme, rect);
     let font = FontId::monospace(theme.sizes.caption);
-    let above = pos2(rect.center().x, rect.top() - NUMBERS / 2.0);
+    let above = pos2(rect.center().x, rect.top() - NUMBER_HEIGHT / 2.0);
     painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
@@ -263,7 +264,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
 fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group: Group) {
     let painter = ui.painter();
     let ink = group.kind.display_colour(theme);
-    let runs = cells.runs(group.high, group.low);
+    let runs = cells.range_rects(group.high, group.low);
     for run in &runs {
         painter.hline(run.left() + 1.0..=run.right() - 1.0, run.bottom() + 3.0, Stroke::new(2.0, ink));
     }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
 use crate::app::PendingEdits;
-use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
+use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, ImportedProgram, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 use crate::devices::interbus::state::cams::{Chart, apply_drag};
 use crate::devices::interbus::state::staged::{Edit, StagedEdits};
@@ -154,7 +154,7 @@ fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
             return;
         }
         Step::Drag(program, own, is_stop, by) => {
-            let chart = Chart::of(staged, number(program)).unwrap();
+            let chart = Chart::from_edits(staged, number(program)).unwrap();
             let edge = if is_stop { Edge::Stop } else { Edge::Start };
             let to = apply_drag(chart.lanes[own].edges.unwrap(), edge, by, range);
             let (start, stop) = (to.start.get(), to.stop.get());
@@ -176,7 +176,7 @@ fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
             let mut cams = [None; 8];
             let value = |at| Value::new(at).unwrap();
             cams[own] = Some(Cam { start: value(start), stop: value(stop(start, length, range)) });
-            Edit::Table(vec![Filled { program: number(program), cams, names: Default::default() }])
+            Edit::Table(vec![ImportedProgram { program: number(program), cams, names: Default::default() }])
         }
     };
     let outside = match *step {
@@ -184,13 +184,13 @@ fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
         Step::Draw(_, _, start, _) | Step::Table(_, _, start, _) => start >= range,
         _ => false,
     };
-    assert_eq!(staged.edit(&edit).is_err(), outside, "{step:?}");
+    assert_eq!(staged.apply_edit(&edit).is_err(), outside, "{step:?}");
 }
 
 /// Checks that the chart equals the table, and both equal the model.
 fn compare(staged: &StagedEdits, model: &Model, program: usize) {
     let range = model.range;
-    let chart = Chart::of(staged, number(program)).unwrap();
+    let chart = Chart::from_edits(staged, number(program)).unwrap();
     let table = staged.program(number(program)).unwrap();
     for (own, (start, length, on)) in model.now()[program].iter().copied().enumerate() {
         let edges = table.cams[own].unwrap();
@@ -198,7 +198,7 @@ fn compare(staged: &StagedEdits, model: &Model, program: usize) {
         assert_eq!(table.mask >> own & 1 == 1, on);
         let lane = &chart.lanes[own];
         let mut shown = vec![false; range as usize];
-        for stretch in lane.stretches(range) {
+        for stretch in lane.on_ranges(range) {
             shown[stretch.first as usize..=stretch.last as usize].iter_mut().for_each(|at| *at = true);
         }
         for at in 0..range {
@@ -217,7 +217,7 @@ fn chart_and_table_agree_after_ten_thousand_edits() {
     runner
         .run(&sessions, |(range, steps)| {
             let none = Cam { start: Value::default(), stop: Value::default() };
-            let mut image = Image::of(Parameters {
+            let mut image = Image::from_parameters(Parameters {
                 steps: range,
                 revolutions: 1,
                 direction: Direction::Clockwise,

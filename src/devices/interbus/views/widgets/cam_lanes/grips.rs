@@ -7,7 +7,7 @@ use super::LanePainter;
 use super::paint::GripState;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::Cam;
-use crate::devices::interbus::state::cams::{DragTarget, Lane, Stretch, words};
+use crate::devices::interbus::state::cams::{DragTarget, Lane, PositionRange, words};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl LanePainter<'_> {
@@ -16,22 +16,22 @@ impl LanePainter<'_> {
     pub(super) fn draw_handles(&self, drag: Option<Drag>) -> Option<CamEvent> {
         let mut event = None;
         for lane in &self.model.chart.lanes {
-            event = self.switch(lane).or(event);
-            event = self.room(lane, drag).or(event);
+            event = self.paint_switch(lane).or(event);
+            event = self.handle_free_space(lane, drag).or(event);
             if let Some(cam) = lane.edges {
-                event = self.whole(lane, drag).or(event);
-                event = self.edge(lane, cam, Edge::Start, drag).or(event);
-                event = self.edge(lane, cam, Edge::Stop, drag).or(event);
+                event = self.handle_cam(lane, drag).or(event);
+                event = self.handle_edge(lane, cam, Edge::Start, drag).or(event);
+                event = self.handle_edge(lane, cam, Edge::Stop, drag).or(event);
             }
         }
         event
     }
 
-    fn room(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
+    fn handle_free_space(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let id = self.base.with("room").with(lane.cam);
         let draws = self.model.movable && !lane.on;
         let sense = if draws { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
-        let response = self.ui.interact(self.place.lane(lane.cam), id, sense);
+        let response = self.ui.interact(self.place.lane_rect(lane.cam), id, sense);
         let hold = DragTarget::New(lane.cam);
         let event = self.apply_drag(&response, hold, drag).filter(|_| draws);
         if draws && response.hovered() {
@@ -45,25 +45,25 @@ impl LanePainter<'_> {
     }
 
     /// Handles a whole cam. If it has two sections, the wider one has the keyboard focus.
-    fn whole(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
-        let stretches = lane.stretches(self.model.chart.range);
+    fn handle_cam(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
+        let stretches = lane.on_ranges(self.model.chart.range);
         let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
         let hold = DragTarget::Whole(lane.cam);
         let mut event = None;
         for stretch in &stretches {
             let is_widest = Some(*stretch) == widest;
             let Some(rect) =
-                self.place.bar(lane.cam, *stretch).or(is_widest.then(|| self.place.lane_header_rect(lane.cam)))
+                self.place.bar_rect(lane.cam, *stretch).or(is_widest.then(|| self.place.lane_header_rect(lane.cam)))
             else {
                 continue;
             };
-            let shown = self.place.bar(lane.cam, *stretch).is_some();
+            let shown = self.place.bar_rect(lane.cam, *stretch).is_some();
             let id = self.base.with("whole").with((lane.cam, is_widest));
             let response = self.ui.interact(rect, id, self.sense(shown, is_widest));
             if is_widest {
-                event = self.describe(lane, &response).or(event);
-                event = self.model.keys(self.ui, &response, hold, self.apart()).or(event);
-                event = self.follow(&response, *stretch).or(event);
+                event = self.describe_lane(lane, &response).or(event);
+                event = self.model.handle_keys(self.ui, &response, hold, self.grid_distance()).or(event);
+                event = self.follow_focus(&response, *stretch).or(event);
             }
             event = self.apply_drag(&response, hold, drag).or(event);
             if response.clicked() {
@@ -83,35 +83,35 @@ impl LanePainter<'_> {
         event
     }
 
-    fn describe(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
+    fn describe_lane(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
         response.widget_info(|| {
             let label = self.theme.format_text(&words::cam(lane));
             let mut info = WidgetInfo::labeled(Role::Slider, self.ui.is_enabled(), label);
             info.value = lane.edges.map(|cam| f64::from(cam.start.get()));
             info.current_text_value =
-                Some(self.theme.format_text(&words::lane(lane, self.model.scale, self.model.chart.range)));
+                Some(self.theme.format_text(&words::lane_text(lane, self.model.scale, self.model.chart.range)));
             info
         });
         response.gained_focus().then_some(CamEvent::Selected(lane.cam))
     }
 
-    fn edge(&self, lane: &Lane, cam: Cam, edge: Edge, drag: Option<Drag>) -> Option<CamEvent> {
+    fn handle_edge(&self, lane: &Lane, cam: Cam, edge: Edge, drag: Option<Drag>) -> Option<CamEvent> {
         let hold = DragTarget::Edge(lane.cam, edge);
-        let (rect, x) = self.grip(cam, lane, edge)?;
-        let shown = self.place.shows(x);
+        let (rect, x) = self.grip_area(cam, lane, edge)?;
+        let shown = self.place.is_visible(x);
         let id = self.base.with("edge").with(hold);
         let response = self.ui.interact(rect, id, self.sense(shown, true));
-        let label = words::edge(lane, edge);
+        let label = words::edge_name(lane, edge);
         let mut event = self.model.announce_edge(self.ui, self.theme, &response, hold, &label);
-        event = event.or(self.model.keys(self.ui, &response, hold, self.apart()));
+        event = event.or(self.model.handle_keys(self.ui, &response, hold, self.grid_distance()));
         if response.clicked() || response.drag_started() {
             response.request_focus();
         }
         if response.clicked() || response.gained_focus() {
             event = event.or(Some(CamEvent::Selected(lane.cam)));
         }
-        let at = self.model.chart.edge(lane.cam, edge)?;
-        event = self.follow(&response, Stretch { first: at, last: at }).or(event);
+        let at = self.model.chart.edge_position(lane.cam, edge)?;
+        event = self.follow_focus(&response, PositionRange { first: at, last: at }).or(event);
         event = self.apply_drag(&response, hold, drag).or(event);
         let is_held = response.dragged();
         if self.model.movable && (is_held || response.hovered()) {
@@ -128,20 +128,20 @@ impl LanePainter<'_> {
 
     /// Returns the area in which an edge can be grabbed, and its horizontal place. For an edge outside the view, the
     /// area is at the end of the lane and only the keyboard uses it.
-    fn grip(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
+    fn grip_area(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
-        let at = self.model.chart.edge(lane.cam, edge)?.min(chart.range);
+        let at = self.model.chart.edge_position(lane.cam, edge)?.min(chart.range);
         let x = match edge {
             Edge::Start => self.place.x(f64::from(at)),
             Edge::Stop => self.place.x(f64::from(at.saturating_add(1).min(chart.range))),
         };
-        let own = lane.stretches(chart.range).into_iter().find(|stretch| match edge {
+        let own = lane.on_ranges(chart.range).into_iter().find(|stretch| match edge {
             Edge::Start => stretch.first == cam.start.get(),
             Edge::Stop => stretch.last == cam.stop.get(),
         });
-        let width = own.and_then(|own| self.place.bar(lane.cam, own)).map_or(0.0, |bar| bar.width());
+        let width = own.and_then(|own| self.place.bar_rect(lane.cam, own)).map_or(0.0, |bar| bar.width());
         let shown = x.clamp(self.place.plot.left(), self.place.plot.right());
-        Some((self.place.grip(lane.cam, shown, edge == Edge::Start, width), x))
+        Some((self.place.grip_rect(lane.cam, shown, edge == Edge::Start, width), x))
     }
 
     fn sense(&self, shown: bool, focusable: bool) -> Sense {
@@ -154,12 +154,12 @@ impl LanePainter<'_> {
         }
     }
 
-    fn follow(&self, response: &Response, stretch: Stretch) -> Option<CamEvent> {
+    fn follow_focus(&self, response: &Response, stretch: PositionRange) -> Option<CamEvent> {
         let (view, range) = (self.place.view, self.model.chart.range);
         let (first, last) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
-        let is_out = last < view.first() || first > view.first() + view.span();
+        let is_out = last < view.first() || first > view.first() + view.length();
         let moved = response.gained_focus() || response.has_focus() && is_out && self.is_arrow_key_released();
-        (moved && is_out).then(|| CamEvent::Viewed(view.panned(first - view.first() - view.span() / 2.0, range)))
+        (moved && is_out).then(|| CamEvent::Viewed(view.panned(first - view.first() - view.length() / 2.0, range)))
     }
 
     fn is_arrow_key_released(&self) -> bool {
@@ -167,8 +167,8 @@ impl LanePainter<'_> {
         self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
     }
 
-    fn apart(&self) -> f64 {
-        self.snap().apart.unwrap_or(1.0)
+    fn grid_distance(&self) -> f64 {
+        self.snap_settings().apart.unwrap_or(1.0)
     }
 
     /// Handles a drag with the pointer and returns its preview or result.
@@ -182,6 +182,6 @@ impl LanePainter<'_> {
         let pressed = || self.ui.input(|input| input.pointer.press_origin()).map(|pos| self.place.position(pos.x));
         let from = own.map(|drag| drag.from).or_else(pressed).unwrap_or(at);
         let to = own.and_then(|drag| drag.to);
-        self.model.drag_result(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
+        self.model.drag_result(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap_settings())
     }
 }

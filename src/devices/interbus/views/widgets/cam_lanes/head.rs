@@ -7,35 +7,35 @@ use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Vec2, 
 use super::LanePainter;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::cams::{Lane, OutputState, words};
-use crate::devices::interbus::views::say;
+use crate::devices::interbus::views::translate;
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, display_colour};
 use crate::ui::widgets::focus_ring;
 use crate::ui::{controls, icons};
 
-const SWITCH: f32 = 24.0;
-const NUMBER: f32 = 18.0;
-const LAMP: f32 = 34.0;
+const SWITCH_WIDTH: f32 = 24.0;
+const NUMBER_WIDTH: f32 = 18.0;
+const INDICATOR_WIDTH: f32 = 34.0;
 
 impl LanePainter<'_> {
     pub(super) fn draw_lane_headers(&self) -> Option<CamEvent> {
-        let lamps = self.model.chart.lamps(self.model.position, self.model.own);
+        let lamps = self.model.chart.output_states(self.model.position, self.model.own);
         let mut event = None;
         for (lane, lamp) in self.shown.lanes.iter().zip(lamps) {
             let head = self.place.lane_header_rect(lane.cam);
             event = self.name(lane, head).or(event);
-            self.lamp(lane, lamp, head);
+            self.paint_output_lamp(lane, lamp, head);
         }
         event
     }
 
-    pub(super) fn switch(&self, lane: &Lane) -> Option<CamEvent> {
+    pub(super) fn paint_switch(&self, lane: &Lane) -> Option<CamEvent> {
         let (ui, head) = (self.ui, self.place.lane_header_rect(lane.cam));
         let can = self.model.movable && (lane.edges.is_some() || lane.on);
         let size = ui.spacing().icon_width;
         let square = Rect::from_center_size(pos2(head.left() + size / 2.0 + 1.0, head.center().y), Vec2::splat(size));
         let sense = if can { Sense::click() } else { Sense::hover() };
         let response = ui.interact(square, self.base.with("switch").with(lane.cam), sense);
-        let label = TEXTS.text("cams.works_of").with_text("cam", words::bare(lane.cam));
+        let label = TEXTS.text("cams.works_of").with_text("cam", words::cam_name(lane.cam));
         let label = self.theme.format_text(&label);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can, lane.on, label.clone()));
         let painter = ui.painter();
@@ -65,8 +65,8 @@ impl LanePainter<'_> {
 
     fn name(&self, lane: &Lane, head: Rect) -> Option<CamEvent> {
         let (theme, palette) = (self.theme, self.theme.palette);
-        let left = head.left() + SWITCH;
-        let rect = Rect::from_min_max(pos2(left, head.top()), pos2(head.right() - LAMP, head.bottom()));
+        let left = head.left() + SWITCH_WIDTH;
+        let rect = Rect::from_min_max(pos2(left, head.top()), pos2(head.right() - INDICATOR_WIDTH, head.bottom()));
         let response = self.ui.interact(rect, self.base.with("name").with(lane.cam), Sense::CLICK);
         let painter = self.ui.painter().with_clip_rect(rect.intersect(self.ui.clip_rect()));
         let colour = if lane.on { palette.text } else { palette.muted };
@@ -79,7 +79,7 @@ impl LanePainter<'_> {
             (false, true) => Some((icons::PENCIL_SIMPLE, palette.staged)),
             (false, false) => None,
         };
-        let mut x = left + NUMBER;
+        let mut x = left + NUMBER_WIDTH;
         if let Some((icon, colour)) = mark {
             let font = FontId::proportional(theme.sizes.body);
             painter.text(pos2(x, y), Align2::LEFT_CENTER, icon, font, colour.into());
@@ -100,23 +100,23 @@ impl LanePainter<'_> {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
             ui.label(theme.format_text(&words::cam(lane)));
-            ui.label(theme.format_text(&words::lane(lane, self.model.scale, self.model.chart.range)));
+            ui.label(theme.format_text(&words::lane_text(lane, self.model.scale, self.model.chart.range)));
             if lane.edited {
-                ui.label(egui::RichText::new(say(theme, "cams.edited")).color(palette.staged));
+                ui.label(egui::RichText::new(translate(theme, "cams.edited")).color(palette.staged));
             }
-            for trouble in words::troubles(self.shown, lane) {
+            for trouble in words::lane_problems(self.shown, lane) {
                 ui.label(egui::RichText::new(theme.format_text(&trouble)).color(palette.bad));
             }
         });
         clicked
     }
 
-    fn lamp(&self, lane: &Lane, lamp: OutputState, head: Rect) {
+    fn paint_output_lamp(&self, lane: &Lane, lamp: OutputState, head: Rect) {
         let (theme, palette) = (self.theme, self.theme.palette);
-        let rect = Rect::from_min_max(pos2(head.right() - LAMP, head.top()), head.max);
+        let rect = Rect::from_min_max(pos2(head.right() - INDICATOR_WIDTH, head.top()), head.max);
         let response = self.ui.interact(rect, self.base.with("lamp").with(lane.cam), Sense::hover());
         let label = theme.format_text(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
-        let value = theme.format_text(&words::lamp(lamp));
+        let value = theme.format_text(&words::output_text(lamp));
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Image, true, label.clone());
             info.current_text_value = Some(value.clone());
@@ -137,7 +137,7 @@ impl LanePainter<'_> {
                 painter.circle_stroke(middle, 5.0, Stroke::new(1.0, palette.muted));
             }
         }
-        if lamp.differs() {
+        if lamp.is_mismatch() {
             let (icon, colour) = controls::verdict_badge(theme, crate::analysis::quality::Verdict::Warn);
             let font = FontId::proportional(theme.sizes.body);
             painter.text(pos2(rect.left() + 7.0, middle.y), Align2::CENTER_CENTER, icon, font, colour.into());

@@ -38,13 +38,13 @@ fn edges(start: u32, stop: u32) -> Cam {
 fn page() -> Page {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-    let mut staged = StagedEdits::for_profile(Image::of(parameters), CamNames::default());
+    let mut staged = StagedEdits::for_profile(Image::from_parameters(parameters), CamNames::default());
     for (number, start, stop, on) in [(0, 100, 299, true), (3, 900, 49, true), (4, 600, 700, false)] {
-        staged.edit(&Edit::Cam { program: program(), cam: cam(number), start, stop, on }).unwrap();
+        staged.apply_edit(&Edit::Cam { program: program(), cam: cam(number), start, stop, on }).unwrap();
     }
     let named = Edit::Name { program: program(), cam: cam(0), name: "feed".to_owned() };
-    staged.edit(&named).unwrap();
-    let view = VisibleRange::whole(1000);
+    staged.apply_edit(&named).unwrap();
+    let view = VisibleRange::full(1000);
     Page { staged, scale: Scale::default(), view, selected: None, position: None, own: None, events: Vec::new() }
 }
 
@@ -54,7 +54,7 @@ fn draw(page: Page, ring: bool) -> Harness<'static, Page> {
 
 fn draw_with_options(page: Page, ring: bool, snaps: bool) -> Harness<'static, Page> {
     window(page, move |ui, page: &mut Page| {
-        let chart = Chart::of(&page.staged, program()).unwrap();
+        let chart = Chart::from_edits(&page.staged, program()).unwrap();
         let model = CamChart {
             label: "Program 1",
             chart: &chart,
@@ -76,7 +76,7 @@ fn draw_with_options(page: Page, ring: bool, snaps: bool) -> Harness<'static, Pa
             _ => None,
         };
         if let Some(edit) = edit {
-            page.staged.edit(&edit).unwrap();
+            page.staged.apply_edit(&edit).unwrap();
         }
         match event {
             Some(CamEvent::Selected(cam)) => page.selected = Some(cam),
@@ -155,14 +155,14 @@ fn edges_and_cams_are_dragged() {
     drag(&mut harness, from, by);
     let previews = harness.state().events.iter().filter(|event| matches!(event, CamEvent::Preview(..))).count();
     assert!(previews >= 2);
-    let now = harness.state().staged.wanted().unwrap().cam(program(), cam(0)).unwrap();
+    let now = harness.state().staged.edited_values().unwrap().cam(program(), cam(0)).unwrap();
     assert_eq!(now.start.get(), 100);
     assert!(now.stop.get().abs_diff(399) <= 2, "{now:?}");
     assert_eq!(changes(&harness).len(), 1, "a drag is one step");
     let middle = harness.get_by_label("Cam 0 · feed").rect().center();
     drag(&mut harness, middle, by * 7.5);
-    let now = harness.state().staged.wanted().unwrap().cam(program(), cam(0)).unwrap();
-    assert!(now.wraps() && now.start.get().abs_diff(850) <= 4, "over the end: {now:?}");
+    let now = harness.state().staged.edited_values().unwrap().cam(program(), cam(0)).unwrap();
+    assert!(now.wraps_around() && now.start.get().abs_diff(850) <= 4, "over the end: {now:?}");
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn a_cam_is_drawn_in_the_lane_of_a_switched_off_cam() {
     let CamEvent::Moved { cam: own, to, drawn: true } = changes(&harness)[0] else { panic!("{:?}", changes(&harness)) };
     assert_eq!(own, cam(4));
     assert!(to.start.get().abs_diff(100) <= 8 && to.stop.get().abs_diff(300) <= 8, "{to:?}");
-    assert!(harness.state().staged.wanted().unwrap().is_on(program(), cam(4)));
+    assert!(harness.state().staged.edited_values().unwrap().is_on(program(), cam(4)));
     // In the lane of an active one nothing is drawn.
     let lane = harness.get_by_label("Cam 0 · feed").rect();
     drag(&mut harness, egui::pos2(lane.right() + 100.0, lane.center().y), by);
@@ -225,7 +225,7 @@ fn a_screen_reader_sets_edges() {
 #[test]
 fn lanes_describe_cams_and_outputs() {
     let mut own = page();
-    own.scale = Scale::degrees(1000.0, 0).unwrap();
+    own.scale = Scale::in_degrees(1000.0, 0).unwrap();
     (own.position, own.own) = (Some(150), Some(0b1000));
     let mut harness = draw(own, false);
     assert_eq!(value(&harness, "Cam 0 · feed"), "On from 100 (36.0°) to 299 (107.6°), 200 steps");
@@ -255,11 +255,11 @@ fn the_wheel_zooms_and_keys_scroll_into_view() {
         harness.run();
     }
     let view = harness.state().view;
-    assert!(view.span() < 80.0 && view.first() > 150.0 && view.first() < 250.0, "{view:?}");
+    assert!(view.length() < 80.0 && view.first() > 150.0 && view.first() < 250.0, "{view:?}");
     focus(&mut harness, "Cam 3: start");
     harness.run();
     let view = harness.state().view;
-    assert!(view.first() <= 900.0 && 900.0 <= view.first() + view.span(), "{view:?}");
+    assert!(view.first() <= 900.0 && 900.0 <= view.first() + view.length(), "{view:?}");
 }
 
 /// Cam 4 is drawn from a few steps beside the start of cam 0, which is at 100, to a few beside its end, which is 299.
@@ -281,7 +281,7 @@ fn the_chart_stays_within_its_width() {
     for width in [420.0, 600.0, 860.0] {
         let harness = window(page(), move |ui, page: &mut Page| {
             ui.set_max_width(width);
-            let chart = Chart::of(&page.staged, program()).unwrap();
+            let chart = Chart::from_edits(&page.staged, program()).unwrap();
             let model = CamChart {
                 label: "Program 1",
                 chart: &chart,
@@ -330,6 +330,6 @@ fn a_ring_is_turned_by_keys_and_pointer() {
     }
     harness.drop_at(to);
     harness.run();
-    let now = harness.state().staged.wanted().unwrap().cam(program(), cam(4)).unwrap();
+    let now = harness.state().staged.edited_values().unwrap().cam(program(), cam(4)).unwrap();
     assert!(now.start.get().abs_diff(950) <= 1 && now.stop.get().abs_diff(50) <= 1, "{now:?}");
 }
