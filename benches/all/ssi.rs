@@ -20,7 +20,7 @@ const ROUNDS: usize = 9;
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
-    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
 /// Returns the frames of any positions, some with an error bit.
@@ -28,7 +28,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     let frame = |_| {
         let flags = if random.u8(..) == 0 { Flags::error(0) } else { Flags::NONE };
-        layout.encode(random.u64(..=layout.coding().last()), flags).unwrap()
+        layout.encode(random.u64(..=layout.position_code().last()), flags).unwrap()
     };
     (0..FRAMES).map(frame).collect()
 }

@@ -5,8 +5,8 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
-    Code, ErrorBit, Families, FrameDescriptor, FrameReading, GrayCoverage, Layout, Meaning, Parity, Range, Repeat,
-    Settings, TooWideError, c99, scl_source, structured_text, structured_text_32,
+    BitMeaning, Code, ErrorBit, Families, FrameDescriptor, FrameReading, GrayCoverage, Layout, Parity, Range, Repeat,
+    Settings, TooWideError, generate_c99, scl_source, structured_text, structured_text_32,
 };
 
 use crate::support::python;
@@ -28,7 +28,7 @@ int main(void)
 
 fn family(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
-    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
 /// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit
@@ -44,7 +44,7 @@ fn unusual_step_cost() -> Layout {
         errors: vec![ErrorBit {
             name: "LAMP".to_owned(),
             clock: 24,
-            meaning: Meaning::Invalid,
+            meaning: BitMeaning::Invalid,
             active_low: true,
             cleared_by_transfer: false,
         }],
@@ -52,7 +52,7 @@ fn unusual_step_cost() -> Layout {
         repeat: Some(Repeat { word: 25, gap: 1 }),
         inverted: true,
         range: Range::Bits { multiturn: 7, singleturn: 12 },
-        ..FrameDescriptor::plain(0, 0)
+        ..FrameDescriptor::binary(0, 0)
     })
     .unwrap()
 }
@@ -82,15 +82,15 @@ fn frames(layout: &Layout) -> Vec<u64> {
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];
     for _ in 0..500 {
         let flags = encoder_studio::devices::ssi::protocol::Flags::error(rng.usize(..4));
-        let frame = layout.encode(rng.u64(..=layout.coding().last()), flags).unwrap();
-        frames.extend([frame, frame ^ 1 << rng.u8(..layout.clocks()), rng.u64(..)]);
+        let frame = layout.encode(rng.u64(..=layout.position_code().last()), flags).unwrap();
+        frames.extend([frame, frame ^ 1 << rng.u8(..layout.clock_count()), rng.u64(..)]);
     }
     frames
 }
 
 fn expected_line(layout: &Layout, reading: FrameReading) -> String {
     use encoder_studio::devices::ssi::protocol::Location;
-    let (turns, steps) = match layout.descriptor().range.place(reading.position) {
+    let (turns, steps) = match layout.descriptor().range.locate(reading.position) {
         Location::Shaft { turns, steps, .. } => (turns, steps),
         Location::Length { .. } => (0, reading.position),
     };
@@ -115,7 +115,7 @@ fn the_exported_c_code_decodes_like_the_program() {
     for (at, (title, layout)) in layouts().into_iter().enumerate() {
         let source = folder.path().join(format!("{at}.c"));
         let program = folder.path().join(format!("{at}.out"));
-        std::fs::write(&source, c99(&layout, &title) + MAIN).unwrap();
+        std::fs::write(&source, generate_c99(&layout, &title) + MAIN).unwrap();
         let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-o"];
         let built = Command::new(compiler).args(strict).arg(&program).arg(&source).output().unwrap();
         assert!(built.status.success(), "{title}: {}", String::from_utf8_lossy(&built.stderr));
@@ -200,7 +200,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
         for (name, text) in decoders_of_32_bits(&layout) {
             let text = text.unwrap_or_else(|error| panic!("{title}: {error}"));
             let mut frames = frames(&layout);
-            let all = u64::MAX >> (64 - layout.clocks());
+            let all = u64::MAX >> (64 - layout.clock_count());
             frames.iter_mut().for_each(|frame| *frame &= all);
             let Some(lines) = run_32(&text, &frames) else { return };
             assert_eq!(lines.len(), frames.len(), "{title}");
@@ -213,7 +213,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
 
 #[test]
 fn what_32_bits_cannot_hold_is_refused() {
-    let wide = Layout::new(FrameDescriptor::plain(12, 22)).unwrap();
+    let wide = Layout::new(FrameDescriptor::binary(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
     for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {
         for (_, text) in decoders_of_32_bits(&layout) {

@@ -56,7 +56,7 @@ fn wish(desk: &mut Desk, wish: DeviceCommand) {
 }
 
 fn field(desk: &Desk, wanted: Field) -> Option<Entry> {
-    let form = encoder(desk).designer.form();
+    let form = encoder(desk).designer.form_groups();
     form.into_iter().flat_map(|group| group.rows).find(|row| row.field == wanted).map(|row| row.entry)
 }
 
@@ -238,17 +238,17 @@ fn words_of_an_adapter_are_plotted_live() {
     assert_eq!(own.designer.family().unwrap().key, "ahm36", "what the virtual encoder sends");
     assert_eq!(own.identity.as_ref().unwrap().asking.clocks, 27);
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
-    desk.until("words stream", |studio| studio.ssi().unwrap().record.positions() > 500);
+    desk.until("words stream", |studio| studio.ssi().unwrap().record.position_count() > 500);
     let own = encoder(&desk);
-    assert!(own.streamed().is_some() && own.is_showing_live());
+    assert!(own.current_stream().is_some() && own.is_showing_live());
     let decoded = own.last().unwrap().decoded.as_ref().unwrap();
     assert!(decoded.is_valid && decoded.findings.is_empty());
     // Another layout reads the same words again.
-    let before = own.record.positions();
+    let before = own.record.position_count();
     act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
-    assert!(encoder(&desk).record.positions() >= before);
+    assert!(encoder(&desk).record.position_count() >= before);
     desk.until("the layout does not fit", |studio| {
-        studio.ssi().unwrap().record.tally().finding_counts().iter().any(|noted| noted.stands)
+        studio.ssi().unwrap().record.finding_counts().finding_counts().iter().any(|noted| noted.stands)
     });
     command(&mut desk, DeviceCommand::Poll(None));
 }
@@ -273,7 +273,7 @@ fn another_number_of_clocks_is_sent_to_the_adapter() {
 fn a_layout_found_live_can_be_adopted() {
     let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=20");
     edit(&mut desk, Edit::Free);
-    let clocks = encoder(&desk).clocks();
+    let clocks = encoder(&desk).clock_count();
     assert_eq!(clocks, 33);
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 2000);
@@ -438,7 +438,7 @@ fn user_families_are_loaded_and_broken_ones_reported() {
     std::fs::write(folder.join("mine.ron"), text.replace("key: \"ahm36\"", "key: \"mine\"")).unwrap();
     std::fs::write(folder.join("broken.ron"), "(key: ").unwrap();
     desk.act(Action::ShowTab(crate::tabs::SSI));
-    desk.until("it is known", |studio| studio.ssi().unwrap().designer.families().named("mine").is_some());
+    desk.until("it is known", |studio| studio.ssi().unwrap().designer.families().find_by_key("mine").is_some());
     edit(&mut desk, Edit::Family("mine".to_owned()));
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "mine");
     assert_eq!(desk.notice_ids(Severity::Warning), ["store.ssi_family"]);

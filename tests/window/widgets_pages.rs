@@ -161,7 +161,7 @@ fn every_page_of_an_ssi_layout_is_drawn() {
     ] {
         screen.act(Action::device(id, action));
     }
-    assert_eq!(screen.studio().ssi().unwrap().clocks(), 61);
+    assert_eq!(screen.studio().ssi().unwrap().clock_count(), 61);
     check_every_page(&mut screen, SMALL);
 }
 

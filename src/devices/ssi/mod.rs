@@ -14,5 +14,5 @@ use crate::kinds::Kind;
 pub const KIND: Kind = Kind {
     view: &views::SsiView,
     commands: &commands::SsiCommands,
-    at_adapter: Some(&sim::AttachableEncoder::DELIVERED),
+    at_adapter: Some(&sim::AttachableEncoder::DEFAULT_ADAPTER),
 };

@@ -16,7 +16,7 @@ use crate::worker::commit::total_cycles_to_report;
 /// limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
-/// A job in a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take)
+/// A job in a session with an adapter or a hub. Reading changes nothing; drives move only between [`TestCandidateFn`](Self::TestCandidateFn)
 /// and [`Give`](Self::Give), through the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {

@@ -5,13 +5,13 @@ use std::time::Duration;
 use serde_json::json;
 
 use super::args::{SsiExportArgs, SsiFormat};
-use super::layout::{Chosen, choose};
-use super::profiles::{document, write};
+use super::layout::{SelectedLayout, select_layout};
+use super::profiles::{profile_document, write};
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::protocol::{
-    ReadConditions, Times, TooWideError, bit_table, c99, english, frame_picture, scl_source, settings_sheet,
-    structured_text, structured_text_32, timing_picture, to_linuxcnc,
+    ReadConditions, Times, TooWideError, bit_table, english_text, frame_picture, generate_c99, scl_source,
+    settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
@@ -22,21 +22,21 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
     if is_timed && *format != SsiFormat::Timing {
         return Err(Failure::Usage("--clock, --pause, --cable and --synchronous are for --format timing".to_owned()));
     }
-    let chosen = choose(output, spec)?;
-    let Chosen { layout, times, title, .. } = &chosen;
+    let chosen = select_layout(output, spec)?;
+    let SelectedLayout { layout, times, title, .. } = &chosen;
     let text = match format {
-        SsiFormat::C => c99(layout, title),
+        SsiFormat::C => generate_c99(layout, title),
         SsiFormat::St => structured_text(layout, title),
-        SsiFormat::StDword => structured_text_32(layout, title).map_err(wide)?,
-        SsiFormat::Scl => scl_source(layout, title).map_err(wide)?,
+        SsiFormat::StDword => structured_text_32(layout, title).map_err(too_wide_failure)?,
+        SsiFormat::Scl => scl_source(layout, title).map_err(too_wide_failure)?,
         SsiFormat::Linuxcnc => to_linuxcnc(layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
-        SsiFormat::Csv => bit_table(layout, &english),
-        SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title, &english),
-        SsiFormat::Svg => frame_picture(layout, None, title, &english).svg(),
-        SsiFormat::Profile => document(chosen.profile).emit(),
+        SsiFormat::Csv => bit_table(layout, &english_text),
+        SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title, &english_text),
+        SsiFormat::Svg => frame_picture(layout, None, title, &english_text).to_svg(),
+        SsiFormat::Profile => profile_document(chosen.profile).emit(),
         SsiFormat::Timing => {
             // The default of each option comes from the profile.
-            let own = chosen.profile.reads();
+            let own = chosen.profile.read_conditions();
             let reads = ReadConditions {
                 clock_hz: clock.map_or(own.clock_hz, f64::from),
                 pause: pause.map_or(own.pause, |micros| Duration::from_micros(micros.into())),
@@ -54,7 +54,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             for warning in timing.warnings {
                 output.print_message(&words::timing(&warning).terminal_text());
             }
-            timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english).svg()
+            timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english_text).to_svg()
         }
     };
     match file {
@@ -67,6 +67,6 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
     Ok(Success::Well)
 }
 
-fn wide(error: TooWideError) -> Failure {
-    Failure::Failed(vec![words::wide(error).terminal_text()])
+fn too_wide_failure(error: TooWideError) -> Failure {
+    Failure::Failed(vec![words::too_wide_text(error).terminal_text()])
 }

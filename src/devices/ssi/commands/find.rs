@@ -13,11 +13,11 @@ use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain as words;
 
 /// Maximum number of bits in a frame. It is assumed for hexadecimal frames if the number is not given.
-const MOST_CLOCKS: u8 = 64;
+const MAX_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) -> Result {
     let families = families(output)?;
-    let Frames { clocks: read, frames, are_numbers, .. } = source::read(output, file, clocks.unwrap_or(MOST_CLOCKS))?;
+    let Frames { clocks: read, frames, are_numbers, .. } = source::read(output, file, clocks.unwrap_or(MAX_CLOCKS))?;
     let clocks = match clocks {
         // Hexadecimal digits do not show how many zeros precede the highest 1.
         None if are_numbers => {
@@ -33,7 +33,7 @@ pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) 
     let search = protocol::find(&frames, clocks, &families);
     output.show(&json(&search, &families), &text(&search, &families))?;
     if search.classes.is_empty() {
-        return Err(to_failure(&words::doubt(search.doubt)));
+        return Err(to_failure(&words::uncertainty_text(search.doubt)));
     }
     Ok(Success::Well)
 }
@@ -79,7 +79,7 @@ fn text(search: &Search, families: &Families) -> String {
             lines.add_line("  the same here", same);
         }
     }
-    let verdict = words::doubt(search.doubt).terminal_text();
+    let verdict = words::uncertainty_text(search.doubt).terminal_text();
     let next = next(search).map_or_else(String::new, |next| next + "\n");
     format!("{}{verdict}\n{next}", lines.text())
 }
@@ -90,7 +90,7 @@ fn spec_text(class: &Class, families: &Families) -> String {
 }
 
 fn evidence_text(class: &Class) -> String {
-    let frame = class.members.first().map(|member| words::frame(&member.layout).terminal_text());
+    let frame = class.members.first().map(|member| words::layout_summary(&member.layout).terminal_text());
     let evidence = words::evidence_for(&class.evidence).terminal_text();
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
@@ -98,7 +98,7 @@ fn evidence_text(class: &Class) -> String {
 /// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
 fn next(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::SearchUncertainty::Open);
-    let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal_text());
+    let doubt = doubt.map(|doubt| words::uncertainty_text(Some(doubt)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
     let open = open.map(|open| words::open(*open).terminal_text());
     let all: Vec<String> = doubt.into_iter().chain(open).collect();

@@ -17,7 +17,7 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::explain as words;
 use crate::store::Store;
 
-pub(crate) struct Chosen {
+pub(crate) struct SelectedLayout {
     pub(crate) profile: SsiProfile,
     pub(crate) layout: Layout,
     /// Timing limits of the layout's family, or `None` if the family is unknown.
@@ -26,17 +26,21 @@ pub(crate) struct Chosen {
 }
 
 /// Returns the layout given by `--layout`. Settings that the manual does not mention are printed as remarks.
-pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) -> Result<Chosen> {
+pub(crate) fn select_layout(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) -> Result<SelectedLayout> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
         let profile = SsiProfile::new(layout.descriptor().clone());
-        return Ok(Chosen { profile, layout, times: None, title: spec.clone() });
+        return Ok(SelectedLayout { profile, layout, times: None, title: spec.clone() });
     }
     if let Some(frame) = FrameDescriptor::parse(spec) {
         return choose_frame_layout(spec, frame);
     }
     let families = families(output)?;
-    if is_file(spec, &families) { from_file(output, spec, &families) } else { of_family(output, spec, &families) }
+    if is_file(spec, &families) {
+        from_file(output, spec, &families)
+    } else {
+        select_family_layout(output, spec, &families)
+    }
 }
 
 /// Returns the encoder families. User-defined families replace built-in ones with the same key, and errors in their
@@ -45,7 +49,7 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
     let (families, broken) = read_families(&store);
     for error in broken {
-        output.print_message(&words::store(&error).terminal_text());
+        output.print_message(&words::family_error_text(&error).terminal_text());
     }
     Ok(families)
 }
@@ -56,23 +60,23 @@ fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
     let ends = Path::new(spec).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
-    is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
+    is_path || ends || (families.find_by_key(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
 }
 
-fn choose_frame_layout(spec: &str, frame: std::result::Result<FrameDescriptor, SpecError>) -> Result<Chosen> {
+fn choose_frame_layout(spec: &str, frame: std::result::Result<FrameDescriptor, SpecError>) -> Result<SelectedLayout> {
     let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let profile = SsiProfile::new(layout.descriptor().clone());
-    Ok(Chosen { profile, layout, times: None, title: spec.to_owned() })
+    Ok(SelectedLayout { profile, layout, times: None, title: spec.to_owned() })
 }
 
-fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
+fn from_file(output: &Output, spec: &str, families: &Families) -> Result<SelectedLayout> {
     let path = Path::new(spec);
     let failure = |error| to_failure(&explain::profile(path, &error, KindRegistry::NONE));
     let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(failure)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
-    let family = profile.family.as_deref().and_then(|key| families.named(key));
+    let family = profile.family.as_deref().and_then(|key| families.find_by_key(key));
     match (profile.family.as_deref(), family) {
         (Some(key), None) => {
             output.print_message(&format!("{spec} names the unknown family {key:?}, so its times are not known."));
@@ -84,7 +88,7 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen>
     // The title does not contain the folder, because exports are passed on to other people.
     let file = path.file_name().map_or_else(|| spec.to_owned(), |name| name.to_string_lossy().into_owned());
     let title = if profile.name.is_empty() { file } else { profile.name.clone() };
-    Ok(Chosen { title, profile, layout, times })
+    Ok(SelectedLayout { title, profile, layout, times })
 }
 
 /// Prints the differences between the frame of a profile and the frames of its family.
@@ -105,15 +109,15 @@ fn print_advice(output: &Output, resolved: &ResolvedFrame) {
     }
 }
 
-fn of_family(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
+fn select_family_layout(output: &Output, spec: &str, families: &Families) -> Result<SelectedLayout> {
     let (key, settings) = Settings::parse(spec).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
-    let Some(family) = families.named(&key) else {
+    let Some(family) = families.find_by_key(&key) else {
         let known: Vec<&str> = families.iter().map(|family| family.key.as_str()).collect();
         let known = known.join(" ");
         return Err(Failure::Usage(format!("--layout: {key:?} is neither a file nor a family; families: {known}")));
     };
     let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
     print_advice(output, &resolved);
-    let profile = SsiProfile::of_family(family, &resolved);
-    Ok(Chosen { profile, layout: resolved.layout, times: Some(family.times), title: spec.to_owned() })
+    let profile = SsiProfile::from_family(family, &resolved);
+    Ok(SelectedLayout { profile, layout: resolved.layout, times: Some(family.times), title: spec.to_owned() })
 }

@@ -63,34 +63,34 @@ impl DeviceCommands for SsiCommands {
 
     fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
-            Command::Identify(_) => refuse("identify", "see its type label for the identity"),
+            Command::Identify(_) => unsupported_command("identify", "see its type label for the identity"),
             Command::Status(status) => live::status(common, output, status),
             Command::Position(position) => live::position(common, output, position),
-            Command::Read(_) => refuse("read", "it has no registers"),
+            Command::Read(_) => unsupported_command("read", "it has no registers"),
             Command::Save(save) => profiles::save(common, output, save),
-            Command::Write(_) => refuse("write", SET),
-            Command::Do(_) => refuse("do", SET),
-            Command::Decode(_) => refuse("decode", "use ssi decode --layout FILE|SPEC FRAME"),
+            Command::Write(_) => unsupported_command("write", CONFIGURE_REMEDY),
+            Command::Do(_) => unsupported_command("do", CONFIGURE_REMEDY),
+            Command::Decode(_) => unsupported_command("decode", "use ssi decode --layout FILE|SPEC FRAME"),
             _ => return None,
         })
     }
 
     fn create_simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
-        simulated(output, arguments)
+        create_simulated(output, arguments)
     }
 }
 
 impl ProfileCommands for SsiCommands {
     fn restore(&self, _: &CommonArgs, _: &Output, _: &Restore, _: Body) -> Result {
-        refuse("restore", SET)
+        unsupported_command("restore", CONFIGURE_REMEDY)
     }
 
     fn read_for_comparison(&self, _: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
-        refuse("reading a profile from a link", "compare two files with diff FILE FILE")
+        unsupported_command("reading a profile from a link", "compare two files with diff FILE FILE")
     }
 }
 
-const SET: &str = "configure it with the manufacturer's tool";
+const CONFIGURE_REMEDY: &str = "configure it with the manufacturer's tool";
 
 /// The command `ssi`, which works with frames and needs no encoder.
 struct SsiCommand;
@@ -114,7 +114,7 @@ impl CliCommand for SsiCommand {
 }
 
 /// Creates a virtual adapter with an encoder that sends the frames of `--layout`.
-fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
+fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn ServableDevice>> {
     let settings = settings(output, arguments)?;
     let LayoutOption { layout } = arguments.own.read()?;
     let encoder = match layout {
@@ -122,11 +122,11 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Servab
             return Err(Failure::Usage("--layout and --set ssi= set the same value: use only one of them".to_owned()));
         }
         Some(spec) => {
-            let chosen = layout::choose(&output.as_text(), &SsiLayoutArgs { spec })?;
+            let chosen = layout::select_layout(&output.as_text(), &SsiLayoutArgs { spec })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
             AttachableEncoder::with_default_encoder(Encoder { layout: chosen.layout, direction, preset })
         }
-        None => AttachableEncoder::DELIVERED,
+        None => AttachableEncoder::DEFAULT_ADAPTER,
     };
     // The encoder replaces the one with the factory settings, which is configured with the same keys.
     let others = attachable_kinds().iter().copied().filter(|device| device.setting_names() != encoder.setting_names());
@@ -136,6 +136,6 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Servab
 }
 
 /// Returns an error for a command that SSI encoders do not have. The error names the alternative.
-fn refuse<T>(command: &str, instead: &str) -> Result<T> {
+fn unsupported_command<T>(command: &str, instead: &str) -> Result<T> {
     Err(Failure::Usage(format!("{command} is not for {KIND} devices, which send only a position: {instead}")))
 }

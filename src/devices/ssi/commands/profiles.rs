@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::json;
 
 use super::args::{LayoutOption, SsiLayoutArgs};
-use super::layout::choose;
+use super::layout::select_layout;
 use crate::app::explain;
 use crate::cli::args::{CommonArgs, SaveArgs};
 use crate::cli::output::{Output, count};
@@ -24,16 +24,16 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     if common.link.is_some() {
         return Err(Failure::Usage("save ssi saves the layout of --layout without a device: remove --link".to_owned()));
     }
-    let profile = choose(output, &SsiLayoutArgs { spec })?.profile;
+    let profile = select_layout(output, &SsiLayoutArgs { spec })?.profile;
     let clocks = profile.descriptor.clocks;
-    write(&save.file, &document(profile).emit())?;
+    write(&save.file, &profile_document(profile).emit())?;
     let json = json!({"file": save.file, "clocks": clocks});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(clocks.into(), "clock")))?;
     Ok(Success::Well)
 }
 
 /// Creates a profile document. It has no time stamp, because the layout was not read from a device.
-pub(super) fn document(profile: SsiProfile) -> ProfileDocument {
+pub(super) fn profile_document(profile: SsiProfile) -> ProfileDocument {
     ProfileDocument { saved: None, ..ProfileDocument::new(String::new(), Body::new(profile)) }
 }
 

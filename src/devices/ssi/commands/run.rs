@@ -1,7 +1,7 @@
 //! Running jobs on an SSI encoder behind an adapter.
 
 use super::SsiCommands;
-use super::layout::Chosen;
+use super::layout::SelectedLayout;
 use crate::app::TypeMap;
 use crate::cli::Result;
 use crate::cli::args::CommonArgs;
@@ -36,12 +36,12 @@ impl CliDevice for Ssi {
 ///
 /// Clock and pause are taken from the link, or else from the profile. Violated timing limits of the encoder are printed
 /// as remarks.
-pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Result<Runner> {
+pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &SelectedLayout) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());
     let (own, reading) = (runner.kept, chosen.profile.reading);
     let asking = ClockSettings {
-        clocks: chosen.layout.clocks(),
+        clocks: chosen.layout.clock_count(),
         clock_hz: if names("clock") { own.clock_hz } else { reading.clock_hz },
         pause_us: if names("pause") { own.pause_us } else { reading.pause_us },
     };
@@ -50,7 +50,7 @@ pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Re
         let reads = ReadConditions {
             clock_hz: identity.clock_hz.into(),
             pause: std::time::Duration::from_micros(asking.pause_us.into()),
-            ..chosen.profile.reads()
+            ..chosen.profile.read_conditions()
         };
         for warning in times.calculate_timing(&reads).warnings {
             output.print_message(&words::timing(&warning).terminal_text());
@@ -59,6 +59,6 @@ pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Re
     Ok(runner)
 }
 
-pub(super) fn words(came: SsiOutput) -> Result<Words> {
+pub(super) fn words_from_output(came: SsiOutput) -> Result<Words> {
     Ok(result_of!(came, SsiOutput::Read(words) => words))
 }

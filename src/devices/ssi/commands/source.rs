@@ -40,13 +40,13 @@ fn input() -> Result<String> {
 }
 
 /// Returns the frames given by an argument: a single frame, `@FILE`, or `-` for standard input.
-pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<u64>> {
+pub(super) fn read_frame_argument(output: &Output, layout: &Layout, text: &str) -> Result<Vec<u64>> {
     let path = match text.strip_prefix('@') {
         Some(path) => path,
         None if text == INPUT => INPUT,
-        None => return frame(layout, text).map(|frame| vec![frame]),
+        None => return parse_frame_argument(layout, text).map(|frame| vec![frame]),
     };
-    let clocks = layout.clocks();
+    let clocks = layout.clock_count();
     let Frames { origin, clocks: bits, frames, .. } = read(output, Path::new(path), clocks)?;
     if bits != clocks {
         let name = match origin {
@@ -60,8 +60,8 @@ pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<
 }
 
 /// Parses a frame into right-justified bits.
-fn frame(layout: &Layout, text: &str) -> Result<u64> {
-    parse_frame(text, layout.clocks()).map_err(|error| match error {
+fn parse_frame_argument(layout: &Layout, text: &str) -> Result<u64> {
+    parse_frame(text, layout.clock_count()).map_err(|error| match error {
         FrameTextError::Form(_) => Failure::Usage(error.to_string()),
         FrameTextError::Bits { .. } => Failure::Failed(vec![format!("{error}.")]),
     })

@@ -31,8 +31,8 @@ mod tests {
         fs::write(folder.join("other.ron"), ahs36.replace("\"ahs36\"", "\"mine\"")).unwrap();
         fs::write(folder.join("broken.ron"), "(\n  key: \"x\",\n  nam: \"x\",\n)").unwrap();
         let (known, errors) = families(&store);
-        assert_eq!(known.named("ahs36").unwrap().name, "my AHS36");
-        assert!(known.named("mine").is_some() && known.named("kh53").is_some());
+        assert_eq!(known.find_by_key("ahs36").unwrap().name, "my AHS36");
+        assert!(known.find_by_key("mine").is_some() && known.find_by_key("kh53").is_some());
         assert_eq!(known.iter().count(), 12);
         let [error] = errors.as_slice() else { panic!("{errors:?}") };
         assert!(error.to_string().contains("broken.ron, line 3, column "), "{error}");

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub use families::families;
-pub use open::{check, open};
+pub use open::{check_link, open};
 
 use crate::buses::bridge::procedures::log_supply_failure;
 use crate::devices::ssi::procedures::{ClockSettings, Error, Identity, Master, Station, Words, check};
@@ -60,7 +60,7 @@ impl JobInterruption for Error {
 }
 
 /// Maximum interval at which words are streamed. At longer intervals they are requested one by one.
-const STREAMED: Duration = Duration::from_millis(2);
+const STREAMING_INTERVAL: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -69,7 +69,7 @@ impl fmt::Debug for Ssi {
 }
 
 impl Ssi {
-    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+    fn create_master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 }
@@ -118,27 +118,27 @@ impl Device for Ssi {
         job: SsiJob,
         tell: &mut dyn FnMut(JobReport<Infallible, JobStep>),
     ) -> Result<SsiOutput, JobError> {
-        let mut master = self.master(context);
+        let mut master = self.create_master(context);
         Ok(match job {
-            SsiJob::Hello => SsiOutput::Hello(Box::new(master.hello()?)),
-            SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
-            SsiJob::Read => SsiOutput::Read(master.word()?),
+            SsiJob::Hello => SsiOutput::Hello(Box::new(master.identify()?)),
+            SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.apply_settings(asking)?)),
+            SsiJob::Read => SsiOutput::Read(master.read_word()?),
             SsiJob::Check(layout) => {
                 let progress = &mut |done, total| tell(JobReport::Progress(Progress { done, total, step: JobStep }));
-                SsiOutput::Check(check::check(&mut master, &layout, progress)?)
+                SsiOutput::Check(check::check_encoder(&mut master, &layout, progress)?)
             }
         })
     }
 
     fn set_sample_interval(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
-        let streamed = interval.filter(|interval| *interval <= STREAMED);
+        let streamed = interval.filter(|interval| *interval <= STREAMING_INTERVAL);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
         if interval.is_none() {
             self.station.reset_request_count();
         }
         if self.streamed_us.is_none()
-            && let Err(error) = self.master(context).stop_word_stream()
+            && let Err(error) = self.create_master(context).stop_word_stream()
         {
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }
@@ -146,8 +146,8 @@ impl Device for Ssi {
 
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<Words, JobError> {
         match self.streamed_us {
-            Some(period_us) => self.master(context).words(period_us),
-            None => self.master(context).next_word(),
+            Some(period_us) => self.create_master(context).next_words(period_us),
+            None => self.create_master(context).next_word(),
         }
     }
 
@@ -160,6 +160,6 @@ impl Device for Ssi {
     }
 
     fn restore_state(&mut self, context: &mut SessionContext) {
-        log_supply_failure(self.master(context).leave_supply());
+        log_supply_failure(self.create_master(context).switch_off_after_session());
     }
 }

@@ -16,7 +16,7 @@ use crate::worker::{OpenError, Session};
 ///
 /// # Errors
 /// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
-pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
@@ -60,7 +60,7 @@ mod tests {
             "bridge:tcp:host:4001?margin=2000&voltage=5",
             "replay:words.trace?clock=1000000",
         ] {
-            assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
+            assert!(check_link(&text.parse().unwrap()).is_ok(), "{text}");
         }
         for (text, why) in [
             (
@@ -81,7 +81,7 @@ mod tests {
             ("sim:?ssi=atm61", "`ssi=atm61` is not valid (allowed: a family of SSI encoders"),
             ("sim:?what=1", "a virtual adapter has no setting `what`"),
         ] {
-            let error = check(&text.parse().unwrap()).unwrap_err().to_string();
+            let error = check_link(&text.parse().unwrap()).unwrap_err().to_string();
             assert!(error.starts_with(why), "{text}: {error}");
         }
     }

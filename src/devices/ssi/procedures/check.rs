@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 
 use super::{Error, Identity, Master};
 use crate::analysis::check;
-use crate::devices::ssi::protocol::{Flags, FrameFinding as Said, Layout, Meaning};
+use crate::devices::ssi::protocol::{BitMeaning, Flags, FrameFinding as Said, Layout};
 
 pub use crate::analysis::check::Verdict;
 
-pub const WORDS: u64 = 50;
+pub const WORD_COUNT: u64 = 50;
 /// Maximum distance of a position from the first one at standstill, in steps. A shaft at standstill can jitter by one
 /// or two steps.
-const TREMBLES: u64 = 4;
+const MAX_JITTER_STEPS: u64 = 4;
 
 pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
 
@@ -68,29 +68,29 @@ pub enum CheckFinding {
 ///
 /// # Errors
 /// Returns the error of the adapter if no words arrive.
-pub fn check(
+pub fn check_encoder(
     master: &mut Master<'_>,
     layout: &Layout,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Vec<SsiStepResult>, Error> {
-    let identity = master.hello()?;
+    let identity = master.identify()?;
     let mut words = Vec::new();
-    for done in 0..WORDS {
-        progress(done, WORDS);
+    for done in 0..WORD_COUNT {
+        progress(done, WORD_COUNT);
         words.extend(master.next_word()?.words);
     }
-    Ok(judge(&identity, layout, &words))
+    Ok(check_words(&identity, layout, &words))
 }
 
-fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
+fn check_words(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
     let mut counted: Vec<(Said, u64)> = Vec::new();
     let mut positions = Vec::new();
     for word in words {
         let reading = layout.decode(*word);
-        if !reading.flags.has(Flags::CODE) {
+        if !reading.flags.contains(Flags::CODE) {
             positions.push(reading.position);
         }
-        for finding in layout.findings(reading) {
+        for finding in layout.to_findings(reading) {
             match counted.iter_mut().find(|(own, _)| *own == finding) {
                 Some((_, count)) => *count += 1,
                 None => counted.push((finding, 1)),
@@ -105,8 +105,8 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     };
     let verdict = |wanted: fn(&Said) -> bool| {
         let worst = counted.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
-            Meaning::Invalid => Verdict::Bad,
-            Meaning::Warning => Verdict::Attention,
+            BitMeaning::Invalid => Verdict::Bad,
+            BitMeaning::Warning => Verdict::Attention,
         });
         worst.max().unwrap_or(Verdict::Good)
     };
@@ -118,8 +118,8 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     let form = verdict(is_of_the_form);
     let form = if form == Verdict::Good { Verdict::Good } else { Verdict::Bad };
     vec![
-        adapter(identity),
-        supply(identity),
+        check_adapter(identity),
+        check_supply(identity),
         SsiStepResult {
             step: CheckStep::Line,
             verdict: verdict(is_stuck),
@@ -139,7 +139,7 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     ]
 }
 
-fn adapter(identity: &Identity) -> SsiStepResult {
+fn check_adapter(identity: &Identity) -> SsiStepResult {
     let Identity { hello, asking, clock_hz, .. } = identity;
     let verdict = if *clock_hz == asking.clock_hz { Verdict::Good } else { Verdict::Attention };
     let who = CheckFinding::Adapter(hello.name.clone(), hello.firmware.clone());
@@ -150,7 +150,7 @@ fn adapter(identity: &Identity) -> SsiStepResult {
     }
 }
 
-fn supply(identity: &Identity) -> SsiStepResult {
+fn check_supply(identity: &Identity) -> SsiStepResult {
     let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
     let (verdict, finding) = match supplied {
         Some((requested, (measured, milliampere))) => {
@@ -166,7 +166,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
 
 /// Evaluates the change of position from word to word. Distances are measured in the shorter direction.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
-    let all = u128::from(layout.coding().last()) + 1;
+    let all = u128::from(layout.position_code().last()) + 1;
     let apart = |one: u64, other: u64| {
         let apart = u128::from(one.abs_diff(other));
         u64::try_from(apart.min(all - apart)).unwrap_or(u64::MAX)
@@ -178,7 +178,7 @@ fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
         .map_or(0, |first| positions.iter().map(|position| apart(*first, *position)).max().unwrap_or(0));
     let (verdict, finding) = match positions.last() {
         None => return SsiStepResult { step: CheckStep::Motion, verdict: Verdict::Bad, findings: Vec::new() },
-        Some(position) if spread <= TREMBLES => {
+        Some(position) if spread <= MAX_JITTER_STEPS => {
             (Verdict::Good, CheckFinding::Stands { position: *position, steps: spread })
         }
         // No shaft turns by more than a quarter of all positions from one word to the next.
@@ -197,7 +197,7 @@ mod tests {
 
     fn layout(text: &str) -> Layout {
         let (key, settings) = Settings::parse(text).unwrap();
-        settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+        settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
     }
 
     fn identity(clock_hz: u32, supply: Option<Supply>) -> Identity {
@@ -223,12 +223,12 @@ mod tests {
     fn words_are_judged_step_by_step() {
         let layout = layout("afs60");
         let good = 0x15_5E68;
-        let judged = |words: &[u64]| verdicts(&judge(&identity(400_000, None), &layout, words));
+        let judged = |words: &[u64]| verdicts(&check_words(&identity(400_000, None), &layout, words));
         assert_eq!(judged(&[good, good + 8, good]), [Good; 6]);
         assert_eq!(judged(&[good, good | 1]), [Good, Good, Good, Good, Bad, Good]);
         assert_eq!(judged(&[0x1F_FFFF; 3]), [Good, Good, Bad, Good, Bad, Good], "every bit is 1");
         assert_eq!(judged(&[0x10 << 3, 0x2_0010 << 3]), [Good, Good, Good, Good, Good, Attention], "half a turn");
-        let lines = judge(&identity(400_000, None), &layout, &[good, good + 8]);
+        let lines = check_words(&identity(400_000, None), &layout, &[good, good + 8]);
         assert_eq!(lines[5].findings, [CheckFinding::Stands { position: 0x2_ABCE, steps: 1 }]);
         assert_eq!(lines[2].findings, [CheckFinding::Words { taken: 2, different: 2 }]);
     }
@@ -237,17 +237,17 @@ mod tests {
     fn a_wrong_layout_is_bad() {
         // Zeros after 12 bits in the 14 of an AHS36, where the encoder sends bits.
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
-        let lines = judge(&identity(400_000, None), &layout("ahs36,st=12"), &words);
+        let lines = check_words(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);
         assert_eq!(lines[3].findings, [CheckFinding::Said { finding: Said::Padding, count: 2 }]);
-        assert_eq!(judge(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [CheckFinding::Fits]);
+        assert_eq!(check_words(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [CheckFinding::Fits]);
     }
 
     #[test]
     fn adapter_and_supply_are_judged() {
         let judged = |clock_hz, measured: Option<(u16, u16)>| {
             let supply = Some(Supply { millivolt: 5_000, measured });
-            verdicts(&judge(&identity(clock_hz, supply), &layout("afs60"), &[0x15_5E68]))[..2].to_vec()
+            verdicts(&check_words(&identity(clock_hz, supply), &layout("afs60"), &[0x15_5E68]))[..2].to_vec()
         };
         assert_eq!(judged(400_000, Some((4_950, 60))), [Good, Good]);
         assert_eq!(judged(333_333, Some((4_300, 60))), [Attention, Attention]);

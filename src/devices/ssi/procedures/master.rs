@@ -17,7 +17,7 @@ use crate::link::line::SerialLine;
 use crate::units::Moment;
 
 /// Interval between checks for cancellation.
-const SLICE: Duration = Duration::from_millis(20);
+const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// The host side of an adapter in front of an SSI encoder.
 pub struct Master<'a> {
@@ -38,9 +38,9 @@ impl<'a> Master<'a> {
     /// # Errors
     /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal by the adapter, or an
     /// error of the connection.
-    pub fn hello(&mut self) -> Result<Identity, Error> {
+    pub fn identify(&mut self) -> Result<Identity, Error> {
         self.stop_word_stream()?;
-        self.repeated(|master| master.adapter().read_identity())?;
+        self.with_retries(|master| master.adapter_host().read_identity())?;
         let Some(hello) = self.station.adapter.identity().cloned() else { return Err(AdapterError::Silent.into()) };
         if !hello.capabilities.contains(Capabilities::SSI) {
             return Err(AdapterError::NoSsi { name: hello.name }.into());
@@ -53,20 +53,20 @@ impl<'a> Master<'a> {
     /// Changes the settings for reading words.
     ///
     /// # Errors
-    /// As for [`hello`](Self::hello). The previous settings then stay in effect.
-    pub fn set(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
+    /// As for [`identify`](Self::identify). The previous settings then stay in effect.
+    pub fn apply_settings(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
             self.station.asked = 0;
         }
-        self.hello().inspect_err(|_| self.station.asking = before)
+        self.identify().inspect_err(|_| self.station.asking = before)
     }
 
     /// Reads a single word.
     ///
     /// # Errors
-    /// As for [`hello`](Self::hello).
-    pub fn word(&mut self) -> Result<Words, Error> {
+    /// As for [`identify`](Self::identify).
+    pub fn read_word(&mut self) -> Result<Words, Error> {
         match self.read_configured_word() {
             // The adapter was reset and has lost its settings. The word is requested once more with new settings.
             Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
@@ -81,9 +81,9 @@ impl<'a> Master<'a> {
     /// Reads the next word of a series of single requests.
     ///
     /// # Errors
-    /// As for [`hello`](Self::hello).
+    /// As for [`identify`](Self::identify).
     pub fn next_word(&mut self) -> Result<Words, Error> {
-        let word = self.word()?;
+        let word = self.read_word()?;
         Ok(Words { first: self.station.count(), ..word })
     }
 
@@ -93,17 +93,17 @@ impl<'a> Master<'a> {
     /// interval is used.
     ///
     /// # Errors
-    /// As for [`hello`](Self::hello) when the stream is started. Later, errors of the adapter end the stream, whereas
+    /// As for [`identify`](Self::identify) when the stream is started. Later, errors of the adapter end the stream, whereas
     /// it continues after a cancellation.
-    pub fn words(&mut self, period_us: u32) -> Result<Words, Error> {
+    pub fn next_words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = StreamKind::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {
-            self.hello()?;
-            self.begin(streamed)?;
+            self.identify()?;
+            self.begin_stream(streamed)?;
         }
         let (asking, clock_hz) = self.station.set.unwrap_or((self.station.asking, self.station.asking.clock_hz));
         loop {
-            let until = self.now() + SLICE;
+            let until = self.now() + CANCEL_CHECK_INTERVAL;
             let Station { line: state, adapter, flow, .. } = &mut *self.station;
             let Some(flow) = flow else { return Err(AdapterError::Mute.into()) };
             let mut host = Adapter { line: &mut self.line, state, adapter };
@@ -128,7 +128,7 @@ impl<'a> Master<'a> {
         self.station.asked = 0;
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
         let shielded = self.line.ignore_cancellation(true);
-        let ended = flow.stop(&mut self.adapter());
+        let ended = flow.stop(&mut self.adapter_host());
         self.line.ignore_cancellation(shielded);
         match SampleStream::is_stopped(ended) {
             Ok(true) => Ok(()),
@@ -147,26 +147,27 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Errors of the adapter.
-    pub fn leave_supply(&mut self) -> Result<(), Error> {
+    pub fn switch_off_after_session(&mut self) -> Result<(), Error> {
         if !self.station.adapter.must_switch_supply_off() {
             return Ok(());
         }
         self.line.ignore_cancellation(true);
         self.stop_word_stream()?;
-        Ok(self.adapter().switch_off_after_session()?)
+        Ok(self.adapter_host().switch_off_after_session()?)
     }
 
     fn now(&self) -> Moment {
         self.line.now()
     }
 
-    fn adapter(&mut self) -> Adapter<'_, 'a> {
+    fn adapter_host(&mut self) -> Adapter<'_, 'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
     fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
-        let measured = self.repeated(|master| master.adapter().switch_supply_on(Supply::voltage(millivolt)))?;
+        let measured =
+            self.with_retries(|master| master.adapter_host().switch_supply_on(Supply::with_voltage(millivolt)))?;
         self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
@@ -182,44 +183,44 @@ impl<'a> Master<'a> {
         let clock_hz = clock_hz.min(fastest);
         let request = Request::SsiConfig { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE };
         self.station.set = None;
-        let answered = self.repeated(|master| master.adapter().send_request(&request))?;
+        let answered = self.with_retries(|master| master.adapter_host().send_request(&request))?;
         let Reply::SsiConfig { clock_hz } = answered.reply else {
-            return Err(other(&request, &answered.reply));
+            return Err(unexpected_reply(&request, &answered.reply));
         };
         self.station.set = Some((asking, clock_hz));
         Ok(clock_hz)
     }
 
     fn read_configured_word(&mut self) -> Result<Words, Error> {
-        let Identity { asking, clock_hz, .. } = self.hello()?;
-        let taken = self.repeated(Self::read_single_word);
+        let Identity { asking, clock_hz, .. } = self.identify()?;
+        let taken = self.with_retries(Self::read_single_word);
         let (word, at) = taken.map_err(|error| self.handle_possible_reset(error))?;
-        Ok(Words::one(at, word, asking, clock_hz))
+        Ok(Words::single(at, word, asking, clock_hz))
     }
 
     fn read_single_word(&mut self) -> Result<(u64, Moment), Failure> {
-        let answered = self.adapter().send_request(&Request::SsiRead)?;
+        let answered = self.adapter_host().send_request(&Request::SsiRead)?;
         let Reply::SsiRead { t_us, raw } = answered.reply else {
             return Err(AdapterError::unexpected_reply(Request::SsiRead.operation(), &answered.reply).into());
         };
         Ok((raw, self.station.adapter.local_time_of(t_us, &answered)))
     }
 
-    fn begin(&mut self, streamed: StreamKind) -> Result<(), Error> {
+    fn begin_stream(&mut self, streamed: StreamKind) -> Result<(), Error> {
         let after = self.station.streamed_until;
         let mut may_run = false;
-        let flow = self.repeated(|master| {
+        let flow = self.with_retries(|master| {
             if std::mem::replace(&mut may_run, true) {
-                master.adapter().send_request(&Request::SsiStream { period_us: 0 })?;
+                master.adapter_host().send_request(&Request::SsiStream { period_us: 0 })?;
             }
-            SampleStream::start(&mut master.adapter(), streamed, after)
+            SampleStream::start(&mut master.adapter_host(), streamed, after)
         });
         self.station.flow = Some(flow.map_err(|error| self.handle_possible_reset(error))?);
         Ok(())
     }
 
     /// Executes `once` until a reply arrives or no retry is left. The operation must allow repeated execution.
-    fn repeated<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
+    fn with_retries<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;
         loop {
@@ -260,6 +261,6 @@ impl<'a> Master<'a> {
     }
 }
 
-fn other(request: &Request, reply: &Reply) -> Error {
+fn unexpected_reply(request: &Request, reply: &Reply) -> Error {
     AdapterError::unexpected_reply(request.operation(), reply).into()
 }

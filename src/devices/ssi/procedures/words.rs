@@ -30,7 +30,7 @@ pub struct Words {
 }
 
 impl Words {
-    pub(super) fn one(at: Moment, word: u64, asking: ClockSettings, clock_hz: u32) -> Self {
+    pub(super) fn single(at: Moment, word: u64, asking: ClockSettings, clock_hz: u32) -> Self {
         Words {
             first: 0,
             at,
@@ -92,7 +92,7 @@ mod tests {
         assert_eq!(run.iter_with_times().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
         assert_eq!((run.is_stream_start(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
         assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
-        let lone = Words::one(at(9), 5, asking, 1_000_000);
+        let lone = Words::single(at(9), 5, asking, 1_000_000);
         assert_eq!(lone.iter_with_times().collect::<Vec<_>>(), [(at(9), 5)]);
         assert_eq!((lone.is_stream_start(), lone.is_streamed()), (true, false));
     }

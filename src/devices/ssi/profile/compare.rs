@@ -6,7 +6,7 @@ use crate::profile::{Comparison, Difference};
 
 /// Compares frame, direction, preset and reading settings. Missing entries have their default values.
 pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
-    let (left, right) = (items(left), items(right));
+    let (left, right) = (compared_items(left), compared_items(right));
     let mut comparison = Comparison::default();
     for (item, left) in &left {
         match right.iter().find(|(other, _)| other == item) {
@@ -26,7 +26,7 @@ pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
 }
 
 /// Returns the names and values of all compared entries, in the order of the file.
-fn items(profile: &SsiProfile) -> Vec<(String, String)> {
+fn compared_items(profile: &SsiProfile) -> Vec<(String, String)> {
     let frame = &profile.descriptor;
     let mut items: Vec<(String, String)> = Vec::new();
     let mut add = |name: &str, value: &dyn ToString| items.push((name.to_owned(), value.to_string()));
@@ -101,8 +101,8 @@ mod tests {
     fn profile(text: &str) -> SsiProfile {
         let (key, settings) = Settings::parse(text).unwrap();
         let families = Families::built_in();
-        let family = families.named(&key).unwrap();
-        SsiProfile::of_family(family, &settings.resolve(family).unwrap())
+        let family = families.find_by_key(&key).unwrap();
+        SsiProfile::from_family(family, &settings.resolve(family).unwrap())
     }
 
     fn listed(comparison: &Comparison) -> Vec<(&str, &str, &str)> {

@@ -72,7 +72,7 @@ impl SsiProfile {
     }
 
     /// Returns the conditions of reading, which are needed to check the timing of the frame.
-    pub fn reads(&self) -> ReadConditions {
+    pub fn read_conditions(&self) -> ReadConditions {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         ReadConditions {
             clocks: self.descriptor.clocks,
@@ -85,7 +85,7 @@ impl SsiProfile {
     }
 
     /// Creates a profile from the settings of a family and the resulting frame.
-    pub fn of_family(family: &Family, resolved: &ResolvedFrame) -> Self {
+    pub fn from_family(family: &Family, resolved: &ResolvedFrame) -> Self {
         SsiProfile {
             family: Some(family.key.clone()),
             direction: resolved.direction,

@@ -15,13 +15,13 @@ use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, UnknownValues, Writer, entries_text, quote};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const SMALL: AllowedValues = AllowedValues::whole_range(0, 255);
+const BYTE_RANGE: AllowedValues = AllowedValues::whole_range(0, 255);
 const FLAG: AllowedValues = AllowedValues::words(&["true", "false"]);
 const CLOCK_HZ: AllowedValues = AllowedValues::whole_range(1000, 20_000_000);
 const PAUSE_US: AllowedValues = AllowedValues::whole_range(1, 65_535);
 const METRES: AllowedValues = AllowedValues::whole_range(0, 65_535);
 /// Keyword for a pattern that consists only of ones.
-const ONES: &str = "ones";
+const ALL_ONES: &str = "ones";
 
 impl Profile for SsiProfile {
     const KIND: &'static str = protocol::KIND;
@@ -35,9 +35,9 @@ impl Profile for SsiProfile {
         let descriptor = read_frame(entries.take_structure("frame")?, &mut unknown)?;
         let refused = |error| ProfileError::invalid_entry(path, EntryError::Layout(error));
         let layout = Layout::new(descriptor.clone()).map_err(refused)?;
-        let direction = word(entries, "direction")?.unwrap_or_default();
+        let direction = take_keyword(entries, "direction")?.unwrap_or_default();
         let preset = entries.take_optional("preset", AllowedValues::Whole)?.unwrap_or(0);
-        let last = layout.coding().last();
+        let last = layout.position_code().last();
         if preset > last {
             return Err(ProfileError::invalid_entry(entries.entry_path("preset"), EntryError::Preset { preset, last }));
         }
@@ -74,7 +74,7 @@ impl SsiProfile {
     fn write_frame(&self, writer: &mut Writer) {
         let frame = &self.descriptor;
         writer.open("frame", '(');
-        number(writer, "clocks", frame.clocks);
+        write_number(writer, "clocks", frame.clocks);
         write_range(writer, &frame.range);
         if frame.code != Code::Binary {
             writer.text("code", &frame.code.to_string());
@@ -83,11 +83,11 @@ impl SsiProfile {
             writer.text("over", &frame.coded.to_string());
         }
         if frame.area != default_area_clocks(frame) {
-            number(writer, "area", frame.area);
+            write_number(writer, "area", frame.area);
         }
         for (name, zeros) in [("lead", frame.lead), ("between", frame.between)] {
             if zeros > 0 {
-                number(writer, name, zeros);
+                write_number(writer, name, zeros);
             }
         }
         for (name, is_set) in [("shift", frame.shift_right), ("inverted", frame.inverted)] {
@@ -127,7 +127,7 @@ impl SsiProfile {
         let line = |pattern: &Pattern| {
             let (name, meaning) = (quote(&pattern.name), pattern.meaning);
             let word = match pattern.word {
-                Word::Ones => quote(ONES),
+                Word::Ones => quote(ALL_ONES),
                 Word::Bits(bits) => format!("0x{bits:0digits$X}"),
             };
             let more = entries_text(&take_unknown_by_name(&mut kept, &pattern.name));
@@ -143,13 +143,13 @@ impl SsiProfile {
         }
         writer.open("reading", '(');
         if reading.clock_hz != usual.clock_hz {
-            number(writer, "clock_hz", reading.clock_hz);
+            write_number(writer, "clock_hz", reading.clock_hz);
         }
         if reading.pause_us != usual.pause_us {
-            number(writer, "pause_us", reading.pause_us);
+            write_number(writer, "pause_us", reading.pause_us);
         }
         if let Some(metres) = reading.cable_metres {
-            number(writer, "cable_metres", metres);
+            write_number(writer, "cable_metres", metres);
         }
         if reading.synchronous {
             writer.entry("synchronous", "true", "");
@@ -159,7 +159,7 @@ impl SsiProfile {
     }
 }
 
-fn number(writer: &mut Writer, name: &str, value: impl Into<u64>) {
+fn write_number(writer: &mut Writer, name: &str, value: impl Into<u64>) {
     writer.entry(name, &value.into().to_string(), "");
 }
 
@@ -167,23 +167,23 @@ fn write_range(writer: &mut Writer, range: &Range) {
     match *range {
         Range::Bits { multiturn, singleturn } => {
             if multiturn > 0 {
-                number(writer, "multiturn", multiturn);
+                write_number(writer, "multiturn", multiturn);
             }
-            number(writer, "singleturn", singleturn);
+            write_number(writer, "singleturn", singleturn);
         }
         Range::Steps { per_turn, turns } => {
-            number(writer, "steps", per_turn);
+            write_number(writer, "steps", per_turn);
             if turns != 1 {
-                number(writer, "turns", turns);
+                write_number(writer, "turns", turns);
             }
         }
         Range::RoundAxis { steps, revolutions } => {
-            number(writer, "steps", steps);
+            write_number(writer, "steps", steps);
             writer.text("revolutions", &revolutions.to_string());
         }
         Range::Length { bits, step_nanometres } => {
-            number(writer, "bits", bits);
-            number(writer, "step_nanometres", step_nanometres);
+            write_number(writer, "bits", bits);
+            write_number(writer, "step_nanometres", step_nanometres);
         }
     }
 }
@@ -210,13 +210,13 @@ fn default_area_clocks(frame: &FrameDescriptor) -> u8 {
 
 fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<FrameDescriptor, ProfileError> {
     let mut frame = FrameDescriptor {
-        clocks: entries.take_required("clocks", SMALL)?,
+        clocks: entries.take_required("clocks", BYTE_RANGE)?,
         range: read_range(&mut entries)?,
-        code: word(&mut entries, "code")?.unwrap_or(Code::Binary),
-        coded: word(&mut entries, "over")?.unwrap_or(GrayCoverage::Position),
+        code: take_keyword(&mut entries, "code")?.unwrap_or(Code::Binary),
+        coded: take_keyword(&mut entries, "over")?.unwrap_or(GrayCoverage::Position),
         area: 0,
-        lead: entries.take_optional("lead", SMALL)?.unwrap_or(0),
-        between: entries.take_optional("between", SMALL)?.unwrap_or(0),
+        lead: entries.take_optional("lead", BYTE_RANGE)?.unwrap_or(0),
+        between: entries.take_optional("between", BYTE_RANGE)?.unwrap_or(0),
         shift_right: entries.take_optional("shift", FLAG)?.unwrap_or(false),
         errors: Vec::new(),
         parity: None,
@@ -224,20 +224,20 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Fram
         inverted: entries.take_optional("inverted", FLAG)?.unwrap_or(false),
         patterns: Vec::new(),
     };
-    frame.area = entries.take_optional("area", SMALL)?.unwrap_or_else(|| default_area_clocks(&frame));
+    frame.area = entries.take_optional("area", BYTE_RANGE)?.unwrap_or_else(|| default_area_clocks(&frame));
     for entries in entries.take_structures("errors")? {
         let (bit, more) = read_error(entries)?;
         unknown.errors.push((bit.name.clone(), more));
         frame.errors.push(bit);
     }
     if let Some(mut entries) = entries.optional_structure("parity")? {
-        let clock = entries.take_required("clock", SMALL)?;
+        let clock = entries.take_required("clock", BYTE_RANGE)?;
         frame.parity = Some(Parity { clock, even: entries.take_required("even", FLAG)? });
         unknown.parity = entries.into_unknown()?;
     }
     if let Some(mut entries) = entries.optional_structure("repeat")? {
-        let word = entries.take_required("word", SMALL)?;
-        frame.repeat = Some(Repeat { word, gap: entries.take_optional("gap", SMALL)?.unwrap_or(1) });
+        let word = entries.take_required("word", BYTE_RANGE)?;
+        frame.repeat = Some(Repeat { word, gap: entries.take_optional("gap", BYTE_RANGE)?.unwrap_or(1) });
         unknown.repeat = entries.into_unknown()?;
     }
     for entries in entries.take_structures("patterns")? {
@@ -253,12 +253,12 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Fram
 
 /// Parses the range of positions, which is given either by turn and step bits, or by a number of steps, or by a length.
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
-    let multiturn: Option<u8> = entries.take_optional("multiturn", SMALL)?;
-    let singleturn: Option<u8> = entries.take_optional("singleturn", SMALL)?;
+    let multiturn: Option<u8> = entries.take_optional("multiturn", BYTE_RANGE)?;
+    let singleturn: Option<u8> = entries.take_optional("singleturn", BYTE_RANGE)?;
     let steps: Option<u32> = entries.take_optional("steps", AllowedValues::Whole)?;
     let turns: Option<u32> = entries.take_optional("turns", AllowedValues::Whole)?;
     let revolutions = read_revolutions(entries)?;
-    let bits: Option<u8> = entries.take_optional("bits", SMALL)?;
+    let bits: Option<u8> = entries.take_optional("bits", BYTE_RANGE)?;
     let step_nanometres: Option<u32> = entries.take_optional("step_nanometres", AllowedValues::Whole)?;
     let given = [
         ("singleturn", singleturn.is_some()),
@@ -316,7 +316,7 @@ fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileEr
 fn read_error(mut entries: Entries) -> Result<(ErrorBit, UnknownValues), ProfileError> {
     let bit = ErrorBit {
         name: entries.take_required("name", AllowedValues::Text)?,
-        clock: entries.take_required("clock", SMALL)?,
+        clock: entries.take_required("clock", BYTE_RANGE)?,
         meaning: required_word(&mut entries, "meaning")?,
         active_low: entries.take_optional("active_low", FLAG)?.unwrap_or(false),
         cleared_by_transfer: entries.take_optional("cleared_by_transfer", FLAG)?.unwrap_or(false),
@@ -328,7 +328,7 @@ fn read_pattern(mut entries: Entries) -> Result<(Pattern, UnknownValues), Profil
     let wrong = |path| ProfileError::Shape { path, expected: AllowedValues::Frame };
     let path = entries.entry_path("word");
     let word = match entries.take_required::<Value>("word", AllowedValues::Frame)? {
-        Value::String(word) if word == ONES => Word::Ones,
+        Value::String(word) if word == ALL_ONES => Word::Ones,
         value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
     };
     let name = entries.take_required("name", AllowedValues::Text)?;
@@ -352,14 +352,14 @@ fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) ->
 }
 
 /// Parses an entry whose value is a keyword from a fixed set.
-fn word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
+fn take_keyword<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.entry_path(name);
     let Some(word) = entries.take_optional::<String>(name, AllowedValues::Text)? else { return Ok(None) };
     word.parse().map(Some).map_err(|expected| ProfileError::Shape { path, expected })
 }
 
 fn required_word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
-    word(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.entry_path(name) })
+    take_keyword(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.entry_path(name) })
 }
 
 #[cfg(test)]

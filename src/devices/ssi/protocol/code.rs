@@ -65,7 +65,7 @@ impl PositionCode {
     /// # Errors
     /// [`CodeError`] if the code cannot represent this number of positions.
     pub fn new(code: Code, last: u64) -> Result<Self, CodeError> {
-        let binary_bits = bits_of(last);
+        let binary_bits = bit_width(last);
         let (bits, offset) = match code {
             Code::Binary | Code::Gray => (binary_bits, 0),
             Code::GrayExcess if last.is_multiple_of(2) => return Err(CodeError::Odd(u128::from(last) + 1)),
@@ -126,7 +126,7 @@ impl PositionCode {
 }
 
 /// Returns the number of bits needed to represent `number`, at least one.
-pub(super) const fn bits_of(number: u64) -> u8 {
+pub(super) const fn bit_width(number: u64) -> u8 {
     let bits = 64 - number.leading_zeros();
     if bits == 0 { 1 } else { bits as u8 }
 }

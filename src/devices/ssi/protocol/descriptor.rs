@@ -58,7 +58,7 @@ pub struct ErrorBit {
     /// Clock number, starting at 1.
     pub clock: u8,
     /// Effect of the active bit on the position.
-    pub meaning: Meaning,
+    pub meaning: BitMeaning,
     /// Whether the bit is active at 0.
     #[serde(default)]
     pub active_low: bool,
@@ -70,7 +70,7 @@ pub struct ErrorBit {
 /// Effect of an error bit or of a pattern on the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Meaning {
+pub enum BitMeaning {
     /// The position is invalid.
     Invalid,
     /// The position is valid, but the device reports a warning.
@@ -104,7 +104,7 @@ pub struct Pattern {
     /// Bits of the complete frame as transmitted.
     pub word: Word,
     /// Effect of the word on the position.
-    pub meaning: Meaning,
+    pub meaning: BitMeaning,
 }
 
 /// Bits of a complete frame.
@@ -119,7 +119,7 @@ pub enum Word {
 
 impl FrameDescriptor {
     /// Creates a frame that contains only binary multiturn and singleturn bits.
-    pub const fn plain(multiturn: u8, singleturn: u8) -> Self {
+    pub const fn binary(multiturn: u8, singleturn: u8) -> Self {
         let bits = multiturn + singleturn;
         FrameDescriptor {
             clocks: bits,
@@ -139,7 +139,7 @@ impl FrameDescriptor {
     }
 
     /// Returns the number of clocks in one frame without its repetition.
-    pub fn word(&self) -> u8 {
+    pub fn clocks_per_word(&self) -> u8 {
         self.repeat.map_or(self.clocks, |repeat| repeat.word)
     }
 }

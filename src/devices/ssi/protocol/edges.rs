@@ -49,11 +49,11 @@ pub enum BurstError {
 
 /// Minimum monoflop time tm in seconds. The encoder considers a burst finished once the clock has stayed at one level
 /// for this long.
-const LEAST_MONOFLOP: f64 = 15e-6;
+const MIN_MONOFLOP: f64 = 15e-6;
 /// Minimum pause between bursts in half periods, for a slow clock.
-const HALVES: f64 = 3.0;
+const MIN_PAUSE_HALF_PERIODS: f64 = 3.0;
 /// Sampling point of the last bit as a fraction of a half period. The line falls after the full half period.
-const SETTLED: f64 = 0.9;
+const SAMPLING_POINT: f64 = 0.9;
 
 /// A clock edge with its row in the recording.
 #[derive(Clone, Copy)]
@@ -68,25 +68,26 @@ struct Edge {
 ///
 /// # Errors
 /// [`BurstError`] if the recording contains no frames.
-pub fn bursts(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
-    let edges = edges(levels);
+pub fn extract_frames(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
+    let edges = find_edges(levels);
     let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();
     halves.sort_by(f64::total_cmp);
     let half = *halves.get(halves.len() / 2).ok_or(BurstError::NoClock)?;
-    let pause = LEAST_MONOFLOP.max(HALVES * half);
+    let pause = MIN_MONOFLOP.max(MIN_PAUSE_HALF_PERIODS * half);
     let rests_high = is_idle_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
     let runs: Vec<&[Edge]> = edges.chunk_by(|one, next| next.at - one.at < pause).collect();
     let falls = |edge: &Edge| edge.rises != rests_high;
     // A complete burst begins with a falling edge and ends with a rising edge.
     let whole = |run: &[Edge]| run.len().is_multiple_of(2) && run.first().is_some_and(falls);
-    let clocks = usual(runs.iter().filter(|run| whole(run)).map(|run| run.len() / 2)).ok_or(BurstError::Incomplete)?;
+    let clocks =
+        most_frequent(runs.iter().filter(|run| whole(run)).map(|run| run.len() / 2)).ok_or(BurstError::Incomplete)?;
     let bits = u8::try_from(clocks).ok().filter(|bits| *bits <= 64).ok_or(BurstError::Long { clocks })?;
     let kept = runs.iter().filter(|run| whole(run) && run.len() / 2 == clocks);
-    let frames: Vec<u64> = kept.map(|run| frame(levels, run, half)).collect();
+    let frames: Vec<u64> = kept.map(|run| frame_bits(levels, run, half)).collect();
     Ok(ExtractedFrames { clocks: bits, left_out: runs.len() - frames.len(), frames })
 }
 
-fn edges(levels: &[LineLevels]) -> Vec<Edge> {
+fn find_edges(levels: &[LineLevels]) -> Vec<Edge> {
     let pairs = levels.windows(2).zip(1..);
     let changes = pairs.filter_map(|(two, row)| {
         let (before, now) = (two.first()?, two.last()?);
@@ -111,21 +112,21 @@ fn is_idle_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<boo
 }
 
 /// Returns the most frequent number. If several are equally frequent, the greatest is returned.
-fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
+fn most_frequent(numbers: impl Iterator<Item = usize>) -> Option<usize> {
     let mut sorted: Vec<usize> = numbers.collect();
     sorted.sort_unstable();
     let runs = sorted.chunk_by(|one, other| one == other);
     runs.max_by_key(|run| run.len()).and_then(|run| run.first().copied())
 }
 
-fn frame(levels: &[LineLevels], run: &[Edge], half: f64) -> u64 {
+fn frame_bits(levels: &[LineLevels], run: &[Edge], half: f64) -> u64 {
     let sampled = run.chunks(2).skip(1).filter_map(|clock| levels.get(clock.first()?.row - 1));
     let bits = sampled.fold(0, |bits, before| bits << 1 | u64::from(before.data));
     // The last bit stays on the line for a half period of this burst.
     let high = run.windows(2).skip(1).step_by(2).filter_map(|two| Some(two.last()?.at - two.first()?.at));
     let half = high.reduce(f64::min).unwrap_or(half);
     let last = run.last().and_then(|edge| {
-        let until = edge.at + SETTLED * half;
+        let until = edge.at + SAMPLING_POINT * half;
         levels.get(edge.row..)?.iter().take_while(|row| row.at <= until).last()
     });
     bits << 1 | last.map_or(0, |row| u64::from(row.data))
@@ -172,14 +173,14 @@ mod tests {
     fn bits_are_sampled_as_the_host_does() {
         // 400 kHz, 2 MHz, and 25 kHz, where half a period is longer than tm.
         for (half, pause) in [(1.25, 30.0), (0.25, 30.0), (20.0, 200.0)] {
-            let found = bursts(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
+            let found = extract_frames(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
             assert_eq!(
                 found,
                 ExtractedFrames { clocks: 27, frames: vec![0x0D9_3EEC, 0x726_C113, 0x0D9_3EEC], left_out: 0 }
             );
         }
         // The last bit is 1 and the line falls half a period later; one clock alone.
-        assert_eq!(bursts(&recording(&["1", "0", "1"], 1.0, 30.0)).unwrap().frames, [1, 0, 1]);
+        assert_eq!(extract_frames(&recording(&["1", "0", "1"], 1.0, 30.0)).unwrap().frames, [1, 0, 1]);
     }
 
     #[test]
@@ -188,7 +189,7 @@ mod tests {
         // It begins and ends in the middle of a burst.
         levels.drain(..20);
         levels.truncate(levels.len() - 9);
-        let found = bursts(&levels).unwrap();
+        let found = extract_frames(&levels).unwrap();
         assert_eq!((found.clocks, found.frames, found.left_out), (27, vec![0x0D9_3EEC], 3));
     }
 
@@ -196,20 +197,20 @@ mod tests {
     fn an_exchanged_clock_pair_is_seen_by_its_rest() {
         let mut levels = recording(&[GRAY, INVERSE], 1.25, 60.0);
         levels.iter_mut().for_each(|own| own.clock = !own.clock);
-        assert_eq!(bursts(&levels).unwrap().frames, [0x0D9_3EEC, 0x726_C113]);
+        assert_eq!(extract_frames(&levels).unwrap().frames, [0x0D9_3EEC, 0x726_C113]);
     }
 
     #[test]
     fn what_is_no_transfer_says_why() {
         let row = |at: f64, clock| LineLevels { at: at * 1e-6, clock, data: false };
-        assert_eq!(bursts(&[]), Err(BurstError::NoClock));
-        assert_eq!(bursts(&[row(0.0, true), row(9.0, true)]), Err(BurstError::NoClock));
+        assert_eq!(extract_frames(&[]), Err(BurstError::NoClock));
+        assert_eq!(extract_frames(&[row(0.0, true), row(9.0, true)]), Err(BurstError::NoClock));
         let runs: Vec<LineLevels> = (0..200).map(|at| row(f64::from(at), at % 2 == 0)).collect();
-        assert_eq!(bursts(&runs), Err(BurstError::NoPause));
+        assert_eq!(extract_frames(&runs), Err(BurstError::NoPause));
         let late = runs.iter().map(|own| LineLevels { at: own.at + 50e-6, ..*own });
         let long: Vec<LineLevels> = std::iter::once(row(0.0, true)).chain(late).collect();
         let whole = &long[..=200];
-        assert_eq!(bursts(whole), Err(BurstError::Incomplete), "it ends low");
-        assert_eq!(bursts(&[whole, &[row(250.0, true)]].concat()), Err(BurstError::Long { clocks: 100 }));
+        assert_eq!(extract_frames(whole), Err(BurstError::Incomplete), "it ends low");
+        assert_eq!(extract_frames(&[whole, &[row(250.0, true)]].concat()), Err(BurstError::Long { clocks: 100 }));
     }
 }

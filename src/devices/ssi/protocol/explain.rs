@@ -1,6 +1,6 @@
 //! Meaning of every bit of a frame, and findings about the frame as a whole.
 
-use super::descriptor::{Meaning, Word};
+use super::descriptor::{BitMeaning, Word};
 use super::layout::{Flags, FrameReading, Layout};
 use super::range::Range;
 
@@ -43,7 +43,7 @@ pub enum FrameFinding {
         /// Name of the bit.
         name: String,
         /// Effect on the position.
-        meaning: Meaning,
+        meaning: BitMeaning,
         /// Whether the bit covers the time since the previous transfer.
         cleared_by_transfer: bool,
     },
@@ -52,7 +52,7 @@ pub enum FrameFinding {
         /// Name of the word.
         name: String,
         /// Effect on the position.
-        meaning: Meaning,
+        meaning: BitMeaning,
     },
     /// All bits are 1.
     StuckHigh {
@@ -76,12 +76,14 @@ pub enum FrameFinding {
 
 impl FrameFinding {
     /// Returns the effect of the finding on the position.
-    pub const fn meaning(&self) -> Meaning {
+    pub const fn meaning(&self) -> BitMeaning {
         match self {
             FrameFinding::Error { meaning, .. } | FrameFinding::Pattern { meaning, .. } => *meaning,
-            FrameFinding::StuckHigh { sure: true } | FrameFinding::StuckLow { sure: true } => Meaning::Invalid,
-            FrameFinding::Code | FrameFinding::Parity | FrameFinding::Repeat => Meaning::Invalid,
-            FrameFinding::StuckHigh { .. } | FrameFinding::StuckLow { .. } | FrameFinding::Padding => Meaning::Warning,
+            FrameFinding::StuckHigh { sure: true } | FrameFinding::StuckLow { sure: true } => BitMeaning::Invalid,
+            FrameFinding::Code | FrameFinding::Parity | FrameFinding::Repeat => BitMeaning::Invalid,
+            FrameFinding::StuckHigh { .. } | FrameFinding::StuckLow { .. } | FrameFinding::Padding => {
+                BitMeaning::Warning
+            }
         }
     }
 }
@@ -90,10 +92,10 @@ impl Layout {
     /// Returns the content of each clock, first to last.
     pub fn clock_roles(&self) -> Vec<Role> {
         let descriptor = self.descriptor();
-        let word = descriptor.word();
+        let word = descriptor.clocks_per_word();
         let mut roles = vec![Role::Zero; usize::from(descriptor.clocks)];
         let late = u8::from(descriptor.shift_right);
-        let bits = self.coding().bits();
+        let bits = self.position_code().bits();
         for bit in 0..bits {
             let from_top = bits - 1 - bit;
             let (role, gap) = match descriptor.range {
@@ -108,49 +110,49 @@ impl Layout {
             };
             let clock = descriptor.lead + gap + from_top + 1 + late;
             if clock <= descriptor.area {
-                put(&mut roles, clock, role);
+                set_role(&mut roles, clock, role);
             }
         }
         for (index, bit) in descriptor.errors.iter().enumerate() {
-            put(&mut roles, bit.clock, Role::Error(index));
+            set_role(&mut roles, bit.clock, Role::Error(index));
         }
         if let Some(parity) = descriptor.parity {
-            put(&mut roles, parity.clock, Role::Parity);
+            set_role(&mut roles, parity.clock, Role::Parity);
         }
         if let Some(repeat) = descriptor.repeat {
             for clock in 1..=word {
-                put(&mut roles, clock + word + repeat.gap, Role::Again(clock));
+                set_role(&mut roles, clock + word + repeat.gap, Role::Again(clock));
             }
         }
         roles
     }
 
     /// Returns every bit of a frame with its meaning.
-    pub fn cells(&self, frame: u64) -> Vec<Cell> {
-        let clocks = self.clocks();
+    pub fn to_cells(&self, frame: u64) -> Vec<Cell> {
+        let clocks = self.clock_count();
         let numbered = (1..=clocks).zip(self.clock_roles());
         numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
     }
 
     /// Returns the findings about a reading. Findings that make the position invalid come first.
-    pub fn findings(&self, reading: FrameReading) -> Vec<FrameFinding> {
+    pub fn to_findings(&self, reading: FrameReading) -> Vec<FrameFinding> {
         let descriptor = self.descriptor();
         let flags = reading.flags;
         let mut findings = Vec::new();
         for (index, pattern) in descriptor.patterns.iter().enumerate() {
-            if flags.has(Flags::pattern(index)) {
+            if flags.contains(Flags::pattern_flag(index)) {
                 findings.push(FrameFinding::Pattern { name: pattern.name.clone(), meaning: pattern.meaning });
             }
         }
         let has_ones_pattern = descriptor.patterns.iter().any(|pattern| pattern.word == Word::Ones);
-        if flags.has(Flags::ONES) && !has_ones_pattern {
+        if flags.contains(Flags::ALL_ONES) && !has_ones_pattern {
             findings.push(FrameFinding::StuckHigh { sure: self.is_position_invalid(reading) });
         }
-        if flags.has(Flags::ZEROS) {
+        if flags.contains(Flags::ALL_ZEROS) {
             findings.push(FrameFinding::StuckLow { sure: self.is_position_invalid(reading) });
         }
         for (index, bit) in descriptor.errors.iter().enumerate() {
-            if flags.has(Flags::error(index)) {
+            if flags.contains(Flags::error(index)) {
                 let (name, meaning) = (bit.name.clone(), bit.meaning);
                 findings.push(FrameFinding::Error { name, meaning, cleared_by_transfer: bit.cleared_by_transfer });
             }
@@ -161,26 +163,27 @@ impl Layout {
             (Flags::REPEAT, FrameFinding::Repeat),
             (Flags::PADDING, FrameFinding::Padding),
         ];
-        findings.extend(of_the_form.into_iter().filter(|(flag, _)| flags.has(*flag)).map(|(_, finding)| finding));
-        findings.sort_by_key(|finding| finding.meaning() == Meaning::Warning);
+        findings.extend(of_the_form.into_iter().filter(|(flag, _)| flags.contains(*flag)).map(|(_, finding)| finding));
+        findings.sort_by_key(|finding| finding.meaning() == BitMeaning::Warning);
         findings
     }
 
     /// Returns whether the position may be used.
     pub fn is_valid(&self, reading: FrameReading) -> bool {
-        let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_position_invalid(reading);
-        !reading.flags.any(self.invalid()) && !stuck
+        let stuck =
+            reading.flags.intersects(Flags::ALL_ONES.union(Flags::ALL_ZEROS)) && self.is_position_invalid(reading);
+        !reading.flags.intersects(self.invalid_flags()) && !stuck
     }
 
     /// Returns whether the reading has a flag that an encoder without faults never causes.
     fn is_position_invalid(&self, reading: FrameReading) -> bool {
-        let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
-        let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));
-        reading.flags.any(errors)
+        let form = Flags::CODE.union(Flags::PADDING).union(Flags::PARITY).union(Flags::REPEAT);
+        let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.union(Flags::error(index)));
+        reading.flags.intersects(errors)
     }
 }
 
-fn put(roles: &mut [Role], clock: u8, role: Role) {
+fn set_role(roles: &mut [Role], clock: u8, role: Role) {
     if let Some(place) = usize::from(clock).checked_sub(1).and_then(|index| roles.get_mut(index)) {
         *place = role;
     }

@@ -14,7 +14,7 @@ mod table;
 mod tests;
 mod text;
 
-pub use c::c99;
+pub use c::generate_c99;
 pub use halves::{TooWideError, scl_source, structured_text_32};
 pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
 pub use picture::{Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
@@ -22,7 +22,7 @@ pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
 pub use svg::{frame_picture, timing_picture};
 pub use table::bit_table;
-pub use text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn, english};
+pub use text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn, english_text};
 
 /// Converts a name to an identifier of letters, digits and underscores that does not start with a digit.
 fn identifier(name: &str) -> String {

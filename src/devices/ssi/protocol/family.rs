@@ -10,7 +10,7 @@ mod tests;
 mod text;
 
 pub use setting_name::SettingName;
-pub use settings::{Advice, ResolvedFrame, Settings, SettingsError};
+pub use settings::{ResolvedFrame, SettingAdvice, Settings, SettingsError};
 
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ pub struct Family {
     /// Codes named in the manual, starting with the factory setting. Another code is accepted with a remark.
     pub codes: Vec<Code>,
     /// Possible alignments. The factory setting is the first one with enough room for the position.
-    pub align: Vec<Align>,
+    pub align: Vec<Alignment>,
     /// Whether the position can be delayed by one clock.
     #[serde(default)]
     pub shift: bool,
@@ -107,7 +107,7 @@ pub struct Frame {
 /// Alignment of the position in its area. See reference section 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Align {
+pub enum Alignment {
     /// The first position bit is on clock 1.
     Left,
     /// The last position bit is on clock 24.
@@ -198,7 +198,7 @@ impl Family {
         let family: Family = ron::from_str(text).map_err(|wrong| {
             error(wrong.span.start.line, wrong.span.start.col, FamilyProblem::Parser(wrong.code.to_string()))
         })?;
-        let at = |entry| place(text, entry);
+        let at = |entry| location_of_entry(text, entry);
         let fits = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || matches!(letter, '-' | '_');
         if family.key.is_empty() || !family.key.chars().all(fits) {
             let (line, column) = at("key:");
@@ -218,7 +218,7 @@ impl Family {
     }
 
     /// Returns the German translation of the family's source or a note, or the English text if there is none.
-    pub fn german<'f>(&'f self, english: &'f str) -> &'f str {
+    pub fn german_or<'f>(&'f self, english: &'f str) -> &'f str {
         self.german.get(english).map_or(english, String::as_str)
     }
 
@@ -230,7 +230,7 @@ impl Family {
 
 /// Returns line and column of the first line that begins with `entry`. Both are counted from 1, and both are 1 if there
 /// is no such line.
-fn place(text: &str, entry: &str) -> (usize, usize) {
+fn location_of_entry(text: &str, entry: &str) -> (usize, usize) {
     let lines = text.lines().enumerate();
     let found = lines.filter(|(_, line)| line.trim_start().starts_with(entry)).map(|(at, line)| {
         let blanks = line.chars().take_while(|letter| letter.is_whitespace()).count();
@@ -288,7 +288,7 @@ impl Families {
     }
 
     /// Returns the family with this key.
-    pub fn named(&self, key: &str) -> Option<&Family> {
+    pub fn find_by_key(&self, key: &str) -> Option<&Family> {
         self.0.iter().find(|family| family.key == key)
     }
 

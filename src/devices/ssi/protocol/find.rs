@@ -24,20 +24,20 @@ use frame_set::FrameSet;
 use members::{LayoutCandidate, group_members};
 use motion::Motion;
 use probe::LayoutProbe;
-use reading::{Read, readings};
+use reading::{FrameNumbers, best_readings};
 
 use super::family::{Families, Settings};
 use super::layout::Layout;
 
 /// Maximum number of frames analysed, counted from the newest.
-const MOST_FRAMES: usize = 4_000;
+const MAX_FRAMES: usize = 4_000;
 /// Minimum number of different frames. With fewer frames, the shaft is assumed to stand still.
-const LEAST_DIFFERENT: usize = 32;
+const MIN_DIFFERENT_FRAMES: usize = 32;
 const CLASSES: usize = 6;
 /// Penalty in bits for each setting that makes a class less usual. It applies to the recording as a whole.
 const WEIGHT_BITS: f64 = 8.0;
 /// Maximum weight of a member of a class above that of the most probable member. Less probable members are left out.
-const IMPROBABLE: f64 = 8.0;
+const MAX_EXTRA_WEIGHT: f64 = 8.0;
 /// Minimum number of frames per thousand in which two readings must have the same motion to be regarded as the same.
 const SAME_PERMILLE: usize = 995;
 /// Maximum information in bits above that of the best reading, for all frames. Families are not searched for readings
@@ -84,7 +84,7 @@ pub struct Class {
     /// The evidence.
     pub evidence: ClassEvidence,
     /// Motions of the shaft that would distinguish or confirm the members.
-    pub open: Vec<Open>,
+    pub open: Vec<OpenQuestion>,
 }
 
 /// A layout that fits the recorded frames.
@@ -103,7 +103,7 @@ impl LayoutProposal {
     pub fn spec_text(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {
-            let settings = families.named(key)?.settings_for_frame(descriptor)?;
+            let settings = families.find_by_key(key)?.settings_for_frame(descriptor)?;
             Some(settings.emit(key))
         });
         named.unwrap_or_else(|| descriptor.spec_text())
@@ -131,7 +131,7 @@ pub struct ClassEvidence {
 
 /// Open question about a class, with the motion of the shaft that answers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Open {
+pub enum OpenQuestion {
     /// Boundary between turns and steps. To find it, turn exactly once, and note how much the position increases.
     TurnOnce,
     /// Meaning of clocks that never changed. To find it, turn until they change or the position wraps.
@@ -167,7 +167,7 @@ pub enum Open {
 
 /// A reading of the frames with all layouts that result in it.
 struct Group {
-    read: Read,
+    read: FrameNumbers,
     members: Vec<LayoutCandidate>,
     bits: f64,
 }
@@ -175,21 +175,21 @@ struct Group {
 /// Finds the layouts that fit frames of `clocks` bits. The frames must be right-justified, and they must have been read
 /// consecutively at equal intervals.
 pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
-    let newest = frames.get(frames.len().saturating_sub(MOST_FRAMES)..).unwrap_or_default();
+    let newest = frames.get(frames.len().saturating_sub(MAX_FRAMES)..).unwrap_or_default();
     let seen = FrameSet::new(newest, clocks);
     let different = seen.distinct_count();
     let search = |doubt, classes| Search { frames: frames.len(), different, doubt, classes };
-    if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
+    if let Some(high) = seen.stuck_level().filter(|_| !newest.is_empty()) {
         return search(Some(SearchUncertainty::Stuck { high }), Vec::new());
     }
     if different < 8 || seen.is_at_rest() {
         return search(Some(SearchUncertainty::Standing), Vec::new());
     }
-    let repeat = seen.repeat();
+    let repeat = seen.detect_repetition();
     let words = repeat.map_or_else(|| FrameSet::new(newest, clocks), |repeat| seen.first_words(repeat));
     let mut groups: Vec<Group> = Vec::new();
-    for read in readings(&words) {
-        let known = groups.iter().position(|group| same(&group.read.motion, &read.motion));
+    for read in best_readings(&words) {
+        let known = groups.iter().position(|group| is_same_motion(&group.read.motion, &read.motion));
         if known.is_none() && groups.len() >= CLASSES {
             continue;
         }
@@ -208,7 +208,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
             None => groups.push(Group { bits: read.bits, read, members }),
         }
     }
-    if different < LEAST_DIFFERENT && !groups.first().is_some_and(|group| group.read.closed) {
+    if different < MIN_DIFFERENT_FRAMES && !groups.first().is_some_and(|group| group.read.closed) {
         return search(Some(SearchUncertainty::Standing), Vec::new());
     }
     for group in &mut groups {
@@ -224,17 +224,17 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
             let family = member.family.as_ref().map(|(key, _)| key.clone());
             known.insert((family, member.layout.descriptor().spec_text()))
         });
-        let most = group.members.first().map_or(0.0, |member| member.weight) + IMPROBABLE;
+        let most = group.members.first().map_or(0.0, |member| member.weight) + MAX_EXTRA_WEIGHT;
         group.members.retain(|member| member.weight <= most);
         group.bits += WEIGHT_BITS * group.members.first().map_or(0.0, |member| member.weight);
     }
     groups.sort_by(|a, b| a.bits.total_cmp(&b.bits));
-    let doubt = verdict::doubt(&words, &groups);
+    let doubt = verdict::search_uncertainty(&words, &groups);
     search(doubt, verdict::merge_classes(&words, groups))
 }
 
 /// Returns whether two readings yield the same motion. The motion may be reversed, or have steps of half the size.
-fn same(one: &Motion, other: &Motion) -> bool {
+fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =
             || motion.steps.iter().enumerate().filter(|(at, _)| motion.is_even(*at)).filter_map(|(_, step)| *step);

@@ -2,7 +2,7 @@
 //! `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names and patterns are not included; they require a profile.
 
 use super::code::Code;
-use super::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Repeat};
+use super::descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity, Repeat};
 use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
 use crate::expected::AllowedValues;
@@ -50,7 +50,7 @@ impl FrameDescriptor {
 
     /// Returns the frame as one word. Patterns, and the names and meanings of error bits, are left out.
     pub fn spec_text(&self) -> String {
-        let own = Self::plain(0, 0);
+        let own = Self::binary(0, 0);
         let mut words = vec![format!("clocks={}", self.clocks)];
         let mut word = |name: &str, value: Option<String>| words.extend(value.map(|value| format!("{name}={value}")));
         let unless = |is: bool, value: String| (!is).then_some(value);
@@ -95,39 +95,39 @@ impl FrameDescriptor {
 
 fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<FrameDescriptor, SpecError> {
     let mut frame =
-        FrameDescriptor { code: Code::Binary, coded: GrayCoverage::Position, ..FrameDescriptor::plain(0, 0) };
+        FrameDescriptor { code: Code::Binary, coded: GrayCoverage::Position, ..FrameDescriptor::binary(0, 0) };
     let (mut bits, mut steps, mut length) = ((None, None), (None, None, None), (None, None));
     let (mut clocks, mut area) = (None, None);
-    for setting in Setting::all(words, NAMES)? {
+    for setting in Setting::parse_all(words, NAMES)? {
         let value = setting.value;
-        let wrong = |expected| setting.wrong(expected);
+        let wrong = |expected| setting.wrong_value(expected);
         match setting.name {
-            "clocks" => clocks = Some(setting.small()?),
-            "mt" => bits.0 = Some(setting.small()?),
-            "st" => bits.1 = Some(setting.small()?),
-            "steps" => steps.0 = Some(setting.number()?),
-            "turns" => steps.1 = Some(setting.number()?),
+            "clocks" => clocks = Some(setting.parse_u8()?),
+            "mt" => bits.0 = Some(setting.parse_u8()?),
+            "st" => bits.1 = Some(setting.parse_u8()?),
+            "steps" => steps.0 = Some(setting.parse_u32()?),
+            "turns" => steps.1 = Some(setting.parse_u32()?),
             "revolutions" => steps.2 = Some(value.parse::<Fraction>().map_err(wrong)?),
-            "bits" => length.0 = Some(setting.small()?),
-            "step" => length.1 = Some(setting.number()?),
+            "bits" => length.0 = Some(setting.parse_u8()?),
+            "step" => length.1 = Some(setting.parse_u32()?),
             "code" => frame.code = value.parse().map_err(wrong)?,
             "over" => frame.coded = value.parse().map_err(wrong)?,
-            "area" => area = Some(setting.small()?),
-            "lead" => frame.lead = setting.small()?,
-            "between" => frame.between = setting.small()?,
-            "shift" => frame.shift_right = setting.switch()?,
-            "inverted" => frame.inverted = setting.switch()?,
+            "area" => area = Some(setting.parse_u8()?),
+            "lead" => frame.lead = setting.parse_u8()?,
+            "between" => frame.between = setting.parse_u8()?,
+            "shift" => frame.shift_right = setting.parse_switch()?,
+            "inverted" => frame.inverted = setting.parse_switch()?,
             "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong(AllowedValues::ParityBit))?),
-            "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong(AllowedValues::Repetition))?),
+            "repeat" => frame.repeat = Some(parse_repetition(value).ok_or_else(|| wrong(AllowedValues::Repetition))?),
             _ => {
                 let (_, called, active_low) =
-                    LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown())?;
+                    LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown_name())?;
                 for clock in value.split('+') {
                     let clock = clock.parse().map_err(|_| wrong(AllowedValues::Clocks))?;
                     frame.errors.push(ErrorBit {
                         name: format!("{called}{clock}"),
                         clock,
-                        meaning: Meaning::Warning,
+                        meaning: BitMeaning::Warning,
                         active_low: *active_low,
                         cleared_by_transfer: false,
                     });
@@ -158,7 +158,7 @@ fn parity(value: &str) -> Option<Parity> {
     Some(Parity { even, clock: clock.parse().ok()? })
 }
 
-fn repeat(value: &str) -> Option<Repeat> {
+fn parse_repetition(value: &str) -> Option<Repeat> {
     let (word, gap) = value.split_once('+')?;
     Some(Repeat { word: word.parse().ok()?, gap: gap.parse().ok()? })
 }

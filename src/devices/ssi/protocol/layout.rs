@@ -19,7 +19,7 @@ pub struct Layout {
     pub(super) descriptor: FrameDescriptor,
     pub(super) coding: PositionCode,
     /// Upper and lower part of the code word.
-    pub(super) parts: [Part; 2],
+    pub(super) parts: [BitPart; 2],
     /// Whether the shift drops the lowest bit of the code word.
     pub(super) lost: bool,
     /// Number of bits in a word after the area of the position.
@@ -40,7 +40,7 @@ pub struct Layout {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Part {
+pub(super) struct BitPart {
     /// Number of bits in the word after the part.
     pub(super) in_word: u8,
     /// Number of bits in the code word after the part.
@@ -73,9 +73,9 @@ impl Flags {
     /// The repetition differs from the first transmission.
     pub const REPEAT: Flags = Flags(1 << 19);
     /// Every bit is 1.
-    pub const ONES: Flags = Flags(1 << 20);
+    pub const ALL_ONES: Flags = Flags(1 << 20);
     /// Every bit is 0.
-    pub const ZEROS: Flags = Flags(1 << 21);
+    pub const ALL_ZEROS: Flags = Flags(1 << 21);
 
     /// Returns the flag of error bit `index` of the descriptor.
     pub const fn error(index: usize) -> Flags {
@@ -83,28 +83,28 @@ impl Flags {
     }
 
     /// Returns the flag of pattern `index` of the descriptor.
-    pub const fn pattern(index: usize) -> Flags {
+    pub const fn pattern_flag(index: usize) -> Flags {
         if index < 4 { Flags(1 << (8 + index)) } else { Flags::NONE }
     }
 
     /// Returns whether all flags of `other` are set.
-    pub const fn has(self, other: Flags) -> bool {
+    pub const fn contains(self, other: Flags) -> bool {
         other.0 != 0 && self.0 & other.0 == other.0
     }
 
     /// Returns whether any flag of `other` is set.
-    pub const fn any(self, other: Flags) -> bool {
+    pub const fn intersects(self, other: Flags) -> bool {
         self.0 & other.0 != 0
     }
 
     /// Returns the union of both sets of flags.
     #[must_use]
-    pub const fn with(self, other: Flags) -> Flags {
+    pub const fn union(self, other: Flags) -> Flags {
         Flags(self.0 | other.0)
     }
 
     #[must_use]
-    const fn when(self, condition: bool) -> Flags {
+    const fn only_if(self, condition: bool) -> Flags {
         if condition { self } else { Flags::NONE }
     }
 }
@@ -112,9 +112,9 @@ impl Flags {
 impl Default for Layout {
     fn default() -> Self {
         Layout {
-            descriptor: FrameDescriptor::plain(0, 1),
+            descriptor: FrameDescriptor::binary(0, 1),
             coding: PositionCode::BIT,
-            parts: [Part::default(), Part { in_word: 0, in_code: 0, mask: 1 }],
+            parts: [BitPart::default(), BitPart { in_word: 0, in_code: 0, mask: 1 }],
             lost: false,
             behind_area: 0,
             gray: (0, 1),
@@ -123,7 +123,7 @@ impl Default for Layout {
             low: 0,
             parity: (0, 0),
             patterns: Vec::new(),
-            invalid: Flags::CODE.with(Flags::PARITY).with(Flags::REPEAT),
+            invalid: Flags::CODE.union(Flags::PARITY).union(Flags::REPEAT),
         }
     }
 }
@@ -143,12 +143,12 @@ impl Layout {
     }
 
     /// Returns the code of the positions. It is binary if a Gray code covers more than the position.
-    pub const fn coding(&self) -> &PositionCode {
+    pub const fn position_code(&self) -> &PositionCode {
         &self.coding
     }
 
     /// Returns the number of bits in a burst, 1…64.
-    pub const fn clocks(&self) -> u8 {
+    pub const fn clock_count(&self) -> u8 {
         self.descriptor.clocks
     }
 
@@ -158,7 +158,7 @@ impl Layout {
     }
 
     /// Returns the flags that make a position invalid.
-    pub const fn invalid(&self) -> Flags {
+    pub const fn invalid_flags(&self) -> Flags {
         self.invalid
     }
 
@@ -171,66 +171,69 @@ impl Layout {
         let mut word =
             self.parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word);
         if self.descriptor.coded == GrayCoverage::Area {
-            word = self.over(word, to_gray);
+            word = self.apply_to_gray_bits(word, to_gray);
         }
         if self.descriptor.shift_right {
             word = word >> self.behind_area >> 1 << self.behind_area;
         }
         for (index, bit) in self.errors.iter().enumerate() {
-            word |= if flags.has(Flags::error(index)) { *bit } else { 0 };
+            word |= if flags.contains(Flags::error(index)) { *bit } else { 0 };
         }
         word ^= self.low;
         if self.descriptor.coded == GrayCoverage::AreaAndErrors {
-            word = self.over(word, to_gray);
+            word = self.apply_to_gray_bits(word, to_gray);
         }
         let (bit, before) = self.parity;
         let even = (word & before).count_ones().is_multiple_of(2);
-        word |= if even == self.even() { 0 } else { bit };
-        let frame = self.repeated(word);
-        Some(if self.descriptor.inverted { !frame & low_bits_mask(self.clocks()) } else { frame })
+        word |= if even == self.has_even_parity() { 0 } else { bit };
+        let frame = self.is_repeated(word);
+        Some(if self.descriptor.inverted { !frame & low_bits_mask(self.clock_count()) } else { frame })
     }
 
     /// Decodes a frame. Bits above the number of clocks are ignored.
     #[inline]
     pub fn decode(&self, frame: u64) -> FrameReading {
-        let all = low_bits_mask(self.clocks());
+        let all = low_bits_mask(self.clock_count());
         let frame = frame & all;
-        let mut flags = Flags::ONES.when(frame == all).with(Flags::ZEROS.when(frame == 0));
+        let mut flags = Flags::ALL_ONES.only_if(frame == all).union(Flags::ALL_ZEROS.only_if(frame == 0));
         for (index, pattern) in self.patterns.iter().enumerate() {
-            flags = flags.with(Flags::pattern(index).when(*pattern == frame));
+            flags = flags.union(Flags::pattern_flag(index).only_if(*pattern == frame));
         }
         let frame = if self.descriptor.inverted { !frame & all } else { frame };
-        let sent = frame >> (self.clocks() - self.descriptor.word());
+        let sent = frame >> (self.clock_count() - self.descriptor.clocks_per_word());
         if self.descriptor.repeat.is_some() {
-            flags = flags.with(self.repetition_flags(frame, sent));
+            flags = flags.union(self.repetition_flags(frame, sent));
         }
         let (bit, before) = self.parity;
         let ones_in_all = (sent & (bit | before)).count_ones();
-        flags = flags.with(Flags::PARITY.when(bit != 0 && ones_in_all.is_multiple_of(2) != self.even()));
+        flags = flags.union(Flags::PARITY.only_if(bit != 0 && ones_in_all.is_multiple_of(2) != self.has_even_parity()));
 
-        let mut word =
-            if self.descriptor.coded == GrayCoverage::AreaAndErrors { self.over(sent, gray_to_binary) } else { sent };
+        let mut word = if self.descriptor.coded == GrayCoverage::AreaAndErrors {
+            self.apply_to_gray_bits(sent, gray_to_binary)
+        } else {
+            sent
+        };
         for (index, bit) in self.errors.iter().enumerate() {
-            flags = flags.with(Flags::error(index).when((word ^ self.low) & bit != 0));
+            flags = flags.union(Flags::error(index).only_if((word ^ self.low) & bit != 0));
         }
         if self.descriptor.shift_right {
             let area = word >> self.behind_area;
-            flags = flags.with(Flags::PADDING.when(area >> (self.descriptor.area - 1) != 0));
+            flags = flags.union(Flags::PADDING.only_if(area >> (self.descriptor.area - 1) != 0));
             let back = area << 1 & low_bits_mask(self.descriptor.area);
             word = word & low_bits_mask(self.behind_area) | back << self.behind_area;
         }
         if self.descriptor.coded == GrayCoverage::Area {
-            word = self.over(word, gray_to_binary);
+            word = self.apply_to_gray_bits(word, gray_to_binary);
             if self.descriptor.shift_right {
                 word &= !(1 << self.behind_area);
             }
         }
-        flags = flags.with(Flags::PADDING.when(word & self.zeros != 0));
+        flags = flags.union(Flags::PADDING.only_if(word & self.zeros != 0));
         let code = self.parts.iter().fold(0, |code, part| code | (word >> part.in_word & part.mask) << part.in_code);
         match self.coding.decode(code) {
             Some(position) if self.lost => FrameReading { position: position & !1, flags },
             Some(position) => FrameReading { position, flags },
-            None => FrameReading { position: 0, flags: flags.with(Flags::CODE) },
+            None => FrameReading { position: 0, flags: flags.union(Flags::CODE) },
         }
     }
 
@@ -242,24 +245,24 @@ impl Layout {
     }
 
     /// Applies `what` to the bits of a word that are Gray coded as a whole.
-    fn over(&self, word: u64, what: impl Fn(u64) -> u64) -> u64 {
+    fn apply_to_gray_bits(&self, word: u64, what: impl Fn(u64) -> u64) -> u64 {
         let (bits, behind) = self.gray;
         what(word >> behind & low_bits_mask(bits)) << behind | word & !(low_bits_mask(bits) << behind)
     }
 
-    fn even(&self) -> bool {
+    fn has_even_parity(&self) -> bool {
         self.descriptor.parity.is_none_or(|parity| parity.even)
     }
 
-    fn repeated(&self, word: u64) -> u64 {
-        let first = word << (self.clocks() - self.descriptor.word());
+    fn is_repeated(&self, word: u64) -> u64 {
+        let first = word << (self.clock_count() - self.descriptor.clocks_per_word());
         first | self.descriptor.repeat.map_or(0, |repeat| first >> (repeat.word + repeat.gap))
     }
 
     /// Compares a word with its repetition, and returns the flags for the differences.
     fn repetition_flags(&self, frame: u64, word: u64) -> Flags {
-        let differs = frame ^ self.repeated(word);
-        let again = self.repeated(low_bits_mask(self.descriptor.word()));
-        Flags::REPEAT.when(differs & again != 0).with(Flags::PADDING.when(differs & !again != 0))
+        let differs = frame ^ self.is_repeated(word);
+        let again = self.is_repeated(low_bits_mask(self.descriptor.clocks_per_word()));
+        Flags::REPEAT.only_if(differs & again != 0).union(Flags::PADDING.only_if(differs & !again != 0))
     }
 }

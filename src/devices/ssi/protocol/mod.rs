@@ -24,19 +24,20 @@ mod timing;
 pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, PositionCode, gray_to_binary, to_gray};
-pub use descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Pattern, Repeat, Word};
-pub use edges::{BurstError, ExtractedFrames, LineLevels, bursts};
+pub use descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity, Pattern, Repeat, Word};
+pub use edges::{BurstError, ExtractedFrames, LineLevels, extract_frames};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
     ExportText, FormatError, ModuleObstacle, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment,
-    SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table, c99, english, frame_picture,
-    from_linuxcnc, scl_source, settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
+    SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table, english_text, frame_picture,
+    from_linuxcnc, generate_c99, scl_source, settings_sheet, structured_text, structured_text_32, timing_picture,
+    to_linuxcnc,
 };
 pub use family::{
-    Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingName,
-    Settings, SettingsError, Signal, StepLimits,
+    Alignment, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingAdvice,
+    SettingName, Settings, SettingsError, Signal, StepLimits,
 };
-pub use find::{Class, ClassEvidence, LayoutProposal, Open, Search, SearchUncertainty, find};
+pub use find::{Class, ClassEvidence, LayoutProposal, OpenQuestion, Search, SearchUncertainty, find};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
@@ -44,4 +45,6 @@ pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPar
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
 pub use tally::{CountedFinding, FindingCounts};
-pub use timing::{AnySteps, Asynchronous, ReadConditions, Synchronous, Taken, Times, Timing, Warning};
+pub use timing::{
+    AnySteps, AsynchronousTimes, ReadConditions, SamplingMoment, SynchronousTimes, Times, Timing, Warning,
+};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::code::{bits_of, low_bits_mask};
+use super::code::{bit_width, low_bits_mask};
 use crate::expected::AllowedValues;
 
 /// Range of positions from 0 up to a maximum.
@@ -135,17 +135,17 @@ impl Range {
     }
 
     /// Returns the location of a position. A position after the last one is not wrapped.
-    pub fn place(&self, position: u64) -> Location {
+    pub fn locate(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
                 let steps = position & low_bits_mask(singleturn);
                 let turns = position.checked_shr(u32::from(singleturn)).unwrap_or(0);
-                Location::Shaft { turns, steps, degrees: angle(steps, power_of_two(singleturn)) }
+                Location::Shaft { turns, steps, degrees: angle_degrees(steps, power_of_two(singleturn)) }
             }
             Range::Steps { per_turn, .. } => {
                 let per_turn = u64::from(per_turn.max(1));
                 let steps = position % per_turn;
-                Location::Shaft { turns: position / per_turn, steps, degrees: angle(steps, per_turn as f64) }
+                Location::Shaft { turns: position / per_turn, steps, degrees: angle_degrees(steps, per_turn as f64) }
             }
             Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
                 let around = u128::from(position) * u128::from(numerator);
@@ -192,20 +192,20 @@ impl Range {
     /// The shaft has `per_turn` steps per turn, at least 1. Positions wrap after the last one. For a length, `raw` is
     /// the number of its steps. See reference section 5, "position = floor(…)".
     pub fn position_from_shaft(&self, raw: u64, per_turn: u64) -> u64 {
-        self.counted(raw, per_turn, Direction::Clockwise)
+        self.count_from_zero(raw, per_turn, Direction::Clockwise)
     }
 
     /// Returns the position for a counting direction and a preset, which is the position at the zero point of the
     /// shaft. A preset after the last position wraps. See reference section 5, "Direction" and "preset".
     pub fn position_with_preset(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
         let last = self.last().unwrap_or(0);
-        let position = u128::from(self.counted(raw, per_turn, direction)) + u128::from(preset);
+        let position = u128::from(self.count_from_zero(raw, per_turn, direction)) + u128::from(preset);
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
     /// Returns the position counted from the zero point of the shaft. All positions have the same width in both
     /// directions.
-    fn counted(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
+    fn count_from_zero(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last().unwrap_or(0);
         let (steps, numerator, denominator) = match *self {
@@ -239,7 +239,7 @@ impl Range {
     /// # Errors
     /// [`RangeError`] if the range is impossible.
     pub fn bits(&self) -> Result<u8, RangeError> {
-        self.last().map(bits_of)
+        self.last().map(bit_width)
     }
 }
 
@@ -268,7 +268,7 @@ fn power_of_two(bits: u8) -> f64 {
     f64::from(bits).exp2()
 }
 
-fn angle(steps: u64, per_turn: f64) -> f64 {
+fn angle_degrees(steps: u64, per_turn: f64) -> f64 {
     steps as f64 * 360.0 / per_turn
 }
 

@@ -49,7 +49,7 @@ impl<'t> Setting<'t> {
     ///
     /// # Errors
     /// [`SpecError::Form`], [`SpecError::Twice`].
-    pub(super) fn all(
+    pub(super) fn parse_all(
         words: impl Iterator<Item = &'t str>,
         names: &'static [&'static str],
     ) -> Result<Vec<Self>, SpecError> {
@@ -65,27 +65,27 @@ impl<'t> Setting<'t> {
         Ok(settings)
     }
 
-    pub(super) fn small(self) -> Result<u8, SpecError> {
-        self.value.parse().map_err(|_| self.wrong(AllowedValues::whole_range(0, 255)))
+    pub(super) fn parse_u8(self) -> Result<u8, SpecError> {
+        self.value.parse().map_err(|_| self.wrong_value(AllowedValues::whole_range(0, 255)))
     }
 
-    pub(super) fn number(self) -> Result<u32, SpecError> {
-        self.value.parse().map_err(|_| self.wrong(AllowedValues::Whole))
+    pub(super) fn parse_u32(self) -> Result<u32, SpecError> {
+        self.value.parse().map_err(|_| self.wrong_value(AllowedValues::Whole))
     }
 
-    pub(super) fn switch(self) -> Result<bool, SpecError> {
+    pub(super) fn parse_switch(self) -> Result<bool, SpecError> {
         match self.value {
             "0" => Ok(false),
             "1" => Ok(true),
-            _ => Err(self.wrong(AllowedValues::words(&["0", "1"]))),
+            _ => Err(self.wrong_value(AllowedValues::words(&["0", "1"]))),
         }
     }
 
-    pub(super) fn wrong(self, expected: AllowedValues) -> SpecError {
+    pub(super) fn wrong_value(self, expected: AllowedValues) -> SpecError {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }
 
-    pub(super) fn unknown(self) -> SpecError {
+    pub(super) fn unknown_name(self) -> SpecError {
         SpecError::Name { name: self.name.to_owned(), names: self.names }
     }
 }

@@ -32,7 +32,7 @@ impl FindingCounts {
     /// Counts the findings of a frame, and returns those that the previous frame did not have.
     ///
     /// `layout` must be the layout of all frames since the last [`reset`](Self::reset).
-    pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: SampleTime) -> Vec<FrameFinding> {
+    pub fn count_findings(&mut self, layout: &Layout, reading: FrameReading, at: SampleTime) -> Vec<FrameFinding> {
         let (flags, same) = &self.before;
         if *flags == reading.flags {
             for index in same {
@@ -45,7 +45,7 @@ impl FindingCounts {
         }
         let mut begun = Vec::new();
         let mut now = Vec::new();
-        for finding in layout.findings(reading) {
+        for finding in layout.to_findings(reading) {
             let known = self.noted.iter().position(|noted| noted.finding == finding);
             let index = known.unwrap_or_else(|| {
                 self.noted.push(CountedFinding {
@@ -105,7 +105,7 @@ mod tests {
 
     fn layout(text: &str) -> Layout {
         let (key, settings) = Settings::parse(text).unwrap();
-        settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+        settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
     }
 
     fn at(milliseconds: i64) -> SampleTime {
@@ -135,14 +135,14 @@ mod tests {
         let frames = [good, good | 1, good | 1, good | 3, good | 2, good, good | 2];
         let begun: Vec<usize> = (0..)
             .zip(frames)
-            .map(|(number, frame)| tally.note(&layout, layout.decode(frame), at(10 * number)).len())
+            .map(|(number, frame)| tally.count_findings(&layout, layout.decode(frame), at(10 * number)).len())
             .collect();
         assert_eq!(begun, [0, 1, 0, 1, 0, 0, 1]);
         let [sync, light] = ["ERRSYNC", "ERRSI"].map(str::to_owned);
         assert_eq!(rows(&tally), [(sync, 3, 10, 30, false), (light.clone(), 2, 30, 60, true)]);
         tally.reset();
         assert_eq!(tally.finding_counts(), []);
-        assert_eq!(tally.note(&layout, layout.decode(good | 2), at(70)).len(), 1, "it stands still");
+        assert_eq!(tally.count_findings(&layout, layout.decode(good | 2), at(70)).len(), 1, "it stands still");
         assert_eq!(rows(&tally), [(light, 1, 70, 70, true)]);
     }
 
@@ -151,13 +151,13 @@ mod tests {
         let kh53 = layout("kh53");
         let mut tally = FindingCounts::default();
         for (number, frame) in (0..).zip([5, 0xFF_FFFE, 0xFF_FFFE, 5, 0xFF_FFFE]) {
-            tally.note(&kh53, kh53.decode(frame), at(number));
+            tally.count_findings(&kh53, kh53.decode(frame), at(number));
         }
         assert_eq!(rows(&tally), [("overspeed or gap".to_owned(), 2, 1, 4, true)]);
         // ATM60 with 8 of 12 bits of turns in tree format: the zeros before them are ones.
         let tree = layout("atm60,mt=8,st=8");
         let mut tally = FindingCounts::default();
-        tally.note(&tree, tree.decode(0x14A_780 | 1 << 24), at(0));
+        tally.count_findings(&tree, tree.decode(0x14A_780 | 1 << 24), at(0));
         assert_eq!(rows(&tally), [("Padding".to_owned(), 1, 0, 0, true)]);
     }
 }

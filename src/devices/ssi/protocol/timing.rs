@@ -19,10 +19,10 @@ pub struct Times {
     pub most_hz: u32,
     /// Times of asynchronous operation, or `None` if they are unknown.
     #[serde(default)]
-    pub asynchronous: Option<Asynchronous>,
+    pub asynchronous: Option<AsynchronousTimes>,
     /// Times of synchronous operation, or `None` if the family does not support it.
     #[serde(default)]
-    pub synchronous: Option<Synchronous>,
+    pub synchronous: Option<SynchronousTimes>,
     /// Times for a number of steps that is not a power of two, if they differ.
     #[serde(default)]
     pub any_steps: Option<AnySteps>,
@@ -31,7 +31,7 @@ pub struct Times {
 /// Times of asynchronous operation, in which the encoder takes positions independently of the transfers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Asynchronous {
+pub struct AsynchronousTimes {
     /// Time from one position to the next, in microseconds.
     pub update: f64,
     /// Minimum age of a position when it is read, in microseconds.
@@ -48,9 +48,9 @@ pub struct Asynchronous {
 /// Times of synchronous operation, in which the clock of the host makes the encoder take a position.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Synchronous {
+pub struct SynchronousTimes {
     /// Moment at which a position is taken.
-    pub taken: Taken,
+    pub taken: SamplingMoment,
     /// Monoflop time tm in this mode in microseconds, if it differs.
     #[serde(default)]
     pub monoflop: Option<f64>,
@@ -64,7 +64,7 @@ pub struct Synchronous {
 /// The moment at which a position is taken in synchronous mode.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Taken {
+pub enum SamplingMoment {
     /// The position is taken a certain time after the last clock.
     Behind {
         /// Time from the last clock until the position is taken, in microseconds.
@@ -202,7 +202,7 @@ impl Times {
             (None, _) => self.monoflop.1,
         };
         let least = synchronous.map_or(monoflop, |mode| mode.least_pause.max(monoflop));
-        let least_pause = micros(least);
+        let least_pause = from_micros(least);
         let cycle = burst + reads.pause;
 
         let most_hz = synchronous.and_then(|mode| mode.most_hz).unwrap_or(self.most_hz);
@@ -229,16 +229,16 @@ impl Times {
             warnings.push(Warning::PauseShort { least: least_pause });
         }
         let age = match (synchronous, self.asynchronous) {
-            (Some(mode), _) => Some(mode.age(burst, reads.pause)),
+            (Some(mode), _) => Some(mode.position_age(burst, reads.pause)),
             (None, Some(mode)) => {
-                let update = micros(slower.map_or(mode.update, |slower| slower.update));
-                if let Some(most) = mode.most_pause.map(micros).filter(|most| reads.pause > *most) {
+                let update = from_micros(slower.map_or(mode.update, |slower| slower.update));
+                if let Some(most) = mode.most_pause.map(from_micros).filter(|most| reads.pause > *most) {
                     warnings.push(Warning::PauseLong { most });
                 }
                 if cycle < update {
                     warnings.push(Warning::Repeats { update });
                 }
-                Some((micros(mode.least_age) + burst, update + burst))
+                Some((from_micros(mode.least_age) + burst, update + burst))
             }
             (None, None) => None,
         };
@@ -246,7 +246,7 @@ impl Times {
             period,
             burst,
             cycle,
-            monoflop: (micros(shortest_monoflop), micros(monoflop)),
+            monoflop: (from_micros(shortest_monoflop), from_micros(monoflop)),
             least_pause,
             most_reads_hz: 1.0 / (burst + least_pause).as_secs_f64(),
             age,
@@ -256,17 +256,17 @@ impl Times {
     }
 }
 
-impl Synchronous {
+impl SynchronousTimes {
     /// Returns the minimum and maximum age of a position. They are equal, because the pause is assumed to be constant.
-    fn age(&self, burst: Duration, pause: Duration) -> (Duration, Duration) {
+    fn position_age(&self, burst: Duration, pause: Duration) -> (Duration, Duration) {
         let age = match self.taken {
-            Taken::Behind { starts, .. } => pause.saturating_sub(micros(starts)) + burst,
-            Taken::FirstEdge => burst + pause + burst,
+            SamplingMoment::Behind { starts, .. } => pause.saturating_sub(from_micros(starts)) + burst,
+            SamplingMoment::FirstEdge => burst + pause + burst,
         };
         (age, age)
     }
 }
 
-fn micros(micros: f64) -> Duration {
+fn from_micros(micros: f64) -> Duration {
     Duration::from_secs_f64((micros * 1e-6).clamp(0.0, 3600.0))
 }

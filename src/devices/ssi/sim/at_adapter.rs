@@ -8,14 +8,14 @@ use crate::parameter::{ANY, CustomNotation, OptionalValue, ParameterGroup, Rejec
 use crate::parameters;
 use crate::sim::ConfigError;
 
-pub const DELIVERED: &str = "atm60,code=gray";
+pub const DEFAULT_ENCODER: &str = "atm60,code=gray";
 
 parameters! {
     pub struct Settings: ConfigError {
         /// Family and settings of the encoder. If the host clocks fewer bits, it receives a part of the frame; if it
         /// clocks more bits, zeros follow the frame.
         encoder: Option<Encoder> = None,
-            "ssi" => OptionalValue(CustomNotation(AllowedValues::Family, Encoder::named)),
+            "ssi" => OptionalValue(CustomNotation(AllowedValues::Family, Encoder::parse)),
             "connect.ssi_layout" like "atm60,code=gray";
         /// Active error bits, and words sent instead of the frame, such as `ERRSYNC:0.5,ERRSI:4` or `safety-fault`. The
         /// number is the interval in seconds.
@@ -31,7 +31,7 @@ pub struct AttachableEncoder {
 
 impl AttachableEncoder {
     /// Adapter with an encoder in factory settings, unless the link names another one.
-    pub const DELIVERED: AttachableEncoder = AttachableEncoder { encoder: None };
+    pub const DEFAULT_ADAPTER: AttachableEncoder = AttachableEncoder { encoder: None };
 
     /// Creates an adapter with the given encoder, unless the link names another one.
     pub const fn with_default_encoder(encoder: Encoder) -> Self {
@@ -46,7 +46,7 @@ impl AttachableKind for AttachableEncoder {
 
     fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let Settings { encoder, troubles } = Settings::read(pairs)?;
-        let own = encoder.or_else(|| self.encoder.clone()).or_else(|| Encoder::named(DELIVERED));
+        let own = encoder.or_else(|| self.encoder.clone()).or_else(|| Encoder::parse(DEFAULT_ENCODER));
         let Some(encoder) = own else { return Ok(None) };
         let troubles = parse_faults(&troubles, &encoder)?;
         Ok(Some(AttachedDevice::Ssi(Box::new(FrameSender { encoder, troubles, transferred: None }))))
@@ -54,7 +54,7 @@ impl AttachableKind for AttachableEncoder {
 }
 
 fn parse_faults(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, RejectedParameter> {
-    let allowed = || match InjectedFault::names(&encoder.layout) {
+    let allowed = || match InjectedFault::setting_names(&encoder.layout) {
         own if own.is_empty() => AllowedValues::NoErrorBits,
         own => AllowedValues::ErrorBits(own),
     };

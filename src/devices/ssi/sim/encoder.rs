@@ -16,10 +16,10 @@ pub struct Encoder {
 impl Encoder {
     /// Parses an encoder from a family with settings, such as `atm60,code=gray`. Returns `None` if the family is
     /// unknown.
-    pub(super) fn named(text: &str) -> Option<Self> {
+    pub(super) fn parse(text: &str) -> Option<Self> {
         let (key, settings) = Settings::parse(text).ok()?;
         let families = Families::built_in();
-        let resolved = settings.resolve(families.named(&key)?).ok()?;
+        let resolved = settings.resolve(families.find_by_key(&key)?).ok()?;
         Some(Encoder { layout: resolved.layout, direction: resolved.direction, preset: resolved.preset })
     }
 }
@@ -32,13 +32,13 @@ pub(super) struct FrameSender {
 }
 
 impl FrameSender {
-    fn frame(&self, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
+    fn frame_at(&self, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
         let Encoder { layout, direction, preset } = &self.encoder;
-        let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
-        if let Some(word) = happening().find_map(InjectedFault::word) {
+        let happening = || self.troubles.iter().filter(|trouble| trouble.occurs(at, self.transferred));
+        if let Some(word) = happening().find_map(InjectedFault::sent_word) {
             return word;
         }
-        let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));
+        let flags = happening().fold(Flags::NONE, |flags, trouble| flags.union(trouble.set_flag()));
         let position = layout.descriptor().range.position_with_preset(raw, per_turn, *direction, *preset);
         layout.encode(position, flags).unwrap_or(0)
     }
@@ -50,8 +50,8 @@ impl SsiDevice for FrameSender {
     }
 
     fn word_at(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8) {
-        let frame = self.frame(place, at);
+        let frame = self.frame_at(place, at);
         self.transferred = Some(at);
-        (frame, self.encoder.layout.clocks())
+        (frame, self.encoder.layout.clock_count())
     }
 }

@@ -26,8 +26,8 @@ enum FaultIndication {
 }
 
 impl InjectedFault {
-    const LEAST_PERIOD: f64 = 1e-6;
-    const MOST_PERIOD: f64 = 86_400.0;
+    const MIN_PERIOD: f64 = 1e-6;
+    const MAX_PERIOD: f64 = 86_400.0;
 
     /// Parses a list of faults such as `ERRSYNC:0.5,ERRSI`, or returns `None` if it is invalid.
     ///
@@ -41,12 +41,12 @@ impl InjectedFault {
                     Some((name, seconds)) => (name, Some(period(seconds)?)),
                     None => (item, None),
                 };
-                Some(InjectedFault { shows: shows(name, layout)?, period })
+                Some(InjectedFault { shows: indication_of(name, layout)?, period })
             })
             .collect()
     }
 
-    pub(super) fn names(layout: &Layout) -> Vec<String> {
+    pub(super) fn setting_names(layout: &Layout) -> Vec<String> {
         let descriptor = layout.descriptor();
         let bits = descriptor.errors.iter().map(|bit| &bit.name);
         bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
@@ -56,7 +56,7 @@ impl InjectedFault {
     ///
     /// An intermittent fault is present in the second half of its period. If transfers clear the fault, it is shown if
     /// it was present since the previous transfer.
-    pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
+    pub(super) fn occurs(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, FaultIndication::Bit { cleared: true, .. });
         };
@@ -68,14 +68,14 @@ impl InjectedFault {
         }
     }
 
-    pub(super) const fn word(&self) -> Option<u64> {
+    pub(super) const fn sent_word(&self) -> Option<u64> {
         match self.shows {
             FaultIndication::Word(word) => Some(word),
             FaultIndication::Bit { .. } => None,
         }
     }
 
-    pub(super) const fn flag(&self) -> Flags {
+    pub(super) const fn set_flag(&self) -> Flags {
         match self.shows {
             FaultIndication::Bit { index, .. } => Flags::error(index),
             FaultIndication::Word(_) => Flags::NONE,
@@ -83,7 +83,7 @@ impl InjectedFault {
     }
 }
 
-fn shows(name: &str, layout: &Layout) -> Option<FaultIndication> {
+fn indication_of(name: &str, layout: &Layout) -> Option<FaultIndication> {
     let descriptor = layout.descriptor();
     let is_own = |own: &str| own.replace(' ', "-").eq_ignore_ascii_case(name.trim());
     let bits = descriptor.errors.iter().enumerate();
@@ -93,16 +93,14 @@ fn shows(name: &str, layout: &Layout) -> Option<FaultIndication> {
     }
     let pattern = descriptor.patterns.iter().find(|pattern| is_own(&pattern.name))?;
     Some(FaultIndication::Word(match pattern.word {
-        Word::Ones => u64::MAX >> (64 - layout.clocks().clamp(1, 64)),
+        Word::Ones => u64::MAX >> (64 - layout.clock_count().clamp(1, 64)),
         Word::Bits(word) => word,
     }))
 }
 
 fn period(seconds: &str) -> Option<Duration> {
     let seconds = seconds.trim().parse().ok();
-    seconds
-        .filter(|s| (InjectedFault::LEAST_PERIOD..=InjectedFault::MOST_PERIOD).contains(s))
-        .map(Duration::from_secs_f64)
+    seconds.filter(|s| (InjectedFault::MIN_PERIOD..=InjectedFault::MAX_PERIOD).contains(s)).map(Duration::from_secs_f64)
 }
 
 #[cfg(test)]
@@ -112,7 +110,7 @@ mod tests {
 
     fn layout(text: &str) -> Layout {
         let (key, settings) = Settings::parse(text).unwrap();
-        settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+        settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
     }
 
     fn at(milliseconds: u64) -> Moment {
@@ -122,13 +120,13 @@ mod tests {
     #[test]
     fn fault_names_are_those_of_the_layout() {
         let safe = layout("afs60s");
-        assert_eq!(InjectedFault::names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
+        assert_eq!(InjectedFault::setting_names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
         let read = InjectedFault::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
-        let flags: Vec<Flags> = read.iter().map(InjectedFault::flag).collect();
+        let flags: Vec<Flags> = read.iter().map(InjectedFault::set_flag).collect();
         assert_eq!(flags, [Flags::error(1), Flags::error(2), Flags::NONE]);
         // 21 clocks.
-        assert_eq!(read[2].word(), Some(0x1F_FFFF));
-        assert_eq!(InjectedFault::read("overspeed-or-gap", &layout("kh53")).unwrap()[0].word(), Some(0xFF_FFFE));
+        assert_eq!(read[2].sent_word(), Some(0x1F_FFFF));
+        assert_eq!(InjectedFault::read("overspeed-or-gap", &layout("kh53")).unwrap()[0].sent_word(), Some(0xFF_FFFE));
         assert_eq!(InjectedFault::read("", &safe), Some(Vec::new()));
         for text in ["ERRX", "ERRSI:", "ERRSI:0", "ERRSI:-1", "ERRSI:NaN", "ERRSI:1e9"] {
             assert_eq!(InjectedFault::read(text, &safe), None, "{text}");
@@ -140,12 +138,12 @@ mod tests {
         let safe = layout("afs60s");
         let one = |text| InjectedFault::read(text, &safe).unwrap()[0];
         let (once, often) = (one("ERRSYNC"), one("ERRSYNC:0.5"));
-        assert!(once.happens(at(0), None) && !once.happens(at(1), Some(at(0))));
-        assert!(!often.happens(at(499), None) && often.happens(at(500), None));
-        assert!(often.happens(at(501), Some(at(499))) && !often.happens(at(502), Some(at(501))));
+        assert!(once.occurs(at(0), None) && !once.occurs(at(1), Some(at(0))));
+        assert!(!often.occurs(at(499), None) && often.occurs(at(500), None));
+        assert!(often.occurs(at(501), Some(at(499))) && !often.occurs(at(502), Some(at(501))));
         let (stands, goes) = (one("ERRSI"), one("ERRSI:2"));
-        assert!(stands.happens(at(0), None) && stands.happens(at(1), Some(at(0))));
-        let seen = [0, 999, 1000, 1999, 2000, 3000].map(|ms| goes.happens(at(ms), Some(at(0))));
+        assert!(stands.occurs(at(0), None) && stands.occurs(at(1), Some(at(0))));
+        let seen = [0, 999, 1000, 1999, 2000, 3000].map(|ms| goes.occurs(at(ms), Some(at(0))));
         assert_eq!(seen, [false, false, true, true, false, true]);
     }
 }

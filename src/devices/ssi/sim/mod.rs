@@ -13,5 +13,5 @@ mod injected_fault;
 #[cfg(test)]
 mod tests;
 
-pub use at_adapter::{AttachableEncoder, DELIVERED, Settings};
+pub use at_adapter::{AttachableEncoder, DEFAULT_ENCODER, Settings};
 pub use encoder::Encoder;

@@ -13,11 +13,11 @@ use crate::sim::setting::query_pairs;
 
 /// Creates a host with the encoder on the shaft of a test.
 fn host_with_dial(query: &str) -> Host {
-    Host::to(query, &[&AttachableEncoder::DELIVERED, &Dial::SETTINGS])
+    Host::to(query, &[&AttachableEncoder::DEFAULT_ADAPTER, &Dial::SETTINGS])
 }
 
 fn read(query: &str) -> Result<(), ConfigError> {
-    AttachableEncoder::DELIVERED.attach_device(&query_pairs(query)).map(|_| ())
+    AttachableEncoder::DEFAULT_ADAPTER.attach_device(&query_pairs(query)).map(|_| ())
 }
 
 /// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a
@@ -69,14 +69,14 @@ fn invalid_values_are_reported() {
 proptest! {
     #[test]
     fn no_value_panics(key in 0..2_usize, value in ".*") {
-        let _ = AttachableEncoder::DELIVERED.attach_device(&[(AttachableEncoder::DELIVERED.setting_names()[key].to_owned(), value)]);
+        let _ = AttachableEncoder::DEFAULT_ADAPTER.attach_device(&[(AttachableEncoder::DEFAULT_ADAPTER.setting_names()[key].to_owned(), value)]);
     }
 }
 
 /// At 60 rpm a revolution of 2^13 steps takes a second; the encoder needs no other device to be turned.
 #[test]
 fn the_encoder_turns_without_other_devices() {
-    let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AttachableEncoder::DELIVERED]);
+    let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AttachableEncoder::DEFAULT_ADAPTER]);
     host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
     let mut words = (0..3).map(|_| {
         host.receive(host.now + Duration::from_millis(200));

@@ -7,8 +7,8 @@ use super::action::{SsiAction, TrialInput};
 use super::design::Edit;
 use super::encoder::Encoder;
 use super::families::families;
-use super::search::{Frames, MOST, Origin, SearchState, read_frames};
-use super::{Done, strip};
+use super::search::{Frames, MAX_SEARCHED_FRAMES, Origin, SearchState, read_frames};
+use super::{TaskResult, strip};
 use crate::app::action::{Action as StudioAction, TaskResult as StudioDone};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, SessionEvents, Source};
@@ -19,7 +19,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::store::write_atomically;
 
 impl Encoder {
-    pub(crate) fn act(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
+    pub(crate) fn handle_action(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
         let services = &mut *context.services;
         match action {
             SsiAction::SendLayout => {
@@ -31,30 +31,30 @@ impl Encoder {
                 context.queue_command(DeviceCommand::Reconnect);
             }
             SsiAction::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
-            SsiAction::Edit(edit) => self.edit(*edit),
-            SsiAction::Enter(field, input) => match self.designer.entered(field, &input) {
-                Ok(edit) => self.edit(edit),
-                Err(why) => self.designer.refuse(why),
+            SsiAction::Edit(edit) => self.apply_edit(*edit),
+            SsiAction::Enter(field, input) => match self.designer.parse_entry(field, &input) {
+                Ok(edit) => self.apply_edit(edit),
+                Err(why) => self.designer.show_rejection(why),
             },
             SsiAction::Move(handle, to) => {
                 let layout = self.designer.layout();
-                let moved = strip::moved(layout, handle, to, self.designer.error_bits_follow());
-                self.edit(Edit::Frame(Box::new(moved.descriptor().clone())));
+                let moved = strip::move_part(layout, handle, to, self.designer.error_bits_follow());
+                self.apply_edit(Edit::Frame(Box::new(moved.descriptor().clone())));
             }
             SsiAction::AddErrorBit => {
                 if let Some(frame) = self.designer.with_error_bit() {
-                    self.edit(Edit::Frame(Box::new(frame)));
+                    self.apply_edit(Edit::Frame(Box::new(frame)));
                 }
             }
             SsiAction::RemoveErrorBit(index) => {
                 let frame = self.designer.without_error_bit(index);
-                self.edit(Edit::Frame(Box::new(frame)));
+                self.apply_edit(Edit::Frame(Box::new(frame)));
             }
             SsiAction::Try(with) => self.start_trial(with),
             SsiAction::SetClocks(clocks) => {
                 self.clocks = clocks
                     .map(|clocks| clocks.clamp(1, 64))
-                    .filter(|clocks| *clocks != self.designer.layout().clocks());
+                    .filter(|clocks| *clocks != self.designer.layout().clock_count());
             }
             SsiAction::Find => self.find_in_record(services),
             SsiAction::AskFrames => {
@@ -68,7 +68,7 @@ impl Encoder {
             SsiAction::ForgetErrors => self.record.reset_tally(),
             SsiAction::AskExport(format, language) => {
                 let suggested = self.suggested_path(format.file_extensions().first().copied().unwrap_or("txt"));
-                let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
+                let words = (TEXTS.text("file.export_title"), TEXTS.text(format.keyword()));
                 let export = move |path, _| SsiAction::Export(format, language, path);
                 let file =
                     DeviceFile::write_question(self.session.id, words, format.file_extensions(), suggested, export);
@@ -86,8 +86,8 @@ impl Encoder {
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             SsiAction::SaveFrames(path) => {
-                let clocks = self.clocks();
-                let words = self.record.words(clocks);
+                let clocks = self.clock_count();
+                let words = self.record.latest_words(clocks);
                 if words.is_empty() {
                     return self.session.report_rejection(TEXTS.text("ssi_find.nothing_read"), services);
                 }
@@ -108,7 +108,7 @@ impl Encoder {
         if self.is_showing_live()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {
-            self.trial.set(word);
+            self.trial.set_frame(word);
         }
         self.follows = with == TrialInput::Live;
         match with {
@@ -134,8 +134,8 @@ impl Encoder {
     }
 
     fn find_in_record(&mut self, services: &mut Services) {
-        let clocks = self.clocks();
-        let frames = self.record.words(clocks);
+        let clocks = self.clock_count();
+        let frames = self.record.latest_words(clocks);
         if frames.is_empty() {
             self.hunt = SearchState::Failed(TEXTS.text("ssi_find.nothing_read"));
             return;
@@ -146,7 +146,7 @@ impl Encoder {
     }
 
     fn find_in_file(&mut self, path: PathBuf, services: &mut Services) {
-        let clocks = self.clocks();
+        let clocks = self.clock_count();
         self.find(services, move || read_frames(&path, clocks));
     }
 
@@ -158,12 +158,12 @@ impl Encoder {
         let (session, families) = (self.session.id, families(services));
         services.tasks.run("find", move || {
             let result = frames().map(|Frames { origin, clocks, mut frames, left_out, .. }| {
-                frames.drain(..frames.len().saturating_sub(MOST));
+                frames.drain(..frames.len().saturating_sub(MAX_SEARCHED_FRAMES));
                 let search = Box::new(find(&frames, clocks, &families));
                 SearchState::Found { origin, clocks, left_out, frames, search }
             });
             let hunt = Box::new(result.unwrap_or_else(SearchState::Failed));
-            StudioAction::Done(StudioDone::device(session, Done::Found { number, hunt }))
+            StudioAction::Done(StudioDone::device(session, TaskResult::Found { number, hunt }))
         });
     }
 
@@ -174,7 +174,7 @@ impl Encoder {
         profile.family = proposal.family.as_ref().map(|(key, _)| key.clone());
         profile.descriptor = proposal.layout.descriptor().clone();
         profile.preset = 0;
-        self.edit(Edit::Whole(Box::new(profile)));
+        self.apply_edit(Edit::Whole(Box::new(profile)));
         self.clocks = None;
         self.follows = true;
     }
@@ -183,7 +183,7 @@ impl Encoder {
         let session = self.session.id;
         services.tasks.run("export", move || {
             let result = write_atomically(&path, text.as_bytes());
-            StudioAction::Done(StudioDone::device(session, Done::Written(path, result)))
+            StudioAction::Done(StudioDone::device(session, TaskResult::Written(path, result)))
         });
     }
 }

@@ -8,7 +8,7 @@ use crate::app::connect::target::{
 };
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
-use crate::devices::ssi::jobs::check;
+use crate::devices::ssi::jobs::check_link;
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::sim::Settings;
 use crate::kinds::attachable_kinds;
@@ -69,12 +69,12 @@ impl FormModel for SsiForm {
         } else {
             form.port = target.to_owned();
         }
-        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.fill_entry(name, value));
         form
     }
 
     fn url(&self) -> Result<LinkUrl, Text> {
-        validated_link(self.parameters().build_link(self.target()?)?, check)
+        validated_link(self.parameters().build_link(self.target()?)?, check_link)
     }
 
     fn set_file(&mut self, file: String) {
@@ -104,7 +104,7 @@ impl SsiForm {
     }
 
     /// Fills in the entry for a parameter. Returns `false` if the form has no such entry.
-    fn take(&mut self, name: &str, value: &str) -> bool {
+    fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfterSession::LEAVE_SUPPLY_ON.0 {
             self.leave_supply = value == SupplyAfterSession::LEAVE_SUPPLY_ON.1;
             return self.leave_supply;

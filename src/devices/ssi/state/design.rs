@@ -10,15 +10,15 @@ use crate::app::history::History;
 use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::profile::{ReadingSettings, SsiProfile};
 use crate::devices::ssi::protocol::{
-    Advice, Code, Direction, ErrorPlace, Families, Family, FrameDescriptor, Layout, Range, Settings, Times,
+    Code, Direction, ErrorPlace, Families, Family, FrameDescriptor, Layout, Range, SettingAdvice, Settings, Times,
     from_linuxcnc,
 };
-use crate::devices::ssi::sim::DELIVERED;
+use crate::devices::ssi::sim::DEFAULT_ENCODER;
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::link::{LinkScheme, LinkUrl};
 
-const TO_BEGIN_WITH: &str = "ahm36";
+const DEFAULT_FAMILY: &str = "ahm36";
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
@@ -28,7 +28,7 @@ pub struct Design {
     /// cannot send the frame.
     pub settings: Option<Settings>,
     /// Remarks about accepted settings that the manual of the family does not mention.
-    pub advice: Vec<Advice>,
+    pub advice: Vec<SettingAdvice>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -66,9 +66,9 @@ impl Design {
     ///
     /// # Errors
     /// Returns the reason why the layout is impossible.
-    fn of(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
+    fn from_profile(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
-        let family = profile.family.as_deref().and_then(|key| families.named(key));
+        let family = profile.family.as_deref().and_then(|key| families.find_by_key(key));
         let sends = |family: &Family, settings: &Settings| {
             settings.resolve(family).is_ok_and(|resolved| *resolved.layout.descriptor() == profile.descriptor)
         };
@@ -93,24 +93,24 @@ impl Default for Design {
 impl LayoutDesigner {
     /// Creates a designer for a saved layout. An impossible layout is replaced by the default; it cannot come from a
     /// file.
-    fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
-        let now = Design::of(profile, &families, None).unwrap_or_default();
+    fn from_profile(profile: SsiProfile, families: Arc<Families>) -> Self {
+        let now = Design::from_profile(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
         LayoutDesigner { families, now, saved, history: History::default(), problem: None }
     }
 
     /// Creates a designer for the factory layout of a family.
     pub(super) fn factory_default(families: Arc<Families>) -> Self {
-        let profile = parse_profile(TO_BEGIN_WITH, &families);
-        LayoutDesigner::with(profile, families)
+        let profile = parse_profile(DEFAULT_FAMILY, &families);
+        LayoutDesigner::from_profile(profile, families)
     }
 
     /// Creates a designer for a link. The layout is known only if the link leads to a virtual encoder.
     pub(super) fn for_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == LinkScheme::Sim);
-        let mut profile = parse_profile(sent.unwrap_or(DELIVERED), &families);
+        let mut profile = parse_profile(sent.unwrap_or(DEFAULT_ENCODER), &families);
         profile.reading = reading_for_link(profile.reading, url, |_| true);
-        LayoutDesigner::with(profile, families)
+        LayoutDesigner::from_profile(profile, families)
     }
 
     /// Returns the reading settings after a change of the link. Parameters that differ between the links come from the
@@ -121,11 +121,11 @@ impl LayoutDesigner {
 
     /// Returns the frame sent by the virtual encoder at a link.
     pub(super) fn virtual_encoder_descriptor(&self, url: &LinkUrl) -> FrameDescriptor {
-        parse_profile(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
+        parse_profile(url.query.get("ssi").unwrap_or(DEFAULT_ENCODER), &self.families).descriptor
     }
 
     pub(super) fn open(&mut self, profile: SsiProfile) {
-        *self = LayoutDesigner::with(profile, self.families.clone());
+        *self = LayoutDesigner::from_profile(profile, self.families.clone());
     }
 
     pub fn design(&self) -> &Design {
@@ -141,7 +141,7 @@ impl LayoutDesigner {
     }
 
     pub fn family(&self) -> Option<&Family> {
-        self.families.named(self.now.profile.family.as_deref()?)
+        self.families.find_by_key(self.now.profile.family.as_deref()?)
     }
 
     pub fn times(&self) -> Option<&Times> {
@@ -154,7 +154,7 @@ impl LayoutDesigner {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
             Some(resolved) => resolved.errors == ErrorPlace::Following,
-            None => strip::follows(&self.now.layout),
+            None => strip::bits_follow_position(&self.now.layout),
         }
     }
 
@@ -168,18 +168,21 @@ impl LayoutDesigner {
 
     pub(super) fn update_families(&mut self, families: Arc<Families>) {
         self.families = families;
-        if let Ok(design) = Design::of(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
+        if let Ok(design) = Design::from_profile(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
             self.now = design;
         }
     }
 
     /// Changes the layout as one undo step. Returns `false` if nothing changed.
-    pub(super) fn edit(&mut self, edit: Edit) -> bool {
+    pub(super) fn apply_edit(&mut self, edit: Edit) -> bool {
         let requested = match &edit {
             Edit::Settings(settings) => Some((**settings).clone()),
             _ => self.now.settings.clone(),
         };
-        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families, requested.as_ref())) {
+        match self
+            .preview_edit(edit)
+            .and_then(|profile| Design::from_profile(profile, &self.families, requested.as_ref()))
+        {
             Ok(design) => {
                 self.problem = None;
                 if design.profile == self.now.profile {
@@ -198,15 +201,15 @@ impl LayoutDesigner {
         }
     }
 
-    pub(super) fn refuse(&mut self, why: Text) {
+    pub(super) fn show_rejection(&mut self, why: Text) {
         self.problem = Some(why);
     }
 
-    fn edited(&self, edit: Edit) -> Result<SsiProfile, Text> {
+    fn preview_edit(&self, edit: Edit) -> Result<SsiProfile, Text> {
         let mut profile = self.now.profile.clone();
         match edit {
             Edit::Family(key) => {
-                let Some(family) = self.families.named(&key) else {
+                let Some(family) = self.families.find_by_key(&key) else {
                     return Err(TEXTS.text("ssi.no_family").with("key", key));
                 };
                 // The old preset has no meaning in the new layout.
@@ -229,7 +232,7 @@ impl LayoutDesigner {
             Edit::Name(name) => profile.name = name,
             Edit::Whole(whole) => return Ok(*whole),
             Edit::LinuxCnc(format) => {
-                let layout = from_linuxcnc(&format).map_err(|error| words::format(&error))?;
+                let layout = from_linuxcnc(&format).map_err(|error| words::format_error_text(&error))?;
                 profile.family = None;
                 profile.descriptor = layout.descriptor().clone();
             }
@@ -249,7 +252,9 @@ impl LayoutDesigner {
         }
         self.problem = None;
         // The layout was possible when the step was made.
-        let Ok(design) = Design::of(profile, &self.families, self.now.settings.as_ref()) else { return false };
+        let Ok(design) = Design::from_profile(profile, &self.families, self.now.settings.as_ref()) else {
+            return false;
+        };
         self.now = design;
         true
     }
@@ -286,7 +291,7 @@ impl PendingEdits for LayoutDesigner {
     }
 
     fn discard_all(&mut self) -> bool {
-        self.edit(Edit::Whole(Box::new(self.saved.clone())))
+        self.apply_edit(Edit::Whole(Box::new(self.saved.clone())))
     }
 
     fn clear_undo_steps(&mut self) {
@@ -308,8 +313,8 @@ fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&st
 /// Parses a layout of a family. An invalid text results in a minimal layout.
 fn parse_profile(text: &str, families: &Families) -> SsiProfile {
     let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
-        let family = families.named(&key)?;
-        Some(SsiProfile::of_family(family, &settings.resolve(family).ok()?))
+        let family = families.find_by_key(&key)?;
+        Some(SsiProfile::from_family(family, &settings.resolve(family).ok()?))
     });
     resolved.unwrap_or_else(|| Design::default().profile)
 }

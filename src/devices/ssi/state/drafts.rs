@@ -47,7 +47,7 @@ impl HasDraft for Encoder {
     }
 
     fn current_edits(&self) -> Drafts {
-        let changes = document_of(self.designer.saved()).changes_to(&document_of(&self.edited_profile()));
+        let changes = new_document(self.designer.saved()).changes_to(&new_document(&self.edited_profile()));
         changes.iter().filter_map(|change| ron::to_string(change).ok()).collect()
     }
 
@@ -59,14 +59,14 @@ impl HasDraft for Encoder {
             let changes: Vec<Change> = edits.iter().filter_map(|text| ron::from_str(text).ok()).collect();
             let all = changes.len() == edits.len();
             let changed =
-                document_of(self.designer.saved()).with_changes(&changes, SsiProfile::FORMATS).ok().filter(|_| all)?;
+                new_document(self.designer.saved()).with_changes(&changes, SsiProfile::FORMATS).ok().filter(|_| all)?;
             changed.body.into_profile().ok()
         });
         match whole {
-            Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
+            Some(profile) => self.apply_edit(Edit::Whole(Box::new(profile))),
             None if edits.is_empty() => {}
             // The edits do not result in a possible frame with the present file.
-            None => self.designer.refuse(TEXTS.text("ssi.draft_unfit")),
+            None => self.designer.show_rejection(TEXTS.text("ssi.draft_unfit")),
         }
     }
 
@@ -105,6 +105,6 @@ impl HasDraft for Encoder {
 }
 
 /// Creates a document for a layout that is not stored in a file.
-fn document_of(profile: &SsiProfile) -> ProfileDocument {
+fn new_document(profile: &SsiProfile) -> ProfileDocument {
     ProfileDocument { saved: None, ..ProfileDocument::new(String::new(), Body::new(profile.clone())) }
 }

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use super::design::{Design, Edit, LayoutDesigner};
-use super::record::{ReceivedWord, Record, Streamed};
+use super::record::{ReceivedWord, Record, WordStream};
 use super::search::SearchState;
-use super::trial::{Decoded, Trial};
+use super::trial::{Decoded, TrialFrame};
 use crate::app::check::CheckLine;
 use crate::app::session::{Phase, Session, Source};
 use crate::app::{PendingEdits, Text};
@@ -20,7 +20,7 @@ use crate::sim::Motor;
 pub struct Encoder {
     pub session: Session<Ssi>,
     pub designer: LayoutDesigner,
-    pub trial: Trial,
+    pub trial: TrialFrame,
     /// Whether the word read last is displayed instead of the trial frame.
     pub(super) follows: bool,
     pub record: Record,
@@ -35,10 +35,10 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    pub(super) fn with(session: Session<Ssi>, designer: LayoutDesigner) -> Self {
-        let mut trial = Trial::default();
+    pub(super) fn from_session(session: Session<Ssi>, designer: LayoutDesigner) -> Self {
+        let mut trial = TrialFrame::default();
         // The bits of this position differ from each other.
-        trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
+        trial.set_position(designer.layout(), designer.layout().position_code().last() / 3);
         Encoder {
             record: Record::new(designer.layout().clone()),
             session,
@@ -63,7 +63,7 @@ impl Encoder {
     /// frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
-        self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
+        self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decode(self.designer.layout()))
     }
 
     /// Returns whether the last word read is displayed.
@@ -76,23 +76,23 @@ impl Encoder {
     }
 
     /// Returns the stream of words from the adapter, or `None` if there is none.
-    pub fn streamed(&self) -> Option<&Streamed> {
-        self.record.streamed().filter(|_| self.session.is_polling())
+    pub fn current_stream(&self) -> Option<&WordStream> {
+        self.record.current_stream().filter(|_| self.session.is_polling())
     }
 
     /// Returns the number of clocks per word. This is the number in the layout, unless another one is being tried.
-    pub fn clocks(&self) -> u8 {
-        self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
+    pub fn clock_count(&self) -> u8 {
+        self.clocks.unwrap_or_else(|| self.designer.layout().clock_count())
     }
 
     /// Returns whether a number of clocks is being tried that differs from the layout.
     pub fn has_trial_clocks(&self) -> bool {
-        self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
+        self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clock_count())
     }
 
     pub(crate) fn query_settings(&self) -> ClockSettings {
         let reading = &self.design().profile.reading;
-        ClockSettings { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
+        ClockSettings { clocks: self.clock_count(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
     pub fn is_dirty(&self) -> bool {
@@ -107,9 +107,9 @@ impl Encoder {
         self.designer.update_families(families);
     }
 
-    pub(super) fn edit(&mut self, edit: Edit) {
+    pub(super) fn apply_edit(&mut self, edit: Edit) {
         let before = self.designer.layout().clone();
-        if self.designer.edit(edit) {
+        if self.designer.apply_edit(edit) {
             self.handle_layout_change(&before);
         }
     }
@@ -122,7 +122,7 @@ impl Encoder {
         if before == now {
             return;
         }
-        self.trial.follow(before, now);
+        self.trial.switch_layout(before, now);
         self.record.reinterpret(now);
     }
 
@@ -151,7 +151,7 @@ impl Encoder {
     }
 
     /// Returns why the adapter cannot read the present layout.
-    pub fn refusal(&self) -> Option<&Text> {
+    pub fn layout_rejection(&self) -> Option<&Text> {
         self.designer.problem()
     }
 }
@@ -163,12 +163,12 @@ impl LayoutDesigner {
     }
 
     pub fn timing(&self) -> Timing {
-        let reads = self.reads();
+        let reads = self.read_conditions();
         self.times().map_or_else(|| Times::for_any_encoder(&reads), |times| times.calculate_timing(&reads))
     }
 
-    pub fn reads(&self) -> ReadConditions {
-        self.design().profile.reads()
+    pub fn read_conditions(&self) -> ReadConditions {
+        self.design().profile.read_conditions()
     }
 
     /// Returns the user-defined name of the layout, or else the name of the family.

@@ -36,7 +36,7 @@ impl Kind for Ssi {
     }
 
     fn job_text(job: &SsiJob) -> Text {
-        words::job(job)
+        words::job_name(job)
     }
 
     fn survey_job() -> SsiJob {
@@ -48,7 +48,7 @@ impl Kind for Ssi {
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {
-        explained::job(error)
+        explained::job_error_texts(error)
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
@@ -91,11 +91,11 @@ impl Encoder {
 
 impl SessionEvents for Encoder {
     fn handle_samples(&mut self, samples: Vec<Words>, dropped: u64) {
-        self.record.add(samples, dropped);
+        self.record.add_words(samples, dropped);
     }
 
     fn explain_frame(&mut self, frame: &TraceEntry) -> FrameExplanation {
-        trace::meaning(frame)
+        trace::explain(frame)
     }
 
     fn process_events(&mut self, services: &mut Services) {
@@ -118,8 +118,8 @@ impl SessionEvents for Encoder {
                 self.identity = Some(*identity);
                 self.refresh_word(services);
             }
-            SsiOutput::Read(words) => self.record.add(vec![words], 0),
-            SsiOutput::Check(lines) => self.check = Some(explained::check(&lines)),
+            SsiOutput::Read(words) => self.record.add_words(vec![words], 0),
+            SsiOutput::Check(lines) => self.check = Some(explained::check_lines(&lines)),
         }
     }
 

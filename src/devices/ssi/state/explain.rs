@@ -12,18 +12,18 @@ use crate::app::explain::link_error_text;
 use crate::buses::bridge::state::adapter_error_text;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
-    Advice, ClassEvidence, Code, CountedFinding, FrameFinding, GrayCoverage, Layout, Meaning, Open, Range,
-    SearchUncertainty, Warning,
+    BitMeaning, ClassEvidence, Code, CountedFinding, FrameFinding, GrayCoverage, Layout, OpenQuestion, Range,
+    SearchUncertainty, SettingAdvice, Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
-pub use check::check;
+pub use check::check_lines;
 pub use export::export;
-pub use family::{note, store};
-pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
+pub use family::{family_error_text, note_text};
+pub use refused::{burst_error_text, entry, format_error_text, frame_text, layout, settings, too_wide_text};
 
 /// Returns texts that explain why a job ended early. Each may be shown on its own line.
-pub fn job(error: &JobError) -> Vec<Text> {
+pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link_error_text(error),
         JobError::Adapter(error) => adapter_error_text(error),
@@ -43,14 +43,14 @@ pub fn finding_text(finding: &FrameFinding) -> Text {
     match finding {
         FrameFinding::Error { name, meaning, cleared_by_transfer } => {
             let id = match (meaning, cleared_by_transfer) {
-                (Meaning::Invalid, false) => "ssi.error",
-                (Meaning::Invalid, true) => "ssi.error_since",
-                (Meaning::Warning, _) => "ssi.warning",
+                (BitMeaning::Invalid, false) => "ssi.error",
+                (BitMeaning::Invalid, true) => "ssi.error_since",
+                (BitMeaning::Warning, _) => "ssi.warning",
             };
             TEXTS.text(id).with("name", name)
         }
-        FrameFinding::Pattern { name, meaning: Meaning::Invalid } => TEXTS.text("ssi.pattern").with("name", name),
-        FrameFinding::Pattern { name, meaning: Meaning::Warning } => {
+        FrameFinding::Pattern { name, meaning: BitMeaning::Invalid } => TEXTS.text("ssi.pattern").with("name", name),
+        FrameFinding::Pattern { name, meaning: BitMeaning::Warning } => {
             TEXTS.text("ssi.pattern_perhaps").with("name", name)
         }
         FrameFinding::StuckHigh { sure: true } => TEXTS.text("ssi.stuck_high"),
@@ -64,10 +64,12 @@ pub fn finding_text(finding: &FrameFinding) -> Text {
     }
 }
 
-pub fn advice_text(advice: &Advice) -> Text {
+pub fn advice_text(advice: &SettingAdvice) -> Text {
     match advice {
-        Advice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),
-        Advice::Clocks { bits, clocks } => TEXTS.text("ssi.more_clocks").with("bits", bits).with("clocks", clocks),
+        SettingAdvice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),
+        SettingAdvice::Clocks { bits, clocks } => {
+            TEXTS.text("ssi.more_clocks").with("bits", bits).with("clocks", clocks)
+        }
     }
 }
 
@@ -92,7 +94,7 @@ pub fn timing(warning: &Warning) -> Text {
 }
 
 /// Returns a description of a frame in one line, with its clocks, positions, code and error bits.
-pub fn frame(layout: &Layout) -> Text {
+pub fn layout_summary(layout: &Layout) -> Text {
     let descriptor = layout.descriptor();
     let range = match descriptor.range {
         Range::Bits { multiturn: 0, singleturn } => TEXTS.text("ssi_range.single").with("singleturn", singleturn),
@@ -118,7 +120,7 @@ pub fn frame(layout: &Layout) -> Text {
     let errors = if errors.is_empty() { "–".to_owned() } else { errors.join(", ") };
     let line = TEXTS
         .text("ssi.frame_line")
-        .with("clocks", layout.clocks())
+        .with("clocks", layout.clock_count())
         .with_text("range", range)
         .with_text("code", code(descriptor.code))
         .with("lead", descriptor.lead)
@@ -149,23 +151,27 @@ pub fn code(code: Code) -> Text {
     })
 }
 
-pub fn open(open: Open) -> Text {
+pub fn open(open: OpenQuestion) -> Text {
     match open {
-        Open::TurnOnce => TEXTS.text("ssi_find.turn_once"),
-        Open::TurnFarther { from, to } if from == to => TEXTS.text("ssi_find.turn_farther_one").with("clock", from),
-        Open::TurnFarther { from, to } => TEXTS.text("ssi_find.turn_farther").with("from", from).with("to", to),
-        Open::PassAnEnd => TEXTS.text("ssi_find.pass_the_end"),
-        Open::Direction => TEXTS.text("ssi_find.direction"),
-        Open::OtherSpeed => TEXTS.text("ssi_find.other_speed"),
-        Open::PassTheEnd { least, most } => TEXTS.text("ssi_find.steps").with("least", least).with("most", most),
-        Open::Unexplained { clock } => TEXTS.text("ssi_find.unexplained").with("clock", clock),
-        Open::SeeAnError => TEXTS.text("ssi_find.see_an_error"),
-        Open::TypeLabel => TEXTS.text("ssi_find.type_label"),
+        OpenQuestion::TurnOnce => TEXTS.text("ssi_find.turn_once"),
+        OpenQuestion::TurnFarther { from, to } if from == to => {
+            TEXTS.text("ssi_find.turn_farther_one").with("clock", from)
+        }
+        OpenQuestion::TurnFarther { from, to } => TEXTS.text("ssi_find.turn_farther").with("from", from).with("to", to),
+        OpenQuestion::PassAnEnd => TEXTS.text("ssi_find.pass_the_end"),
+        OpenQuestion::Direction => TEXTS.text("ssi_find.direction"),
+        OpenQuestion::OtherSpeed => TEXTS.text("ssi_find.other_speed"),
+        OpenQuestion::PassTheEnd { least, most } => {
+            TEXTS.text("ssi_find.steps").with("least", least).with("most", most)
+        }
+        OpenQuestion::Unexplained { clock } => TEXTS.text("ssi_find.unexplained").with("clock", clock),
+        OpenQuestion::SeeAnError => TEXTS.text("ssi_find.see_an_error"),
+        OpenQuestion::TypeLabel => TEXTS.text("ssi_find.type_label"),
     }
 }
 
 /// Returns whether the first layout found is certain and, if not, why.
-pub fn doubt(doubt: Option<SearchUncertainty>) -> Text {
+pub fn uncertainty_text(doubt: Option<SearchUncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",
         Some(SearchUncertainty::Standing) => "ssi_find.standing",
@@ -215,7 +221,8 @@ mod tests {
         ];
         for (error, fact) in cases {
             for language in [English, German] {
-                let words: Vec<String> = job(&error).iter().map(|text| text.to_string_in(language)).collect();
+                let words: Vec<String> =
+                    job_error_texts(&error).iter().map(|text| text.to_string_in(language)).collect();
                 let words = words.join(" ");
                 assert!(words.contains(fact) && !words.contains('{') && words.ends_with('.'), "{words}");
                 assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
@@ -228,6 +235,6 @@ mod tests {
         let gone = JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         assert_eq!(connection_loss_text(&gone).unwrap().id(), "link.lost");
         assert_eq!(connection_loss_text(&JobError::Adapter(AdapterError::Silent)), None);
-        assert_eq!(job(&JobError::Cancelled)[0].id(), "encoder.cancelled");
+        assert_eq!(job_error_texts(&JobError::Cancelled)[0].id(), "encoder.cancelled");
     }
 }

@@ -3,7 +3,7 @@
 use super::design::LayoutDesigner;
 use crate::app::{Language, Text};
 use crate::devices::ssi::protocol::{
-    ExportText, Picture, bit_table, c99, frame_picture, scl_source, settings_sheet, structured_text,
+    ExportText, Picture, bit_table, frame_picture, generate_c99, scl_source, settings_sheet, structured_text,
     structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::explain as words;
@@ -37,7 +37,7 @@ impl ExportFormat {
         ExportFormat::Timing,
     ];
 
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             ExportFormat::C => "ssi_export.c",
             ExportFormat::StructuredText => "ssi_export.st",
@@ -51,7 +51,7 @@ impl ExportFormat {
         }
     }
 
-    pub const fn hint(self) -> &'static str {
+    pub const fn hint_id(self) -> &'static str {
         match self {
             ExportFormat::C => "ssi_export.c_hint",
             ExportFormat::StructuredText => "ssi_export.st_hint",
@@ -83,30 +83,32 @@ impl LayoutDesigner {
     /// # Errors
     /// Returns a message that names the property of the layout that the format cannot represent.
     pub fn export(&self, format: ExportFormat, language: Language) -> Result<String, Text> {
-        if let Some(picture) = self.picture(format, language) {
-            return Ok(picture.svg());
+        if let Some(picture) = self.layout_picture(format, language) {
+            return Ok(picture.to_svg());
         }
         let layout = self.layout();
         let title = self.title();
         let say = |text: &ExportText| words::export(text).to_string_in(language);
         Ok(match format {
-            ExportFormat::C => c99(layout, &title),
+            ExportFormat::C => generate_c99(layout, &title),
             ExportFormat::StructuredText => structured_text(layout, &title),
-            ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(words::wide)?,
-            ExportFormat::Scl => scl_source(layout, &title).map_err(words::wide)?,
-            ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format(&error))? + "\n",
+            ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(words::too_wide_text)?,
+            ExportFormat::Scl => scl_source(layout, &title).map_err(words::too_wide_text)?,
+            ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format_error_text(&error))? + "\n",
             ExportFormat::Sheet => settings_sheet(layout, self.times(), &title, &say),
             ExportFormat::Table | ExportFormat::Frame | ExportFormat::Timing => bit_table(layout, &say),
         })
     }
 
     /// Returns the layout as a picture, or `None` if the format is text.
-    pub fn picture(&self, format: ExportFormat, language: Language) -> Option<Picture> {
+    pub fn layout_picture(&self, format: ExportFormat, language: Language) -> Option<Picture> {
         let (layout, title) = (self.layout(), self.title());
         let say = |text: &ExportText| words::export(text).to_string_in(language);
         match format {
             ExportFormat::Frame => Some(frame_picture(layout, None, &title, &say)),
-            ExportFormat::Timing => Some(timing_picture(layout, &self.applicable_times(), &self.reads(), &title, &say)),
+            ExportFormat::Timing => {
+                Some(timing_picture(layout, &self.applicable_times(), &self.read_conditions(), &title, &say))
+            }
             _ => None,
         }
     }

@@ -124,7 +124,7 @@ impl Group {
 
 impl Row {
     /// Creates a row with a number. `unit` is the symbol of its unit, or empty.
-    fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
+    fn with_number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
         let unit = match unit {
             "" => None,
             "bit" => Some(TEXTS.text("ssi_form.bit")),
@@ -133,12 +133,12 @@ impl Row {
         Row { field, name: TEXTS.text(name), entry: Entry::Number { value: value.into(), unit }, hint: None }
     }
 
-    fn switch(field: Field, name: &'static str, is_on: bool) -> Self {
+    fn with_switch(field: Field, name: &'static str, is_on: bool) -> Self {
         Row { field, name: TEXTS.text(name), entry: Entry::Switch(is_on), hint: None }
     }
 
     /// Creates a row with a choice. `all` lists the options with their labels.
-    fn choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
+    fn with_choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
         let chosen = all.iter().position(|(one, _)| one == own).unwrap_or(usize::MAX);
         let options = all.iter().map(|(_, words)| words.clone()).collect();
         Row { field, name: TEXTS.text(name), entry: Entry::Choice { options, chosen }, hint: None }
@@ -150,12 +150,12 @@ impl Row {
 }
 
 impl LayoutDesigner {
-    pub fn form(&self) -> Vec<Group> {
+    pub fn form_groups(&self) -> Vec<Group> {
         let mut groups = match (self.family(), &self.design().settings) {
-            (Some(family), Some(settings)) => family::groups(self, family, settings),
-            _ => free::groups(self),
+            (Some(family), Some(settings)) => family::family_groups(self, family, settings),
+            _ => free::free_groups(self),
         };
-        groups.push(counting(self));
+        groups.push(counting_group(self));
         groups
     }
 
@@ -168,13 +168,13 @@ impl LayoutDesigner {
                 entry: Entry::Frequency(reading.clock_hz),
                 hint: None,
             },
-            Row::number(Field::Pause, "ssi_form.pause", reading.pause_us, "µs").with_hint("ssi_form.pause_hint"),
-            Row::number(Field::Cable, "ssi_form.cable", reading.cable_metres.unwrap_or(0), "m")
+            Row::with_number(Field::Pause, "ssi_form.pause", reading.pause_us, "µs").with_hint("ssi_form.pause_hint"),
+            Row::with_number(Field::Cable, "ssi_form.cable", reading.cable_metres.unwrap_or(0), "m")
                 .with_hint("ssi_form.cable_hint"),
         ];
         if reading.synchronous || self.times().is_some_and(|times| times.synchronous.is_some()) {
             rows.push(
-                Row::switch(Field::Synchronous, "ssi_form.synchronous", reading.synchronous)
+                Row::with_switch(Field::Synchronous, "ssi_form.synchronous", reading.synchronous)
                     .with_hint("ssi_form.synchronous_hint"),
             );
         }
@@ -185,7 +185,7 @@ impl LayoutDesigner {
     ///
     /// # Errors
     /// Returns the reason why the entry was refused.
-    pub(super) fn entered(&self, field: Field, input: &FieldInput) -> Result<Edit, Text> {
+    pub(super) fn parse_entry(&self, field: Field, input: &FieldInput) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
             (Field::Direction, FieldInput::Choice(0)) => return Ok(Edit::Direction(Direction::Clockwise)),
@@ -198,10 +198,10 @@ impl LayoutDesigner {
         }
         match (self.family(), &self.design().settings) {
             (Some(family), Some(settings)) => {
-                let entered = family::entered(self, family, settings, field, input);
+                let entered = family::settings_after_entry(self, family, settings, field, input);
                 entered.map(|settings| Edit::Settings(Box::new(settings))).ok_or_else(wrong)
             }
-            _ => free::entered(self, field, input).ok_or_else(wrong),
+            _ => free::edit_after_entry(self, field, input).ok_or_else(wrong),
         }
     }
 
@@ -224,7 +224,7 @@ impl LayoutDesigner {
     }
 }
 
-fn counting(designer: &LayoutDesigner) -> Group {
+fn counting_group(designer: &LayoutDesigner) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
     let words = |direction| {
@@ -239,19 +239,19 @@ fn counting(designer: &LayoutDesigner) -> Group {
     Group {
         title: "ssi_form.counting",
         rows: vec![
-            Row::choice(Field::Direction, "ssi_form.direction", &all, &profile.direction)
+            Row::with_choice(Field::Direction, "ssi_form.direction", &all, &profile.direction)
                 .with_hint("ssi_form.direction_hint"),
-            Row::number(Field::Preset, "ssi_form.preset", profile.preset, "").with_hint("ssi_form.preset_hint"),
+            Row::with_number(Field::Preset, "ssi_form.preset", profile.preset, "").with_hint("ssi_form.preset_hint"),
         ],
     }
 }
 
 const CODES: [Code; 4] = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd];
-const OVER: [GrayCoverage; 3] = [GrayCoverage::Position, GrayCoverage::Area, GrayCoverage::AreaAndErrors];
+const GRAY_COVERAGES: [GrayCoverage; 3] = [GrayCoverage::Position, GrayCoverage::Area, GrayCoverage::AreaAndErrors];
 
 fn code_row(own: Code) -> Row {
     let all = CODES.map(|code| (code, words::code(code)));
-    Row::choice(Field::Code, "ssi_form.code", &all, &own)
+    Row::with_choice(Field::Code, "ssi_form.code", &all, &own)
 }
 
 fn coded_range_row(own: GrayCoverage) -> Row {
@@ -262,7 +262,7 @@ fn coded_range_row(own: GrayCoverage) -> Row {
             GrayCoverage::AreaAndErrors => "ssi_form.over_errors",
         })
     };
-    Row::choice(Field::Over, "ssi_form.over", &OVER.map(|coded| (coded, words(coded))), &own)
+    Row::with_choice(Field::Over, "ssi_form.over", &GRAY_COVERAGES.map(|coded| (coded, words(coded))), &own)
         .with_hint("ssi_form.over_hint")
 }
 
@@ -275,7 +275,7 @@ enum RangeKind {
 }
 
 impl RangeKind {
-    fn of(range: &Range) -> Self {
+    fn from_range(range: &Range) -> Self {
         match range {
             Range::Bits { .. } => RangeKind::Bits,
             Range::Steps { .. } => RangeKind::Steps,
@@ -284,7 +284,7 @@ impl RangeKind {
         }
     }
 
-    fn words(self) -> Text {
+    fn label(self) -> Text {
         TEXTS.text(match self {
             RangeKind::Bits => "ssi_form.range_bits",
             RangeKind::Steps => "ssi_form.range_steps",
@@ -302,24 +302,24 @@ fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &FrameDescrip
     }
     match descriptor.range {
         Range::Bits { multiturn, singleturn } => {
-            rows.extend(has_turns.then(|| Row::number(Field::Multiturn, "ssi_form.multiturn", multiturn, "bit")));
-            rows.push(Row::number(Field::Singleturn, "ssi_form.singleturn", singleturn, "bit"));
+            rows.extend(has_turns.then(|| Row::with_number(Field::Multiturn, "ssi_form.multiturn", multiturn, "bit")));
+            rows.push(Row::with_number(Field::Singleturn, "ssi_form.singleturn", singleturn, "bit"));
         }
         Range::Steps { per_turn, turns } => {
-            rows.push(Row::number(Field::Steps, "ssi_form.steps_per_turn", per_turn, ""));
-            rows.extend(has_turns.then(|| Row::number(Field::Turns, "ssi_form.turns", turns, "")));
+            rows.push(Row::with_number(Field::Steps, "ssi_form.steps_per_turn", per_turn, ""));
+            rows.extend(has_turns.then(|| Row::with_number(Field::Turns, "ssi_form.turns", turns, "")));
         }
         Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
-            rows.push(Row::number(Field::Steps, "ssi_form.steps_around", steps, ""));
+            rows.push(Row::with_number(Field::Steps, "ssi_form.steps_around", steps, ""));
             rows.push(
-                Row::number(Field::RevolutionsAbove, "ssi_form.revolutions", numerator, "")
+                Row::with_number(Field::RevolutionsAbove, "ssi_form.revolutions", numerator, "")
                     .with_hint("ssi_form.revolutions_hint"),
             );
-            rows.push(Row::number(Field::RevolutionsBelow, "ssi_form.revolutions_below", denominator, ""));
+            rows.push(Row::with_number(Field::RevolutionsBelow, "ssi_form.revolutions_below", denominator, ""));
         }
         Range::Length { bits, step_nanometres } => {
-            rows.push(Row::number(Field::Bits, "ssi_form.bits", bits, "bit"));
-            rows.push(Row::number(Field::StepLength, "ssi_form.step", step_nanometres, "nm"));
+            rows.push(Row::with_number(Field::Bits, "ssi_form.bits", bits, "bit"));
+            rows.push(Row::with_number(Field::StepLength, "ssi_form.step", step_nanometres, "nm"));
         }
     }
     rows.push(code_row(descriptor.code));
@@ -330,15 +330,15 @@ fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &FrameDescrip
 }
 
 fn range_row(kinds: &[RangeKind], range: &Range) -> Row {
-    let all: Vec<(RangeKind, Text)> = kinds.iter().map(|kind| (*kind, kind.words())).collect();
-    Row::choice(Field::Range, "ssi_form.range", &all, &RangeKind::of(range))
+    let all: Vec<(RangeKind, Text)> = kinds.iter().map(|kind| (*kind, kind.label())).collect();
+    Row::with_choice(Field::Range, "ssi_form.range", &all, &RangeKind::from_range(range))
 }
 
 /// Parses a whole number in any common notation, such as 3600, 3 600 or 0x0E10.
 ///
 /// # Errors
 /// Returns the reason why the entry is invalid.
-pub fn whole(text: &str) -> Result<u64, Text> {
+pub fn parse_whole(text: &str) -> Result<u64, Text> {
     let plain: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '_' | '’' | '\'')).collect();
     let number = match plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X")) {
         Some(hex) => u64::from_str_radix(hex, 16),
@@ -352,6 +352,6 @@ fn byte(number: u64) -> Option<u8> {
     u8::try_from(number).ok()
 }
 
-fn word(number: u64) -> Option<u32> {
+fn number_word(number: u64) -> Option<u32> {
     u32::try_from(number).ok()
 }

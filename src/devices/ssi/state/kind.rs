@@ -9,7 +9,7 @@ use crate::app::services::Services;
 use crate::app::session::{HasDraft, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{DeviceType, Text};
-use crate::devices::ssi::jobs::{Ssi, check};
+use crate::devices::ssi::jobs::{Ssi, check_link};
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::sim::Settings;
@@ -27,7 +27,7 @@ impl DeviceType for Encoder {
     type Tables = ();
 
     fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
-        check(url)
+        check_link(url)
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
@@ -45,7 +45,7 @@ impl DeviceType for Encoder {
         if let Some((profile, ())) = profile {
             designer.open(profile.clone());
         }
-        Encoder::with(session, designer)
+        Encoder::from_session(session, designer)
     }
 
     /// Creates a profile with the factory layout of the first family, and gives it the first unused name.

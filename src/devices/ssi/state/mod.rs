@@ -32,16 +32,16 @@ pub use connect_form::{SsiForm, SsiLinkKind};
 pub use design::{Design, Edit, LayoutDesigner};
 pub use encoder::Encoder;
 pub use export::ExportFormat;
-pub use form::{Entry, Field, FieldInput, Group, Row, whole};
-pub use record::{ReceivedWord, Record, Streamed};
+pub use form::{Entry, Field, FieldInput, Group, Row, parse_whole};
+pub use record::{ReceivedWord, Record, WordStream};
 pub use search::{Frames, Origin, SearchState, parse_frame_file, read_clocks, read_frames};
-pub use trial::{Decoded, Trial};
+pub use trial::{Decoded, TrialFrame};
 
 use std::path::PathBuf;
 
 use crate::store::FileError;
 
-pub enum Done {
+pub enum TaskResult {
     Found { number: u32, hunt: Box<SearchState> },
     Written(PathBuf, Result<(), FileError>),
 }

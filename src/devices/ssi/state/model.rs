@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::design::Edit;
-use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
+use super::{Encoder, SearchState, SsiAction, TEXTS, TaskResult};
 use crate::app::action::OpenedConnection;
 use crate::app::documents::{new_document, read_only_reason};
 use crate::app::services::{JobState, Services, StudioEnvironment};
@@ -19,7 +19,7 @@ use crate::profile::{Body, ProfileDocument, ProfileError};
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Ssi");
     type Action = SsiAction;
-    type TaskResult = Done;
+    type TaskResult = TaskResult;
 
     fn prepare_session(&self, _world: &StudioEnvironment) -> PrepareFn<Ssi> {
         let asking = self.query_settings();
@@ -28,7 +28,7 @@ impl DeviceModel for Encoder {
 
     fn connect(&mut self, opened: OpenedConnection<Ssi>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
-        self.record.begin(&opened.began);
+        self.record.begin_session(&opened.began);
         self.motor = opened.aside.clone();
         self.requested = None;
         self.session.attach_connection(opened, services);
@@ -39,22 +39,24 @@ impl DeviceModel for Encoder {
     }
 
     fn handle_action(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
-        Encoder::act(self, action, context);
+        Encoder::handle_action(self, action, context);
     }
 
-    fn handle_result(&mut self, done: Done, services: &mut Services) {
+    fn handle_result(&mut self, done: TaskResult, services: &mut Services) {
         match done {
-            Done::Found { number, hunt } => {
+            TaskResult::Found { number, hunt } => {
                 if self.hunt == SearchState::Running(number) {
                     self.hunt = *hunt;
                 }
             }
-            Done::Written(path, Ok(())) => {
+            TaskResult::Written(path, Ok(())) => {
                 services.log.remove_file_notices(&path);
                 let text = Text::new("session.saved").with("path", path.display());
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
-            Done::Written(_, Err(error)) => self.session.report_rejection(explain::file_error_text(&error), services),
+            TaskResult::Written(_, Err(error)) => {
+                self.session.report_rejection(explain::file_error_text(&error), services)
+            }
         }
     }
 
@@ -63,7 +65,7 @@ impl DeviceModel for Encoder {
     }
 
     fn apply_profile(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
-        self.edit(Edit::Whole(Box::new(body.into_profile()?)));
+        self.apply_edit(Edit::Whole(Box::new(body.into_profile()?)));
         Ok(())
     }
 
@@ -129,7 +131,7 @@ impl DeviceModel for Encoder {
 
     fn switch_link(&mut self, url: &LinkUrl) {
         if let Source::Link(before) = &self.session.source {
-            self.edit(Edit::Reading(self.designer.reading_after_link_change(before, url)));
+            self.apply_edit(Edit::Reading(self.designer.reading_after_link_change(before, url)));
         }
     }
 }

@@ -13,11 +13,11 @@ use crate::app::Recording;
 use crate::app::recorder::Recorder;
 use crate::app::track::{DeviceRecorder, PositionSample, PositionScales};
 use crate::devices::ssi::procedures::Words;
-use crate::devices::ssi::protocol::{FindingCounts, Flags, FrameDescriptor, Layout, Meaning as Says, Range};
+use crate::devices::ssi::protocol::{BitMeaning as Says, FindingCounts, Flags, FrameDescriptor, Layout, Range};
 use crate::units::Moment;
 
 /// Number of words stored for searches and for decoding with another layout.
-const KEPT: usize = 40_000;
+const MAX_STORED_WORDS: usize = 40_000;
 
 /// Words read from an encoder, decoded with its layout.
 pub struct Record {
@@ -30,7 +30,7 @@ pub struct Record {
     /// Time until which findings are hidden, if any.
     forgotten: Option<Moment>,
     last: Option<ReceivedWord>,
-    stream: Option<Streamed>,
+    stream: Option<WordStream>,
     lost: u64,
 }
 
@@ -45,13 +45,13 @@ pub struct ReceivedWord {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Streamed {
+pub struct WordStream {
     next: u64,
     period_ns: i64,
     is_limited: bool,
 }
 
-impl Streamed {
+impl WordStream {
     pub fn frame_rate_hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -66,7 +66,7 @@ impl Record {
     pub(super) fn new(layout: Layout) -> Self {
         Record {
             track: DeviceRecorder::default(),
-            meaning: meaning(&layout),
+            meaning: position_scales(&layout),
             tally: FindingCounts::default(),
             forgotten: None,
             layout,
@@ -78,28 +78,28 @@ impl Record {
         }
     }
 
-    pub(super) fn begin(&mut self, began: &Zoned) {
+    pub(super) fn begin_session(&mut self, began: &Zoned) {
         self.track.begin_session(began);
         self.kept.clear();
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
 
     /// Adds new words. `dropped` words were lost before them.
-    pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
+    pub(super) fn add_words(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
             // The numbers of streamed words show how many were dropped.
             Some(_) if dropped > 0 => self.track.mark_gap(),
             _ => self.track.record_dropped(dropped),
         }
         for run in runs {
-            self.follow(&run);
-            self.observe(&run);
+            self.compare_with_previous(&run);
+            self.add_run(&run);
             self.buffer_words(run);
         }
     }
 
     /// Compares a run with the previous one. Missing words are counted, and the line has a gap there.
-    fn follow(&mut self, run: &Words) {
+    fn compare_with_previous(&mut self, run: &Words) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
         if run.is_streamed() && (run.is_stream_start() || missing > 0) {
@@ -108,11 +108,11 @@ impl Record {
         self.lost += missing;
         let next = run.first + run.words.len() as u64;
         self.stream =
-            run.is_streamed().then_some(Streamed { next, period_ns: run.period_ns, is_limited: run.is_limited });
+            run.is_streamed().then_some(WordStream { next, period_ns: run.period_ns, is_limited: run.is_limited });
     }
 
-    fn observe(&mut self, run: &Words) {
-        let fits = run.clocks == self.layout.clocks();
+    fn add_run(&mut self, run: &Words) {
+        let fits = run.clocks == self.layout.clock_count();
         let mut sightings = Vec::with_capacity(run.words.len());
         for (at, word) in run.iter_with_times() {
             if !fits {
@@ -121,10 +121,10 @@ impl Record {
             }
             let reading = self.layout.decode(word);
             if self.forgotten.is_none_or(|until| at > until) {
-                self.tally.note(&self.layout, reading, SampleTime::from(at));
+                self.tally.count_findings(&self.layout, reading, SampleTime::from(at));
             }
             let is_bad = !self.layout.is_valid(reading);
-            let warned = || self.layout.findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
+            let warned = || self.layout.to_findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
             let position = i64::try_from(reading.position).ok();
             // The search for findings is skipped for most words, which have none.
             let is_warned = reading.flags != Flags::NONE && warned();
@@ -135,7 +135,7 @@ impl Record {
             self.last = Some(ReceivedWord {
                 at,
                 clocks: run.clocks,
-                decoded: fits.then(|| Decoded::of(&self.layout, word)),
+                decoded: fits.then(|| Decoded::decode(&self.layout, word)),
                 word,
             });
         }
@@ -144,7 +144,7 @@ impl Record {
     fn buffer_words(&mut self, run: Words) {
         self.held += run.words.len();
         self.kept.push_back(run);
-        while self.held > KEPT && self.kept.len() > 1 {
+        while self.held > MAX_STORED_WORDS && self.kept.len() > 1 {
             self.held -= self.kept.pop_front().map_or(0, |run| run.words.len());
         }
     }
@@ -159,36 +159,36 @@ impl Record {
         if descriptor_without_names(&before) == descriptor_without_names(layout) {
             self.tally.rename();
             if let Some(last) = self.last.as_mut() {
-                last.decoded = (last.clocks == layout.clocks()).then(|| Decoded::of(layout, last.word));
+                last.decoded = (last.clocks == layout.clock_count()).then(|| Decoded::decode(layout, last.word));
             }
             return;
         }
-        self.meaning = meaning(layout);
+        self.meaning = position_scales(layout);
         self.tally.reset();
         self.track.prepare_redecoding(self.held);
         let kept = std::mem::take(&mut self.kept);
         let (lost, stream) = (self.lost, self.stream);
         for run in &kept {
-            self.follow(run);
-            self.observe(run);
+            self.compare_with_previous(run);
+            self.add_run(run);
         }
         (self.kept, self.lost, self.stream) = (kept, lost, stream);
     }
 
     /// Returns the newest stored words without a gap that have the given number of clocks.
-    pub(super) fn words(&self, clocks: u8) -> Vec<u64> {
-        let mut runs: Vec<&Words> = self.runs(clocks).collect();
+    pub(super) fn latest_words(&self, clocks: u8) -> Vec<u64> {
+        let mut runs: Vec<&Words> = self.recent_runs(clocks).collect();
         runs.reverse();
         runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
     }
 
     /// Returns the number of the newest stored words without a gap that have the given number of clocks.
     pub fn count(&self, clocks: u8) -> usize {
-        self.runs(clocks).map(|run| run.words.len()).sum()
+        self.recent_runs(clocks).map(|run| run.words.len()).sum()
     }
 
     /// Returns an iterator over consecutive runs, from the newest to the oldest.
-    fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
+    fn recent_runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
         let mut later: Option<&Words> = None;
         self.kept.iter().rev().take_while(move |run| {
             let goes_on = later.is_none_or(|later| {
@@ -200,7 +200,7 @@ impl Record {
         })
     }
 
-    pub fn tally(&self) -> &FindingCounts {
+    pub fn finding_counts(&self) -> &FindingCounts {
         &self.tally
     }
 
@@ -215,11 +215,11 @@ impl Record {
     }
 
     /// Returns the current stream, or `None` if words are read one at a time.
-    pub(super) fn streamed(&self) -> Option<&Streamed> {
+    pub(super) fn current_stream(&self) -> Option<&WordStream> {
         self.stream.as_ref()
     }
 
-    pub fn positions(&self) -> u64 {
+    pub fn position_count(&self) -> u64 {
         self.track.position_count()
     }
 }
@@ -255,7 +255,7 @@ fn descriptor_without_names(layout: &Layout) -> FrameDescriptor {
 }
 
 /// Returns the meaning of a layout's positions.
-fn meaning(layout: &Layout) -> PositionScales {
+fn position_scales(layout: &Layout) -> PositionScales {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
     match range {

@@ -6,15 +6,15 @@ mod tests;
 
 use std::path::Path;
 
-use super::form::whole;
+use super::form::parse_whole;
 use crate::app::{Text, explain};
-use crate::devices::ssi::protocol::{ExtractedFrames, FrameTextError, Search, bursts, parse_frame};
+use crate::devices::ssi::protocol::{ExtractedFrames, FrameTextError, Search, extract_frames, parse_frame};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::store::{FileError, FileErrorKind, read_file};
 
 /// Maximum number of frames searched, counted from the newest.
-pub(super) const MOST: usize = 8_000;
+pub(super) const MAX_SEARCHED_FRAMES: usize = 8_000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
@@ -59,7 +59,7 @@ pub enum SearchState {
 /// # Errors
 /// Returns a message if the text is not a whole number, or if no frame has so many clocks.
 pub fn read_clocks(text: &str) -> Result<u8, Text> {
-    let number = whole(text)?;
+    let number = parse_whole(text)?;
     let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
     clocks.ok_or_else(|| TEXTS.text("ssi_find.clocks_range").with("clocks", number))
 }
@@ -73,7 +73,7 @@ pub fn read_clocks(text: &str) -> Result<u8, Text> {
 /// # Errors
 /// Returns a message if the file cannot be read, or if a line is not a frame. The message names the line.
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
-    let text = read_file(path).map_err(|error| file(&error))?;
+    let text = read_file(path).map_err(|error| file_error_text(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     parse_frame_file(&text, name, clocks)
 }
@@ -83,14 +83,14 @@ pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
 /// # Errors
 /// Returns a message with the number of the line that is not a frame.
 pub fn parse_frame_file(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
-    let read = match capture::levels(text) {
-        Some(levels) => frames_from_bursts(bursts(&levels?).map_err(words::bursts)?),
-        None => table(text, clocks).unwrap_or_else(|| parse_frames(text, clocks))?,
+    let read = match capture::parse_levels(text) {
+        Some(levels) => frames_from_bursts(extract_frames(&levels?).map_err(words::burst_error_text)?),
+        None => parse_table(text, clocks).unwrap_or_else(|| parse_frames(text, clocks))?,
     };
     Ok(Frames { origin: Origin::File(name), ..read })
 }
 
-fn file(error: &FileError) -> Text {
+fn file_error_text(error: &FileError) -> Text {
     match &error.problem {
         FileErrorKind::TooLarge { limit } => {
             let path = error.path.display();
@@ -111,7 +111,7 @@ fn numbered_text(line: usize, why: Text) -> Text {
 
 /// Parses a table of `position ssi --csv`, in which frames are decimal numbers. Returns `None` if the text is not such
 /// a table.
-fn table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
+fn parse_table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
     const HEADING: &str = "t_s,raw,";
     let rows = (1..).zip(text.lines()).map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')));
     let mut rows = rows.filter(|(_, line)| !line.is_empty());
@@ -158,7 +158,7 @@ fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
         let (place, width) = match (own, place) {
             (Some(own), _) => own,
             (None, Some(place)) => {
-                let bits = columns.get(place).and_then(|column| bits_of(column));
+                let bits = columns.get(place).and_then(|column| count_bits(column));
                 are_numbers = bits.is_none();
                 *own.insert((place, bits.unwrap_or(clocks)))
             }
@@ -184,7 +184,7 @@ fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
 fn columns(line: &str) -> Vec<&str> {
     let first = line.split_whitespace().next().unwrap_or_default();
     let parted = line.contains([',', ';', '\t']);
-    let groups = bits_of(line).is_some() && bits_of(first).is_some_and(|bits| bits <= 8);
+    let groups = count_bits(line).is_some() && count_bits(first).is_some_and(|bits| bits <= 8);
     let columns: Vec<&str> = match () {
         () if parted => line.split([',', ';', '\t']).collect(),
         () if is_frame(first) && !groups => line.split_whitespace().collect(),
@@ -196,10 +196,10 @@ fn columns(line: &str) -> Vec<&str> {
 /// Returns whether a column looks like a frame. It must have more than four bits, or 0x and hexadecimal digits.
 fn is_frame(column: &str) -> bool {
     let hex = column.strip_prefix("0x").or(column.strip_prefix("0X"));
-    hex.is_some() || bits_of(column).is_some_and(|bits| bits >= 4)
+    hex.is_some() || count_bits(column).is_some_and(|bits| bits >= 4)
 }
 
-fn bits_of(column: &str) -> Option<u8> {
+fn count_bits(column: &str) -> Option<u8> {
     let bits = column.strip_prefix("0b").or(column.strip_prefix("0B")).unwrap_or(column);
     let mut bits = bits.chars().filter(|bit| *bit != '_' && !bit.is_whitespace()).peekable();
     bits.peek()?;

@@ -6,10 +6,12 @@ mod moving;
 mod tests;
 mod words;
 
-pub use moving::moved;
-pub use words::{bare, cell, clocks, field, handle, hint, name, reach_text, short, value};
+pub use moving::move_part;
+pub use words::{
+    cell_text, clocks_text, field, field_name, handle_hint, handle_text, name, reach_text, short_label, value,
+};
 
-use crate::devices::ssi::protocol::{Flags, GrayCoverage, Layout, Meaning, Range, Role, Word};
+use crate::devices::ssi::protocol::{BitMeaning, Flags, GrayCoverage, Layout, Range, Role, Word};
 
 /// A frame divided into cells and fields.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,11 +90,11 @@ pub enum Handle {
 pub struct CellState {
     pub bit: bool,
     /// Effect on the position, if the bit is an active error bit, or is 1 instead of 0.
-    pub tells: Option<Meaning>,
+    pub tells: Option<BitMeaning>,
 }
 
 impl Strip {
-    pub fn of(layout: &Layout) -> Self {
+    pub fn from_layout(layout: &Layout) -> Self {
         let descriptor = layout.descriptor();
         let roles = layout.clock_roles();
         let is_position = |role: &Role| matches!(role, Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_));
@@ -103,7 +105,7 @@ impl Strip {
             (Some(last), Some(first)) => last..first,
             _ => 0..0,
         };
-        let word = usize::from(descriptor.word());
+        let word = usize::from(descriptor.clocks_per_word());
         let gap = descriptor.repeat.map_or(0, |repeat| usize::from(repeat.gap));
         let kind = |at: usize, role: Role| match role {
             Role::Zero if at >= word + gap => Kind::After,
@@ -124,7 +126,7 @@ impl Strip {
             kind => kind,
         };
         let (mut cells, mut fields): (Vec<Cell>, Vec<Field>) = (Vec::new(), Vec::new());
-        for (at, (clock, role)) in (1..=layout.clocks()).zip(&roles).enumerate() {
+        for (at, (clock, role)) in (1..=layout.clock_count()).zip(&roles).enumerate() {
             let kind = kind(at, *role);
             match fields.last_mut() {
                 Some(field) if field.kind == kind => field.last = clock,
@@ -158,14 +160,14 @@ impl Strip {
         moving::clock(&self.layout, handle)
     }
 
-    /// Returns the strip after a part was moved to a clock, or as close to it as possible. See [`moved`].
-    pub fn moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
-        Strip::of(&moved(&self.layout, handle, to, following))
+    /// Returns the strip after a part was moved to a clock, or as close to it as possible. See [`with_part_moved`].
+    pub fn with_part_moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
+        Strip::from_layout(&move_part(&self.layout, handle, to, following))
     }
 
     /// Returns the first and the last clock to which a part can be moved.
     pub fn limits(&self, handle: Handle, following: bool) -> (u8, u8) {
-        let end = |to| moving::clock(&moved(&self.layout, handle, to, following), handle).unwrap_or(to);
+        let end = |to| moving::clock(&move_part(&self.layout, handle, to, following), handle).unwrap_or(to);
         (end(0), end(u8::MAX))
     }
 
@@ -179,19 +181,19 @@ impl Strip {
     pub fn cell_states(&self, frame: u64) -> Vec<CellState> {
         let descriptor = self.layout.descriptor();
         let flags = self.layout.decode(frame).flags;
-        let cells = self.layout.cells(frame).into_iter();
+        let cells = self.layout.to_cells(frame).into_iter();
         cells
             .map(|cell| {
                 let tells = match cell.role {
-                    Role::Error(index) if flags.has(Flags::error(index)) => {
+                    Role::Error(index) if flags.contains(Flags::error(index)) => {
                         descriptor.errors.get(index).map(|bit| bit.meaning)
                     }
                     // If the Gray code covers more than the position, a zero can be sent as a 1.
                     Role::Zero if descriptor.coded == GrayCoverage::Position && cell.bit != descriptor.inverted => {
-                        Some(Meaning::Warning)
+                        Some(BitMeaning::Warning)
                     }
-                    Role::Parity if flags.has(Flags::PARITY) => Some(Meaning::Invalid),
-                    Role::Again(clock) if self.bit(frame, clock) != cell.bit => Some(Meaning::Invalid),
+                    Role::Parity if flags.contains(Flags::PARITY) => Some(BitMeaning::Invalid),
+                    Role::Again(clock) if self.bit(frame, clock) != cell.bit => Some(BitMeaning::Invalid),
                     _ => None,
                 };
                 CellState { bit: cell.bit, tells }
@@ -200,7 +202,7 @@ impl Strip {
     }
 
     fn bit(&self, frame: u64, clock: u8) -> bool {
-        let behind = self.layout.clocks().saturating_sub(clock);
+        let behind = self.layout.clock_count().saturating_sub(clock);
         frame >> behind & 1 == 1
     }
 }
@@ -228,7 +230,7 @@ impl Handle {
 }
 
 /// Returns whether error or parity bits directly follow the position and so move with its end.
-pub fn follows(layout: &Layout) -> bool {
+pub fn bits_follow_position(layout: &Layout) -> bool {
     !moving::bits_after_position(layout).is_empty()
 }
 
@@ -248,8 +250,8 @@ enum PositionParts {
 }
 
 impl PositionParts {
-    fn of(layout: &Layout) -> Self {
-        let bits = layout.coding().bits();
+    fn from_layout(layout: &Layout) -> Self {
+        let bits = layout.position_code().bits();
         match layout.descriptor().range {
             Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn => {
                 if multiturn > 0 && singleturn > 0 {

@@ -4,9 +4,9 @@
 #[cfg(test)]
 mod tests;
 
-use super::strip::{Field, Strip, cell};
+use super::strip::{Field, Strip, cell_text};
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Layout, ReadConditions, Taken, Times, Timing};
+use crate::devices::ssi::protocol::{Layout, ReadConditions, SamplingMoment, Times, Timing};
 use crate::devices::ssi::state::TEXTS;
 
 /// Timing diagram of a burst, until the next burst has begun.
@@ -78,15 +78,15 @@ pub struct Bit {
 }
 
 /// Duration without an event that is replaced by a break, in bursts.
-const LONG: f64 = 1.5;
+const MIN_BREAK_BURSTS: f64 = 1.5;
 /// Duration that is drawn on either side of a break, in bursts.
-const KEPT: f64 = 0.4;
+const BREAK_MARGIN_BURSTS: f64 = 0.4;
 /// Number of clocks of the next burst that are drawn.
-const NEXT: f64 = 2.5;
+const NEXT_BURST_CLOCKS: f64 = 2.5;
 
 impl BurstDiagram {
-    pub fn of(layout: &Layout, times: &Times, reads: &ReadConditions) -> Self {
-        let reads = ReadConditions { clocks: layout.clocks(), ..*reads };
+    pub fn new(layout: &Layout, times: &Times, reads: &ReadConditions) -> Self {
+        let reads = ReadConditions { clocks: layout.clock_count(), ..*reads };
         let timing = times.calculate_timing(&reads);
         let (period, burst) = (timing.period.as_secs_f64(), timing.burst.as_secs_f64());
         let (pause, cycle) = (reads.pause.as_secs_f64(), timing.cycle.as_secs_f64());
@@ -103,13 +103,13 @@ impl BurstDiagram {
             span(TimingSpanKind::LeastPause, burst, burst + timing.least_pause.as_secs_f64()),
         ];
         let mode = times.synchronous.filter(|_| reads.synchronous);
-        let first = if matches!(mode.map(|mode| mode.taken), Some(Taken::FirstEdge)) {
+        let first = if matches!(mode.map(|mode| mode.taken), Some(SamplingMoment::FirstEdge)) {
             TimingEvent::Taken
         } else {
             TimingEvent::Latched
         };
         let mut marks = vec![TimingMark { event: first, at: 0.0 }];
-        if let Some(Taken::Behind { starts, ready }) = mode.map(|mode| mode.taken) {
+        if let Some(SamplingMoment::Behind { starts, ready }) = mode.map(|mode| mode.taken) {
             let (starts, ready) = (burst + starts * 1e-6, burst + (starts + ready) * 1e-6);
             spans.push(span(TimingSpanKind::Making, starts, ready));
             marks.extend([
@@ -119,20 +119,20 @@ impl BurstDiagram {
         }
         marks.push(TimingMark { event: TimingEvent::Next, at: cycle });
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let pieces = pieces(burst, cycle + NEXT * period, &spans, &marks);
-        BurstDiagram { strip: Strip::of(layout), timing, pieces, spans, marks }
+        let pieces = axis_sections(burst, cycle + NEXT_BURST_CLOCKS * period, &spans, &marks);
+        BurstDiagram { strip: Strip::from_layout(layout), timing, pieces, spans, marks }
     }
 
     pub const fn strip(&self) -> &Strip {
         &self.strip
     }
 
-    pub fn pieces(&self) -> &[AxisSection] {
+    pub fn sections(&self) -> &[AxisSection] {
         &self.pieces
     }
 
     /// Returns the duration in seconds that is left out after a section. It is 0 after the last section.
-    pub fn broken(&self, piece: usize) -> f64 {
+    pub fn gap_after(&self, piece: usize) -> f64 {
         let ends = self.pieces.get(piece).zip(self.pieces.get(piece + 1));
         ends.map_or(0.0, |(own, next)| next.from - own.to)
     }
@@ -146,10 +146,10 @@ impl BurstDiagram {
     }
 
     /// Returns the times of the clock edges in seconds. The clock idles high, so the first edge falls.
-    pub fn edges(&self) -> Vec<f64> {
+    pub fn clock_edges(&self) -> Vec<f64> {
         let (half, cycle) = (self.timing.period.as_secs_f64() / 2.0, self.timing.cycle.as_secs_f64());
-        let own = (0..2 * u32::from(self.clocks())).map(|edge| f64::from(edge) * half);
-        let next = (0..6).map(|edge| cycle + f64::from(edge) * half).filter(|at| *at < self.end());
+        let own = (0..2 * u32::from(self.clock_count())).map(|edge| f64::from(edge) * half);
+        let next = (0..6).map(|edge| cycle + f64::from(edge) * half).filter(|at| *at < self.end_time());
         own.chain(next).collect()
     }
 
@@ -158,7 +158,9 @@ impl BurstDiagram {
         let period = self.timing.period.as_secs_f64();
         let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
         let burst = self.timing.burst.as_secs_f64();
-        (1..=self.clocks()).map(|clock| Bit { clock, from: comes(clock), to: comes(clock + 1).min(burst) }).collect()
+        (1..=self.clock_count())
+            .map(|clock| Bit { clock, from: comes(clock), to: comes(clock + 1).min(burst) })
+            .collect()
     }
 
     /// Returns the start and the end of a field on the data line in seconds.
@@ -170,7 +172,7 @@ impl BurstDiagram {
 
     /// Returns three times in seconds: the data line goes low after the bits, and it rises again between the second and
     /// the third time. It rises with the next burst at the latest.
-    pub fn low(&self) -> (f64, f64, f64) {
+    pub fn low_times(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
         (burst, (burst + least.as_secs_f64()).min(cycle), (burst + most.as_secs_f64()).min(cycle))
@@ -181,7 +183,7 @@ impl BurstDiagram {
         self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
     }
 
-    pub fn end(&self) -> f64 {
+    pub fn end_time(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
@@ -190,20 +192,20 @@ impl BurstDiagram {
     pub fn texts_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
-            texts.push(cell(&self.strip, bit.clock));
+            texts.push(cell_text(&self.strip, bit.clock));
         } else {
             let waits = [TimingSpanKind::Monoflop, TimingSpanKind::Making, TimingSpanKind::Pause];
             let is_in = |span: &&TimingSpan| waits.contains(&span.activity) && (span.from..span.to).contains(&at);
-            texts.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
+            texts.extend(self.spans.iter().filter(is_in).map(|span| self.span_text(span)));
         }
         texts
     }
 
-    pub fn words(&self, span: &TimingSpan) -> Text {
+    pub fn span_text(&self, span: &TimingSpan) -> Text {
         let long = time(span.to - span.from);
         let text = match span.activity {
             TimingSpanKind::Period => TEXTS.text("ssi.timing_period"),
-            TimingSpanKind::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clocks()),
+            TimingSpanKind::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clock_count()),
             TimingSpanKind::Pause => TEXTS.text("ssi.timing_pause"),
             TimingSpanKind::Monoflop if span.least < span.to => {
                 TEXTS.text("ssi.timing_monoflop_between").with_text("least", time(span.least - span.from))
@@ -215,13 +217,13 @@ impl BurstDiagram {
         text.with_text("time", long)
     }
 
-    fn clocks(&self) -> u8 {
-        self.strip.layout().clocks()
+    fn clock_count(&self) -> u8 {
+        self.strip.layout().clock_count()
     }
 }
 
 impl TimingEvent {
-    pub fn words(self) -> Text {
+    pub fn to_text(self) -> Text {
         TEXTS.text(match self {
             TimingEvent::Latched => "ssi.timing_latched",
             TimingEvent::Taken => "ssi.timing_taken",
@@ -282,7 +284,7 @@ pub fn read_frequency(text: &str) -> Result<u32, Text> {
 }
 
 /// Returns the sections of the time axis to draw: the complete burst, and the time around each event after it.
-fn pieces(burst: f64, end: f64, spans: &[TimingSpan], marks: &[TimingMark]) -> Vec<AxisSection> {
+fn axis_sections(burst: f64, end: f64, spans: &[TimingSpan], marks: &[TimingMark]) -> Vec<AxisSection> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();
     let end = moments.iter().copied().fold(end, f64::max);
@@ -291,9 +293,9 @@ fn pieces(burst: f64, end: f64, spans: &[TimingSpan], marks: &[TimingMark]) -> V
     let mut pieces = Vec::new();
     let (mut from, mut last) = (0.0, burst);
     for at in moments {
-        if at - last > LONG * burst {
-            pieces.push(AxisSection { from, to: last + KEPT * burst });
-            from = at - KEPT * burst;
+        if at - last > MIN_BREAK_BURSTS * burst {
+            pieces.push(AxisSection { from, to: last + BREAK_MARGIN_BURSTS * burst });
+            from = at - BREAK_MARGIN_BURSTS * burst;
         }
         last = at;
     }

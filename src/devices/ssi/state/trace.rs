@@ -5,7 +5,7 @@ use crate::buses::bridge::protocol::Request;
 use crate::buses::bridge::state::traced;
 use crate::link::{Direction, TraceEntry};
 
-pub(super) fn meaning(entry: &TraceEntry) -> FrameExplanation {
+pub(super) fn explain(entry: &TraceEntry) -> FrameExplanation {
     let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::from_error(Text::new("trace.hidden")) };
     if entry.direction == Direction::Received
         && let Some(fault) = traced::explain_received(&bytes)

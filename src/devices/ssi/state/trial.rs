@@ -6,7 +6,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trial {
+pub struct TrialFrame {
     frame: u64,
     problem: Option<Text>,
 }
@@ -24,19 +24,19 @@ pub struct Decoded {
 }
 
 impl Decoded {
-    pub fn of(layout: &Layout, frame: u64) -> Self {
+    pub fn decode(layout: &Layout, frame: u64) -> Self {
         let reading = layout.decode(frame);
-        let is_none = reading.flags.has(Flags::CODE);
-        let place = (!is_none).then(|| (reading.position, layout.descriptor().range.place(reading.position)));
-        Decoded { frame, reading, place, findings: layout.findings(reading), is_valid: layout.is_valid(reading) }
+        let is_none = reading.flags.contains(Flags::CODE);
+        let place = (!is_none).then(|| (reading.position, layout.descriptor().range.locate(reading.position)));
+        Decoded { frame, reading, place, findings: layout.to_findings(reading), is_valid: layout.is_valid(reading) }
     }
 
-    pub fn cells(&self, layout: &Layout) -> Vec<Cell> {
-        layout.cells(self.frame)
+    pub fn to_cells(&self, layout: &Layout) -> Vec<Cell> {
+        layout.to_cells(self.frame)
     }
 }
 
-impl Trial {
+impl TrialFrame {
     pub fn frame(&self) -> u64 {
         self.frame
     }
@@ -45,17 +45,17 @@ impl Trial {
         self.problem.as_ref()
     }
 
-    pub fn decoded(&self, layout: &Layout) -> Decoded {
-        Decoded::of(layout, self.frame)
+    pub fn decode(&self, layout: &Layout) -> Decoded {
+        Decoded::decode(layout, self.frame)
     }
 
     /// Sets the position of the frame. Error bits are kept.
     pub(super) fn set_position(&mut self, layout: &Layout, position: u64) {
         let errors = error_bits(layout, layout.decode(self.frame).flags);
         match layout.encode(position, errors) {
-            Some(frame) => self.set(frame),
+            Some(frame) => self.set_frame(frame),
             None => {
-                let most = layout.coding().last();
+                let most = layout.position_code().last();
                 self.problem = Some(TEXTS.text("ssi_trial.range").with("position", position).with("most", most));
             }
         }
@@ -70,34 +70,34 @@ impl Trial {
     }
 
     pub(super) fn set_text(&mut self, layout: &Layout, text: &str) {
-        match parse_frame(text, layout.clocks()) {
-            Ok(frame) => self.set(frame),
+        match parse_frame(text, layout.clock_count()) {
+            Ok(frame) => self.set_frame(frame),
             Err(error) => self.problem = Some(words::frame_text(&error)),
         }
     }
 
     /// Inverts the bit at a clock, counted from 1.
     pub(super) fn toggle(&mut self, layout: &Layout, clock: u8) {
-        if (1..=layout.clocks()).contains(&clock) {
-            self.set(self.frame ^ 1 << (layout.clocks() - clock));
+        if (1..=layout.clock_count()).contains(&clock) {
+            self.set_frame(self.frame ^ 1 << (layout.clock_count() - clock));
         }
     }
 
-    pub(super) fn set(&mut self, frame: u64) {
-        *self = Trial { frame, problem: None };
+    pub(super) fn set_frame(&mut self, frame: u64) {
+        *self = TrialFrame { frame, problem: None };
     }
 
     /// Switches to another layout. The position is kept if the new layout contains it.
-    pub(super) fn follow(&mut self, before: &Layout, now: &Layout) {
+    pub(super) fn switch_layout(&mut self, before: &Layout, now: &Layout) {
         let reading = before.decode(self.frame);
-        let position = reading.position.min(now.coding().last());
+        let position = reading.position.min(now.position_code().last());
         let frame = now.encode(position, Flags::NONE).unwrap_or(0);
-        self.set(frame);
+        self.set_frame(frame);
     }
 }
 
 /// Returns the flags of error bits. Only these can be encoded.
 fn error_bits(layout: &Layout, flags: Flags) -> Flags {
     let all = (0..layout.descriptor().errors.len()).map(Flags::error);
-    all.filter(|error| flags.has(*error)).fold(Flags::NONE, Flags::with)
+    all.filter(|error| flags.contains(*error)).fold(Flags::NONE, Flags::union)
 }

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::state::TEXTS;
 
-pub(super) fn job(job: &SsiJob) -> Text {
+pub(super) fn job_name(job: &SsiJob) -> Text {
     match job {
         SsiJob::Hello => TEXTS.text("ssi_job.hello"),
         SsiJob::Set(asking) => TEXTS.text("ssi_job.set").with("clocks", asking.clocks),

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::app::connect::ConnectDialog as Dialog;
 use crate::devices::ssi::state::{SsiForm, SsiLinkKind};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::parameter::Entry;
 use crate::ui::Theme;
 use crate::ui::controls::paragraph;
@@ -35,11 +35,13 @@ impl TypedConnectForm for SsiConnectForm {
         ];
         segmented_control(ui, theme, &mut form.kind, ways);
         if form.kind == SsiLinkKind::Adapter {
-            paragraph(ui, theme.caption(say(theme, "connect.ssi_words")));
+            paragraph(ui, theme.caption(translate(theme, "connect.ssi_words")));
         }
         ui.add_space(theme.space.between);
         match form.kind {
-            SsiLinkKind::Virtual => entries_ui(ui, theme, say, SsiForm::virtual_device_entries(), &mut form.typed),
+            SsiLinkKind::Virtual => {
+                entries_ui(ui, theme, translate, SsiForm::virtual_device_entries(), &mut form.typed)
+            }
             SsiLinkKind::Adapter => {
                 segmented_control(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
@@ -52,17 +54,17 @@ impl TypedConnectForm for SsiConnectForm {
         }
         if form.kind != SsiLinkKind::Replay && expandable_ui(ui, theme, more) {
             let (supply, rest) = SsiForm::link_entries();
-            let none = say(theme, "connect.voltage_none");
+            let none = translate(theme, "connect.voltage_none");
             entries_ui(
                 ui,
                 theme,
-                say,
+                translate,
                 supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }),
                 &mut form.typed,
             );
-            paragraph(ui, theme.caption(say(theme, "connect.voltage_words")));
+            paragraph(ui, theme.caption(translate(theme, "connect.voltage_words")));
             supply_choice_ui(ui, theme, &mut form.leave_supply);
-            entries_ui(ui, theme, say, rest, &mut form.typed);
+            entries_ui(ui, theme, translate, rest, &mut form.typed);
         }
     }
 }

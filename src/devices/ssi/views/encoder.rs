@@ -4,10 +4,10 @@ use egui::{RichText, Ui};
 
 use super::wiring;
 use crate::app::{Action, DeviceCommand};
-use crate::devices::ssi::protocol::Meaning;
+use crate::devices::ssi::protocol::BitMeaning;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, SsiAction as Ssi, TEXTS};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with_trailing, empty_placeholder, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons, motor};
@@ -46,7 +46,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     };
     card_with_trailing(ui, theme, TEXTS.text("ssi_adapter.title"), read, |ui| {
         let Some(identity) = &encoder.identity else {
-            empty_placeholder(ui, theme, &say(theme, "ssi_adapter.nothing"), None);
+            empty_placeholder(ui, theme, &translate(theme, "ssi_adapter.nothing"), None);
             return;
         };
         let hello = &identity.hello;
@@ -60,7 +60,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
             .with("clocks", asking.clocks)
             .with_number("khz", f64::from(identity.clock_hz) / 1000.0, 0)
             .with("pause", asking.pause_us);
-        row(ui, theme, &say(theme, "ssi_adapter.reads"), theme.format_text(&text));
+        row(ui, theme, &translate(theme, "ssi_adapter.reads"), theme.format_text(&text));
         if identity.clock_hz != asking.clock_hz {
             let text = TEXTS.text("ssi_adapter.other_clock").with_number("khz", f64::from(asking.clock_hz) / 1000.0, 0);
             paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
@@ -73,16 +73,16 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
             None => TEXTS.text("ssi_adapter.supply_off"),
         });
         let supply = supply.unwrap_or_else(|| TEXTS.text("ssi_adapter.no_supply"));
-        row(ui, theme, &say(theme, "ssi_adapter.supply"), theme.format_text(&supply));
+        row(ui, theme, &translate(theme, "ssi_adapter.supply"), theme.format_text(&supply));
     });
 }
 
 /// Draws the findings. They include findings in frames that were not displayed.
 fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let noted = encoder.record.tally().finding_counts();
+    let noted = encoder.record.finding_counts().finding_counts();
     let id = encoder.session.id;
     let forget = |ui: &mut Ui| {
-        if enabled_button(ui, !noted.is_empty(), icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_tally.forget"))
+        if enabled_button(ui, !noted.is_empty(), icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "ssi_tally.forget"))
             .clicked()
         {
             actions.push(Action::device(id, Ssi::ForgetErrors));
@@ -91,12 +91,12 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
     card_with_trailing(ui, theme, TEXTS.text("ssi_tally.title"), forget, |ui| {
         if noted.is_empty() {
             let id = if encoder.last().is_some() { "ssi_tally.none" } else { "ssi_tally.nothing_read" };
-            paragraph(ui, theme.label(say(theme, id)));
+            paragraph(ui, theme.label(translate(theme, id)));
         }
         for own in noted {
             let (icon, colour) = match own.finding.meaning() {
-                Meaning::Invalid => (icons::X_CIRCLE, theme.palette.bad),
-                Meaning::Warning => (icons::WARNING, theme.palette.warn),
+                BitMeaning::Invalid => (icons::X_CIRCLE, theme.palette.bad),
+                BitMeaning::Warning => (icons::WARNING, theme.palette.warn),
             };
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(colour));

@@ -8,7 +8,7 @@ use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Class, FrameDescriptor, LayoutProposal, Search, SearchUncertainty};
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::ui::controls::{
     card, card_with_trailing, committed_entry, enabled_button, entry, icon_button, paragraph, primary_button, row,
     show_error_below, spinner,
@@ -40,7 +40,7 @@ pub(super) fn page_ui(
         SearchState::Running(_) => {
             ui.horizontal(|ui| {
                 spinner(ui, theme);
-                ui.label(say(theme, "ssi_find.running"));
+                ui.label(translate(theme, "ssi_find.running"));
             });
         }
         SearchState::Failed(why) => {
@@ -66,39 +66,45 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
     let id = encoder.session.id;
     let mut ask = |action| actions.push(Action::device(id, action));
     card(ui, theme, TEXTS.text("ssi_find.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "ssi_find.words")));
+        paragraph(ui, theme.label(translate(theme, "ssi_find.words")));
         ui.add_space(theme.space.inside);
-        let word = say(theme, "ssi_find.clocks");
+        let word = translate(theme, "ssi_find.clocks");
         entry(ui, theme, &word, |ui| {
-            committed_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
+            committed_entry(ui, &mut view.clocks, &encoder.clock_count().to_string(), 56.0, &word, |text| {
                 ask(Ssi::SetClocks(Some(read_clocks(text)?)));
                 Ok(())
             });
             if encoder.has_trial_clocks()
-                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_find.own_clocks")).clicked()
+                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "ssi_find.own_clocks"))
+                    .clicked()
             {
                 view.clocks = None;
                 ask(Ssi::SetClocks(None));
             }
         });
         show_error_below(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
-        let words = encoder.record.count(encoder.clocks());
-        row(ui, theme, &say(theme, "ssi_find.read"), theme.monospace(words.to_string()));
+        let words = encoder.record.count(encoder.clock_count());
+        row(ui, theme, &translate(theme, "ssi_find.read"), theme.monospace(words.to_string()));
         if !encoder.is_profile() && words == 0 {
-            paragraph(ui, theme.caption(say(theme, "ssi_find.poll")));
+            paragraph(ui, theme.caption(translate(theme, "ssi_find.poll")));
         }
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, true, icons::FOLDER_OPEN, &say(theme, "ssi_find.file")).clicked() {
+            if enabled_button(ui, true, icons::FOLDER_OPEN, &translate(theme, "ssi_find.file")).clicked() {
                 ask(Ssi::AskFrames);
             }
-            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &say(theme, "ssi_find.save")).clicked() {
+            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &translate(theme, "ssi_find.save")).clicked() {
                 ask(Ssi::AskSaveFrames);
             }
             let running = matches!(encoder.hunt, SearchState::Running(_));
-            let find =
-                primary_button(ui, theme, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(theme, "ssi_find.find"));
-            if find.on_disabled_hover_text(say(theme, "ssi_find.poll")).clicked() {
+            let find = primary_button(
+                ui,
+                theme,
+                words > 0 && !running,
+                icons::MAGNIFYING_GLASS,
+                &translate(theme, "ssi_find.find"),
+            );
+            if find.on_disabled_hover_text(translate(theme, "ssi_find.poll")).clicked() {
                 ask(Ssi::Find);
             }
         });
@@ -134,7 +140,7 @@ fn search_results_ui(
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, theme.format_text(&words::doubt(search.doubt)));
+        paragraph(ui, theme.format_text(&words::uncertainty_text(search.doubt)));
     });
     for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
         ui.add_space(theme.space.between);
@@ -166,7 +172,7 @@ fn class_ui(
             let shown = if all { class.members.len() } else { MEMBERS };
             for (place, proposal) in class.members.iter().take(shown).enumerate() {
                 ui.horizontal(|ui| {
-                    let word = say(theme, "ssi_find.take");
+                    let word = translate(theme, "ssi_find.take");
                     let take = enabled_button(ui, true, icons::CHECK, &word);
                     if take.clicked() {
                         actions.push(Action::device(id, Ssi::Take(number, place)));
@@ -175,7 +181,10 @@ fn class_ui(
                         ui.spacing_mut().item_spacing.y = theme.space.inside;
                         title_ui(ui, theme, encoder, proposal);
                         ui.add(
-                            egui::Label::new(theme.caption(theme.format_text(&words::frame(&proposal.layout)))).wrap(),
+                            egui::Label::new(
+                                theme.caption(theme.format_text(&words::layout_summary(&proposal.layout))),
+                            )
+                            .wrap(),
                         );
                     });
                 });
@@ -200,10 +209,10 @@ fn class_ui(
 
 fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &LayoutProposal) {
     let Some((key, settings)) = &proposal.family else {
-        ui.label(say(theme, "ssi_find.any"));
+        ui.label(translate(theme, "ssi_find.any"));
         return;
     };
-    let family = encoder.designer.families().named(key);
+    let family = encoder.designer.families().find_by_key(key);
     // Swapped wires are not a setting, so they are ignored in the search for the fewest settings.
     let frame = FrameDescriptor { inverted: false, ..proposal.layout.descriptor().clone() };
     let fewest = family.and_then(|family| family.settings_for_frame(&frame));

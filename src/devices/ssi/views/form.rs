@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 
 use egui::{Key, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::ssi::state::timing::{frequency, read_frequency};
-use crate::devices::ssi::state::{Encoder, Entry, Field, FieldInput, Row, SsiAction as Ssi, whole};
+use crate::devices::ssi::state::{Encoder, Entry, Field, FieldInput, Row, SsiAction as Ssi, parse_whole};
 use crate::ui::Theme;
 use crate::ui::controls::{committed_entry, dropdown, entry, label_width, show_error_beside};
 
@@ -17,8 +17,8 @@ pub(super) struct LayoutFormUiState {
     drafts: BTreeMap<Field, Option<(String, Option<Text>)>>,
 }
 
-const NUMBER: f32 = 104.0;
-const NAME: f32 = 160.0;
+const NUMBER_WIDTH: f32 = 104.0;
+const NAME_WIDTH: f32 = 160.0;
 
 pub(super) fn rows_ui(
     ui: &mut Ui,
@@ -59,8 +59,8 @@ pub(super) fn rows_ui(
             Entry::Number { value, unit } => {
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
-                    let response = committed_entry(ui, draft, &value.to_string(), NUMBER, &word, |text| {
-                        put(FieldInput::Number(whole(text)?));
+                    let response = committed_entry(ui, draft, &value.to_string(), NUMBER_WIDTH, &word, |text| {
+                        put(FieldInput::Number(parse_whole(text)?));
                         Ok(())
                     });
                     // The arrow keys increase and decrease the number.
@@ -75,7 +75,7 @@ pub(super) fn rows_ui(
                     if let Some(unit) = unit {
                         ui.label(theme.label(theme.format_text(unit)));
                     }
-                    show_error_beside(ui, theme, refusal(draft));
+                    show_error_beside(ui, theme, rejection(draft));
                     response
                 })
             }
@@ -83,32 +83,32 @@ pub(super) fn rows_ui(
                 let draft = view.drafts.entry(row.field).or_default();
                 let shown = theme.format_text(&frequency((*hertz).into()));
                 entry(ui, theme, &word, |ui| {
-                    let response = committed_entry(ui, draft, &shown, NUMBER, &word, |text| {
+                    let response = committed_entry(ui, draft, &shown, NUMBER_WIDTH, &word, |text| {
                         put(FieldInput::Number(read_frequency(text)?.into()));
                         Ok(())
                     });
-                    show_error_beside(ui, theme, refusal(draft));
+                    show_error_beside(ui, theme, rejection(draft));
                     response
                 })
             }
             Entry::Words(words) => {
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
-                    let response = committed_entry(ui, draft, words, NAME, &word, |text| {
+                    let response = committed_entry(ui, draft, words, NAME_WIDTH, &word, |text| {
                         put(FieldInput::Words(text.to_owned()));
                         Ok(())
                     });
-                    show_error_beside(ui, theme, refusal(draft));
+                    show_error_beside(ui, theme, rejection(draft));
                     response
                 })
             }
         };
         if let Some(hint) = row.hint {
-            response.on_hover_text(say(theme, hint));
+            response.on_hover_text(translate(theme, hint));
         }
     }
 }
 
-fn refusal(draft: &Option<(String, Option<Text>)>) -> Option<&Text> {
+fn rejection(draft: &Option<(String, Option<Text>)>) -> Option<&Text> {
     draft.as_ref()?.1.as_ref()
 }

@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};
 use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, TrialInput};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
     card_with_trailing, committed_entry, dropdown, enabled_button, folding_card, icon_button, labelled_button, name,
@@ -35,7 +35,7 @@ pub(super) fn page_ui(
 ) {
     layout(ui, theme, encoder, &mut view.frame, actions);
     theme.add_gap(ui);
-    let form = encoder.designer.form();
+    let form = encoder.designer.form_groups();
     let (left, right) = columns(&form);
     two_columns(
         ui,
@@ -89,8 +89,8 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         if encoder.link_for_layout().is_some() {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
-                ui.label(say(theme, "ssi_layout.sends_other"));
-                if labelled_button(ui, icons::PLAY, &say(theme, "ssi_layout.send")).clicked() {
+                ui.label(translate(theme, "ssi_layout.sends_other"));
+                if labelled_button(ui, icons::PLAY, &translate(theme, "ssi_layout.send")).clicked() {
                     asked.push(Action::device(id, Ssi::SendLayout));
                 }
             });
@@ -103,7 +103,7 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
             });
         }
         if designer.layout().loses_lowest_bit() {
-            paragraph(ui, RichText::new(say(theme, "ssi_layout.loses")).color(theme.palette.warn));
+            paragraph(ui, RichText::new(translate(theme, "ssi_layout.loses")).color(theme.palette.warn));
         }
     });
     actions.append(&mut asked);
@@ -117,25 +117,25 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
     let own = designer.family().and_then(|own| families.iter().position(|family| family.key == own.key));
     let mut chosen = own;
     ui.horizontal_wrapped(|ui| {
-        let word = say(theme, "ssi_layout.family");
+        let word = translate(theme, "ssi_layout.family");
         ui.label(theme.label(&word));
         let all = families.iter().enumerate().map(|(at, family)| (Some(at), family.name.clone()));
-        let free = std::iter::once((None, say(theme, "ssi_layout.free")));
+        let free = std::iter::once((None, translate(theme, "ssi_layout.free")));
         if dropdown(ui, &word, &mut chosen, free.chain(all)) {
             let key = chosen.and_then(|at| families.get(at)).map(|family| family.key.clone());
             actions.push(edit(key.map_or(Edit::Free, Edit::Family)));
         }
-        let word = say(theme, "ssi_layout.name");
+        let word = translate(theme, "ssi_layout.name");
         let profile = &designer.design().profile;
         ui.label(theme.label(&word));
         committed_entry(ui, &mut view.named, &profile.name, 160.0, &word, |text| {
             actions.push(edit(Edit::Name(text.trim().to_owned())));
             Ok(())
         });
-        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, say(theme, "ssi_layout.import")), |ui| {
+        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, translate(theme, "ssi_layout.import")), |ui| {
             ui.set_width(320.0);
-            paragraph(ui, theme.caption(say(theme, "ssi_layout.import_words")));
-            if labelled_button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
+            paragraph(ui, theme.caption(translate(theme, "ssi_layout.import_words")));
+            if labelled_button(ui, icons::PLUS, &translate(theme, "ssi.new_layout")).clicked() {
                 actions.push(Action::New(Encoder::TAB));
                 ui.close();
             }
@@ -144,10 +144,10 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
                 ui.close();
             }
             ui.separator();
-            let word = say(theme, "ssi_layout.linuxcnc");
+            let word = translate(theme, "ssi_layout.linuxcnc");
             ui.label(theme.label(&word));
             crate::ui::controls::mono_entry(ui, theme, &mut view.format, 300.0, &word, "error%1bposition%24ge");
-            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &say(theme, "ssi_layout.take"))
+            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &translate(theme, "ssi_layout.take"))
                 .clicked()
             {
                 actions.push(edit(Edit::LinuxCnc(view.format.trim().to_owned())));
@@ -161,24 +161,26 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
                 let text = TEXTS.text("ssi_layout.by_hand").with("family", &family.name);
                 ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
                 ui.label(theme.format_text(&text));
-                if labelled_button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_layout.delivered")).clicked() {
+                if labelled_button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "ssi_layout.delivered"))
+                    .clicked()
+                {
                     actions.push(edit(Edit::Family(family.key.clone())));
                 }
             });
         }
         Some(family) => {
-            paragraph(ui, theme.caption(theme.format_text(&words::note(family, &family.source))));
+            paragraph(ui, theme.caption(theme.format_text(&words::note_text(family, &family.source))));
         }
-        None => paragraph(ui, theme.caption(say(theme, "ssi_layout.free_words"))),
+        None => paragraph(ui, theme.caption(translate(theme, "ssi_layout.free_words"))),
     }
 }
 
 fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let layout = encoder.designer.layout();
     let id = encoder.session.id;
-    let strip = Strip::of(layout);
-    let label = say(theme, "ssi_layout.title");
-    let selected = view.selected.filter(|clock| *clock <= layout.clocks());
+    let strip = Strip::from_layout(layout);
+    let label = translate(theme, "ssi_layout.title");
+    let selected = view.selected.filter(|clock| *clock <= layout.clock_count());
     let model = BitStrip {
         label: &label,
         strip: &strip,
@@ -199,8 +201,8 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
         Some(StripEvent::Preview(..)) | None => {}
     }
     let words = match selected {
-        Some(clock) => theme.format_text(&strip::cell(&strip, clock)),
-        None => say(theme, "ssi_layout.hint"),
+        Some(clock) => theme.format_text(&strip::cell_text(&strip, clock)),
+        None => translate(theme, "ssi_layout.hint"),
     };
     paragraph(ui, theme.caption(words));
 }
@@ -211,7 +213,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
     let mut asked = None;
     let aside = |ui: &mut Ui| {
         if let Some(index) = error
-            && icon_button(ui, true, icons::TRASH, &say(theme, "ssi_form.remove_error")).clicked()
+            && icon_button(ui, true, icons::TRASH, &translate(theme, "ssi_form.remove_error")).clicked()
         {
             asked = Some(Ssi::RemoveErrorBit(index));
         }
@@ -224,7 +226,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
                     ui,
                     encoder.designer.with_error_bit().is_some(),
                     icons::PLUS,
-                    &say(theme, "ssi_form.add_error"),
+                    &translate(theme, "ssi_form.add_error"),
                 )
                 .clicked()
             {
@@ -260,7 +262,7 @@ fn buttons_ui(
             }
             adopt_for_device_ui(ui, theme, studio, device, actions);
             if is_dirty {
-                let words = RichText::new(say(theme, "ssi_layout.unsaved")).color(theme.palette.staged);
+                let words = RichText::new(translate(theme, "ssi_layout.unsaved")).color(theme.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
             }
         });
@@ -273,7 +275,7 @@ fn adopt_for_device_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &Any
     if targets.is_empty() {
         return;
     }
-    let word = say(theme, "ssi_layout.take_for");
+    let word = translate(theme, "ssi_layout.take_for");
     let menu = ui.menu_button(format!("{}  {word}", icons::PLUGS_CONNECTED), |ui| {
         for target in targets {
             if ui.button(format!("{} · {}", target.name(), target.data_source())).clicked() {
@@ -282,5 +284,5 @@ fn adopt_for_device_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &Any
             }
         }
     });
-    name(menu.response, true, &word).on_hover_text(say(theme, "ssi_layout.take_for_hint"));
+    name(menu.response, true, &word).on_hover_text(translate(theme, "ssi_layout.take_for_hint"));
 }

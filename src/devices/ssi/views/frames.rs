@@ -5,11 +5,11 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::{Action, Rgb};
 use crate::devices::ssi::protocol::Location;
 use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph};
 
-const ROWS: f32 = 12.0;
+const VISIBLE_ROWS: f32 = 12.0;
 
 /// Draws the list of frames. A click on a frame decodes it with the layout.
 pub(super) fn card_ui(
@@ -21,26 +21,26 @@ pub(super) fn card_ui(
 ) {
     let layout = encoder.designer.layout();
     card(ui, theme, TEXTS.text("ssi_frames.title"), |ui| {
-        if layout.clocks() != clocks {
-            let text = TEXTS.text("ssi_frames.other_clocks").with("bits", clocks).with("clocks", layout.clocks());
+        if layout.clock_count() != clocks {
+            let text = TEXTS.text("ssi_frames.other_clocks").with("bits", clocks).with("clocks", layout.clock_count());
             paragraph(ui, theme.caption(theme.format_text(&text)));
             return;
         }
-        paragraph(ui, theme.caption(say(theme, "ssi_frames.try")));
+        paragraph(ui, theme.caption(translate(theme, "ssi_frames.try")));
         let digits = usize::from(clocks).div_ceil(4);
         let names = ["ssi_frames.number", "ssi_frames.frame", "ssi_trial.position", "live.turns", "live.step"];
-        let [number, frame, position, turns, steps] = names.map(|id| say(theme, id));
+        let [number, frame, position, turns, steps] = names.map(|id| translate(theme, id));
         let heading = row(&[&number, &frame, &position, &turns, &steps], digits);
         ui.label(theme.monospace(heading).color(theme.palette.muted));
         let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
         // The rows of the table have no space around their buttons.
         let spacing = ui.spacing_mut();
         (spacing.item_spacing.y, spacing.interact_size.y, spacing.button_padding.y) = (0.0, height, 0.0);
-        let seen = ROWS * height;
+        let seen = VISIBLE_ROWS * height;
         let area = ScrollArea::vertical().id_salt("frames").max_height(seen).min_scrolled_height(seen);
         area.auto_shrink([false, true]).show_rows(ui, height, frames.len(), |ui, rows| {
             for (index, frame) in frames.iter().enumerate().skip(rows.start).take(rows.len()) {
-                let decoded = Decoded::of(layout, *frame);
+                let decoded = Decoded::decode(layout, *frame);
                 let (words, colour) = decoded_summary(theme, index + 1, &decoded, digits);
                 let text = RichText::new(words).monospace().color(colour);
                 if ui.add(egui::Button::new(text).frame(false)).clicked() {

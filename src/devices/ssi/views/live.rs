@@ -3,9 +3,9 @@
 use egui::{RichText, Ui};
 
 use crate::app::Rgb;
-use crate::devices::ssi::protocol::{Location, Meaning};
+use crate::devices::ssi::protocol::{BitMeaning, Location};
 use crate::devices::ssi::state::{Encoder, TEXTS};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::row;
 use crate::ui::panels::live::{LOW_PANEL_HEIGHT, raw_row, remark_ui as mark_ui};
@@ -24,7 +24,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
         ui.label(theme.label(unit));
         let Some(decoded) = decoded else { return };
-        let is_warned = decoded.findings.iter().any(|finding| finding.meaning() == Meaning::Warning);
+        let is_warned = decoded.findings.iter().any(|finding| finding.meaning() == BitMeaning::Warning);
         let mark = match (decoded.is_valid, is_warned) {
             (false, _) => Some(("live.invalid", palette.bad)),
             (true, true) => Some(("live.warning", palette.warn)),
@@ -55,11 +55,11 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         if let Some((position, Location::Shaft { turns, steps, .. })) = place {
             row(ui, theme, &theme.translate("live.turns"), theme.monospace(turns.to_string()));
             row(ui, theme, &theme.translate("live.step"), theme.monospace(steps.to_string()));
-            row(ui, theme, &say(theme, "ssi_trial.position"), theme.monospace(position.to_string()));
+            row(ui, theme, &translate(theme, "ssi_trial.position"), theme.monospace(position.to_string()));
         }
         raw_row(ui, theme, raw);
     }
-    if let Some(stream) = encoder.streamed() {
+    if let Some(stream) = encoder.current_stream() {
         let clock_hz = encoder.identity.as_ref().map_or(0, |identity| identity.clock_hz);
         let text = TEXTS.text(if stream.is_limited() { "live.streamed_all" } else { "live.streamed" });
         let text =

@@ -97,7 +97,7 @@ impl TypedDeviceView for SsiView {
 
     fn empty_ui(ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         // A layout can be created without a device.
-        if labelled_button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
+        if labelled_button(ui, icons::PLUS, &translate(theme, "ssi.new_layout")).clicked() {
             actions.push(Action::New(Encoder::TAB));
         }
     }
@@ -108,6 +108,6 @@ impl TypedDeviceView for SsiView {
 }
 
 /// Returns a message of the SSI catalogue, or else of the common one, in the language of the window.
-pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

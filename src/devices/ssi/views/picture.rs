@@ -9,13 +9,13 @@ use crate::devices::ssi::protocol::{Picture, PictureLabel, PictureShape, Polylin
 use crate::ui::Theme;
 
 /// Minimum scale at which the numbers are legible. A picture that would be smaller can be scrolled.
-const LEAST_SCALE: f32 = 0.75;
-const MOST_SCALE: f32 = 1.4;
+const MIN_SCALE: f32 = 0.75;
+const MAX_SCALE: f32 = 1.4;
 
 /// Draws a picture on a white background in the available width. Its title is the accessible name.
 pub(super) fn picture_ui(ui: &mut Ui, theme: &Theme, picture: &Picture) {
     ScrollArea::horizontal().id_salt("picture").auto_shrink([false, true]).show(ui, |ui| {
-        let scale = (ui.available_width() / picture.width as f32).clamp(LEAST_SCALE, MOST_SCALE);
+        let scale = (ui.available_width() / picture.width as f32).clamp(MIN_SCALE, MAX_SCALE);
         let size = Vec2::new(picture.width as f32, picture.height as f32) * scale;
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         let told = texts(picture);
@@ -48,7 +48,7 @@ struct DiagramCanvas<'a> {
 }
 
 impl DiagramCanvas<'_> {
-    fn at(&self, x: f64, y: u32) -> Pos2 {
+    fn screen_position(&self, x: f64, y: u32) -> Pos2 {
         self.origin + Vec2::new(x as f32, y as f32) * self.scale
     }
 
@@ -56,28 +56,29 @@ impl DiagramCanvas<'_> {
         let painter = self.ui.painter();
         match shape {
             PictureShape::Box { x, y, width, height, fill, line } => {
-                let corners = [self.at(x.units(), *y), self.at(x.units() + width.units(), y + height)];
+                let corners =
+                    [self.screen_position(x.units(), *y), self.screen_position(x.units() + width.units(), y + height)];
                 let [from, to] = corners;
-                let stroke = Stroke::new(self.scale, colour(line));
-                painter.rect(Rect::from_min_max(from, to), 0.0, colour(fill), stroke, StrokeKind::Middle);
+                let stroke = Stroke::new(self.scale, parse_colour(line));
+                painter.rect(Rect::from_min_max(from, to), 0.0, parse_colour(fill), stroke, StrokeKind::Middle);
             }
-            PictureShape::Line { path, colour: own } => self.line(path, colour(own)),
+            PictureShape::Line { path, colour: own } => self.paint_line(path, parse_colour(own)),
             PictureShape::Text(label) => self.text(label),
         }
     }
 
-    fn line(&self, path: &[PolylineSegment], colour: Color32) {
+    fn paint_line(&self, path: &[PolylineSegment], colour: Color32) {
         let stroke = Stroke::new(self.scale, colour);
         let mut runs: Vec<Vec<Pos2>> = Vec::new();
         for step in path {
             let last = runs.last().and_then(|run| run.last()).copied().unwrap_or(self.origin);
             let next = match step {
                 PolylineSegment::Move(x, y) => {
-                    runs.push(vec![self.at(x.units(), *y)]);
+                    runs.push(vec![self.screen_position(x.units(), *y)]);
                     continue;
                 }
-                PolylineSegment::Across(x) => pos2(self.at(x.units(), 0).x, last.y),
-                PolylineSegment::Down(y) => pos2(last.x, self.at(0.0, *y).y),
+                PolylineSegment::Across(x) => pos2(self.screen_position(x.units(), 0).x, last.y),
+                PolylineSegment::Down(y) => pos2(last.x, self.screen_position(0.0, *y).y),
             };
             if let Some(run) = runs.last_mut() {
                 run.push(next);
@@ -91,12 +92,12 @@ impl DiagramCanvas<'_> {
         let font = if label.is_bold { self.theme.bold_font(size) } else { FontId::proportional(size) };
         let align = if label.is_centred { Align2::CENTER_BOTTOM } else { Align2::LEFT_BOTTOM };
         // Descenders reach about a fifth of the font size below the baseline.
-        let at = self.at(label.x.units(), label.y) + Vec2::new(0.0, 0.22 * size);
-        self.ui.painter().text(at, align, &label.text, font, label.colour.map_or(Color32::BLACK, colour));
+        let at = self.screen_position(label.x.units(), label.y) + Vec2::new(0.0, 0.22 * size);
+        self.ui.painter().text(at, align, &label.text, font, label.colour.map_or(Color32::BLACK, parse_colour));
     }
 }
 
 /// Parses a colour. An invalid colour becomes black.
-fn colour(text: &str) -> Color32 {
+fn parse_colour(text: &str) -> Color32 {
     Color32::from_hex(text).unwrap_or(Color32::BLACK)
 }

@@ -8,7 +8,7 @@ use crate::devices::ssi::protocol::Timing;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::timing::{BurstDiagram, frequency};
 use crate::devices::ssi::state::{Encoder, TEXTS};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::controls::{card, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
@@ -24,8 +24,8 @@ pub(super) fn page_ui(
     let rows = designer.reading_form();
     let timing = designer.timing();
     card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
-        let diagram = BurstDiagram::of(designer.layout(), &designer.applicable_times(), &designer.reads());
-        let label = say(theme, "ssi_timing.title");
+        let diagram = BurstDiagram::new(designer.layout(), &designer.applicable_times(), &designer.read_conditions());
+        let label = translate(theme, "ssi_timing.title");
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);
     });
@@ -41,7 +41,7 @@ pub(super) fn page_ui(
             card(ui, theme, TEXTS.text("ssi_timing.result"), |ui| {
                 result_ui(ui, theme, &timing);
                 if designer.family().is_none() {
-                    paragraph(ui, theme.caption(say(theme, "ssi_timing.general")));
+                    paragraph(ui, theme.caption(translate(theme, "ssi_timing.general")));
                 }
             });
         },
@@ -51,7 +51,7 @@ pub(super) fn page_ui(
 fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     let micros = |time: std::time::Duration| theme.format_number(time.as_secs_f64() * 1e6, 2);
     let hertz = |hertz: f64| theme.format_text(&frequency(hertz));
-    let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.monospace(words));
+    let mut value_row = |id: &'static str, words: String| row(ui, theme, &translate(theme, id), theme.monospace(words));
     value_row("ssi_timing.period", format!("{} µs", micros(timing.period)));
     value_row("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
     let rate = hertz(1.0 / timing.cycle.as_secs_f64().max(1e-9));
@@ -68,10 +68,10 @@ fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
         Some((least, most)) => format!("{} … {} µs", micros(least), micros(most)),
     };
     value_row("ssi_timing.age", age);
-    let cable = timing.cable_hz.map_or_else(|| say(theme, "ssi_timing.cable_unknown"), |hz| hertz(hz.into()));
+    let cable = timing.cable_hz.map_or_else(|| translate(theme, "ssi_timing.cable_unknown"), |hz| hertz(hz.into()));
     value_row("ssi_timing.most_clock", cable);
     if timing.age.is_none() {
-        paragraph(ui, theme.caption(say(theme, "ssi_timing.age_unknown")));
+        paragraph(ui, theme.caption(translate(theme, "ssi_timing.age_unknown")));
     }
     ui.add_space(theme.space.inside);
     if timing.warnings.is_empty() {

@@ -4,10 +4,10 @@
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
-use crate::devices::ssi::protocol::{Location, Meaning, frame_bits};
+use crate::devices::ssi::protocol::{BitMeaning, Location, frame_bits};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput, whole};
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput, parse_whole};
+use crate::devices::ssi::views::translate;
 use crate::ui::controls::{
     card_with_trailing, committed_entry, entry, icon_button, mono_entry, name, paragraph, row, show_error_below,
     show_error_beside,
@@ -32,7 +32,7 @@ impl TrialUiState {
     }
 }
 
-const NUMBER: f32 = 128.0;
+const ENTRY_WIDTH: f32 = 128.0;
 
 pub(super) fn card_ui(
     ui: &mut Ui,
@@ -47,16 +47,16 @@ pub(super) fn card_ui(
     let mut action = None;
     let live = |ui: &mut Ui| {
         if encoder.last().is_some_and(|seen| seen.decoded.is_some()) {
-            let word = say(theme, "ssi_trial.live");
+            let word = translate(theme, "ssi_trial.live");
             let response =
-                ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(say(theme, "ssi_trial.live_hint"));
+                ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(translate(theme, "ssi_trial.live_hint"));
             if name(response, true, &word).clicked() && !is_live {
                 action = Some(TrialInput::Live);
             }
         }
     };
     card_with_trailing(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
-        numbers(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
+        numbers_ui(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
         bits_ui(ui, theme, encoder, &shown, view, actions);
         show_error_below(ui, theme, encoder.trial.problem());
         findings_ui(ui, theme, &shown);
@@ -65,7 +65,7 @@ pub(super) fn card_ui(
     view.held = view.is_typing().then_some(shown);
 }
 
-fn numbers(
+fn numbers_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -74,12 +74,12 @@ fn numbers(
     put: &mut dyn FnMut(TrialInput),
 ) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
-    let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
+    let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().position_code().last());
     paragraph(ui, theme.caption(theme.format_text(&most)));
-    let word = say(theme, "ssi_trial.position");
+    let word = translate(theme, "ssi_trial.position");
     entry(ui, theme, &word, |ui| {
-        committed_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
-            put(TrialInput::Position(whole(text)?));
+        committed_entry(ui, &mut view.position, &position, ENTRY_WIDTH, &word, |text| {
+            put(TrialInput::Position(parse_whole(text)?));
             Ok(())
         });
         refusal_ui(ui, theme, view.position.as_ref());
@@ -88,15 +88,15 @@ fn numbers(
         Some((_, Location::Shaft { turns, steps, degrees })) => {
             let (own_turns, own_steps) = (theme.translate("live.turns"), theme.translate("live.step"));
             entry(ui, theme, &own_turns, |ui| {
-                committed_entry(ui, &mut view.turns, &turns.to_string(), NUMBER, &own_turns, |text| {
-                    put(TrialInput::Place(whole(text)?, steps));
+                committed_entry(ui, &mut view.turns, &turns.to_string(), ENTRY_WIDTH, &own_turns, |text| {
+                    put(TrialInput::Place(parse_whole(text)?, steps));
                     Ok(())
                 });
                 refusal_ui(ui, theme, view.turns.as_ref());
             });
             entry(ui, theme, &own_steps, |ui| {
-                committed_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
-                    put(TrialInput::Place(turns, whole(text)?));
+                committed_entry(ui, &mut view.steps, &steps.to_string(), ENTRY_WIDTH, &own_steps, |text| {
+                    put(TrialInput::Place(turns, parse_whole(text)?));
                     Ok(())
                 });
                 refusal_ui(ui, theme, view.steps.as_ref());
@@ -104,7 +104,7 @@ fn numbers(
             row(
                 ui,
                 theme,
-                &say(theme, "ssi_trial.angle"),
+                &translate(theme, "ssi_trial.angle"),
                 theme.monospace(format!("{} °", theme.format_number(degrees, 4))),
             );
         }
@@ -112,7 +112,7 @@ fn numbers(
             row(
                 ui,
                 theme,
-                &say(theme, "ssi_trial.length"),
+                &translate(theme, "ssi_trial.length"),
                 theme.monospace(format!("{} mm", theme.format_number(millimetres, 4))),
             );
         }
@@ -132,13 +132,13 @@ fn bits_ui(
     view: &mut TrialUiState,
     actions: &mut Vec<Action>,
 ) {
-    let clocks = encoder.designer.layout().clocks();
+    let clocks = encoder.designer.layout().clock_count();
     let own = frame_bits(shown.frame, clocks);
-    let word = say(theme, "ssi_trial.bits_label");
+    let word = translate(theme, "ssi_trial.bits_label");
     ui.horizontal(|ui| {
         ui.label(theme.label(&word));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::COPY, &say(theme, "ssi_trial.copy")).clicked() {
+            if icon_button(ui, true, icons::COPY, &translate(theme, "ssi_trial.copy")).clicked() {
                 ui.copy_text(own.clone());
             }
             let hex = format!("0x{:0width$X}", shown.frame, width = usize::from(clocks).div_ceil(4));
@@ -163,8 +163,8 @@ fn findings_ui(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
     ui.add_space(theme.space.inside);
     for finding in &shown.findings {
         let (icon, colour) = match finding.meaning() {
-            Meaning::Invalid => (icons::X_CIRCLE, theme.palette.bad),
-            Meaning::Warning => (icons::WARNING, theme.palette.warn),
+            BitMeaning::Invalid => (icons::X_CIRCLE, theme.palette.bad),
+            BitMeaning::Warning => (icons::WARNING, theme.palette.warn),
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));

@@ -5,12 +5,12 @@ use egui::Ui;
 use crate::devices::ssi::protocol::{Family, Signal};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::views::say;
+use crate::devices::ssi::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph, row};
 use crate::ui::wiring::wires_ui;
 
-const WIRE: f32 = 84.0;
+const WIRE_WIDTH: f32 = 84.0;
 
 /// Names of the wires with the ids of their descriptions. See SICK SSI description 2.1 and 2.2.
 const WIRES: [(&str, &str); 6] = [
@@ -26,15 +26,15 @@ const NOTES: [&str; 3] = ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.ada
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
     folding_card(ui, theme, "wiring.title", |ui| {
-        wires_ui(ui, theme, &TEXTS, WIRE, &WIRES);
+        wires_ui(ui, theme, &TEXTS, WIRE_WIDTH, &WIRES);
         ui.add_space(theme.space.inside);
         for note in NOTES {
-            paragraph(ui, theme.caption(say(theme, note)));
+            paragraph(ui, theme.caption(translate(theme, note)));
         }
         let Some(family) = family else { return };
         if !family.signals.is_empty() {
             ui.add_space(theme.space.between);
-            ui.label(theme.heading(say(theme, "ssi_wiring.signals")));
+            ui.label(theme.heading(translate(theme, "ssi_wiring.signals")));
             for signal in &family.signals {
                 row(ui, theme, &signal.name, limits(theme, signal));
             }
@@ -43,9 +43,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
             ui.add_space(theme.space.between);
             ui.label(theme.heading(&family.name));
             for note in &family.notes {
-                paragraph(ui, theme.caption(theme.format_text(&words::note(family, note))));
+                paragraph(ui, theme.caption(theme.format_text(&words::note_text(family, note))));
             }
-            paragraph(ui, theme.caption(theme.format_text(&words::note(family, &family.source))));
+            paragraph(ui, theme.caption(theme.format_text(&words::note_text(family, &family.source))));
         }
     });
 }
@@ -62,8 +62,8 @@ fn limits(theme: &Theme, signal: &Signal) -> String {
         signal
             .amplitude_volts
             .map(|own| theme.format_text(&TEXTS.text("ssi_wiring.volts_pp").with("volts", volts(own)))),
-        signal.offset_volts.map(|own| format!("{} {} V", say(theme, "ssi_wiring.offset"), volts(own))),
-        signal.supply_volts.map(|own| format!("{} {} V", say(theme, "ssi_wiring.at"), volts(own))),
+        signal.offset_volts.map(|own| format!("{} {} V", translate(theme, "ssi_wiring.offset"), volts(own))),
+        signal.supply_volts.map(|own| format!("{} {} V", translate(theme, "ssi_wiring.at"), volts(own))),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     if parts.is_empty() { "–".to_owned() } else { parts.join(" · ") }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::devices::ssi::protocol::{Families, Meaning, Settings, any_layouts};
+use crate::devices::ssi::protocol::{BitMeaning, Families, Settings, any_layouts};
 use crate::profile::testing::assert_edit_in_place;
 use crate::profile::{Body, ProfileDocument};
 
@@ -30,8 +30,8 @@ fn document(profile: SsiProfile) -> ProfileDocument {
 fn of_family(text: &str) -> SsiProfile {
     let (key, settings) = Settings::parse(text).unwrap();
     let families = Families::built_in();
-    let family = families.named(&key).unwrap();
-    SsiProfile::of_family(family, &settings.resolve(family).unwrap())
+    let family = families.find_by_key(&key).unwrap();
+    SsiProfile::from_family(family, &settings.resolve(family).unwrap())
 }
 
 #[test]
@@ -63,13 +63,16 @@ fn full_profile() -> SsiProfile {
         lead: 1,
         between: 1,
         shift_right: false,
-        errors: vec![error("LAMP", 23, Meaning::Invalid, true), error("quote \" and ä", 24, Meaning::Warning, false)],
+        errors: vec![
+            error("LAMP", 23, BitMeaning::Invalid, true),
+            error("quote \" and ä", 24, BitMeaning::Warning, false),
+        ],
         parity: Some(Parity { clock: 25, even: false }),
         repeat: Some(Repeat { word: 25, gap: 1 }),
         inverted: true,
         patterns: vec![
-            pattern("fault", Word::Ones, Meaning::Invalid),
-            pattern("perhaps", Word::Bits(0xFFFE), Meaning::Warning),
+            pattern("fault", Word::Ones, BitMeaning::Invalid),
+            pattern("perhaps", Word::Bits(0xFFFE), BitMeaning::Warning),
         ],
     };
     SsiProfile {
@@ -164,9 +167,9 @@ proptest! {
         let mut descriptor = layout.descriptor().clone();
         let bits = bits & u64::MAX >> (64 - descriptor.clocks);
         let word = if bits % 2 == 0 { Word::Ones } else { Word::Bits(bits) };
-        descriptor.patterns = vec![Pattern { name: name.clone(), word, meaning: Meaning::Warning }];
+        descriptor.patterns = vec![Pattern { name: name.clone(), word, meaning: BitMeaning::Warning }];
         let direction = if synchronous { Direction::CounterClockwise } else { Direction::Clockwise };
-        let preset = layout.coding().last().checked_add(1).map_or(preset, |count| preset % count);
+        let preset = layout.position_code().last().checked_add(1).map_or(preset, |count| preset % count);
         let reading = ReadingSettings { clock_hz, pause_us, cable_metres, synchronous };
         let profile = SsiProfile { name, direction, preset, reading, ..SsiProfile::new(descriptor) };
         let document = document(profile);

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::identifier;
-use super::procedure::{Dialect, statements};
+use super::procedure::{Dialect, decoder_statements};
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 
-struct C;
+struct CDialect;
 
-impl Dialect for C {
+impl Dialect for CDialect {
     type Word = String;
 
     fn name(&self, name: &'static str) -> String {
@@ -20,11 +20,11 @@ impl Dialect for C {
         format!("UINT64_C(0x{value:X})")
     }
 
-    fn and(&self, a: &String, b: &String) -> String {
+    fn and_expression(&self, a: &String, b: &String) -> String {
         format!("({a} & {b})")
     }
 
-    fn or(&self, a: &String, b: &String) -> String {
+    fn or_expression(&self, a: &String, b: &String) -> String {
         format!("({a} | {b})")
     }
 
@@ -32,11 +32,11 @@ impl Dialect for C {
         format!("({a} ^ {b})")
     }
 
-    fn right(&self, a: &String, bits: u8) -> String {
+    fn shift_right(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("({a} >> {bits})") }
     }
 
-    fn left(&self, a: &String, bits: u8) -> String {
+    fn shift_left(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("({a} << {bits})") }
     }
 
@@ -44,11 +44,11 @@ impl Dialect for C {
         format!("({a} == {b})")
     }
 
-    fn differs(&self, a: &String, b: &String) -> String {
+    fn not_equal(&self, a: &String, b: &String) -> String {
         format!("({a} != {b})")
     }
 
-    fn number(&self, word: &String) -> String {
+    fn to_number(&self, word: &String) -> String {
         word.to_owned()
     }
 
@@ -56,24 +56,24 @@ impl Dialect for C {
         format!("({number}) / UINT64_C({by})")
     }
 
-    fn rest(&self, number: &str, by: u64) -> String {
+    fn remainder(&self, number: &str, by: u64) -> String {
         format!("({number}) % UINT64_C({by})")
     }
 
-    fn assign(&self, name: &str, value: &str) -> String {
+    fn assignment(&self, name: &str, value: &str) -> String {
         format!("{name} = {value};")
     }
 
     fn assign_word(&self, name: &'static str, value: &String) -> Vec<String> {
-        vec![self.assign(name, value)]
+        vec![self.assignment(name, value)]
     }
 
-    fn when(&self, condition: &str, statement: &str) -> String {
+    fn if_statement(&self, condition: &str, statement: &str) -> String {
         let condition = condition.strip_prefix('(').and_then(|it| it.strip_suffix(')')).unwrap_or(condition);
         format!("if ({condition}) {statement}")
     }
 
-    fn comment(&self, text: &str) -> String {
+    fn comment_line(&self, text: &str) -> String {
         format!("/* {} */", text.replace("*/", "* /"))
     }
 
@@ -81,17 +81,17 @@ impl Dialect for C {
         format!("!{condition}")
     }
 
-    fn both(&self, a: &str, b: &str) -> String {
+    fn both_conditions(&self, a: &str, b: &str) -> String {
         format!("({a} && {b})")
     }
 }
 
 /// Returns the source of a function `ssi_decode` for this layout, with the flags that the function can return.
-pub fn c99(layout: &Layout, title: &str) -> String {
+pub fn generate_c99(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     // The title must not end the comment, begin another or contain a trigraph.
     let title = title.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?");
-    let clocks = layout.clocks();
+    let clocks = layout.clock_count();
     // Writing into a String cannot fail.
     let _ = write!(
         text,
@@ -99,7 +99,7 @@ pub fn c99(layout: &Layout, title: &str) -> String {
          #include <stdbool.h>\n#include <stdint.h>\n\n",
         clocks - 1
     );
-    for (name, flag, meaning) in flags(layout) {
+    for (name, flag, meaning) in possible_flags(layout) {
         let _ = writeln!(text, "#define SSI_{} UINT32_C(0x{:X}) /* {meaning} */", name.to_ascii_uppercase(), flag.0);
     }
     text.push_str(
@@ -108,7 +108,7 @@ pub fn c99(layout: &Layout, title: &str) -> String {
          /* the position may be used */\n} ssi_reading;\n\nssi_reading ssi_decode(uint64_t frame)\n{\n    \
          uint64_t word, code, position, turns, steps, flags, fold, digit;\n    bool valid;\n",
     );
-    for line in statements(layout, &C) {
+    for line in decoder_statements(layout, &CDialect) {
         let _ = writeln!(text, "    {line}");
     }
     text.push_str(
@@ -118,19 +118,20 @@ pub fn c99(layout: &Layout, title: &str) -> String {
 }
 
 /// Returns the flags that a frame of the layout can have, each with its name and meaning.
-pub(super) fn flags(layout: &Layout) -> Vec<(String, Flags, String)> {
+pub(super) fn possible_flags(layout: &Layout) -> Vec<(String, Flags, String)> {
     let descriptor = layout.descriptor();
     let errors = descriptor.errors.iter().enumerate();
     let errors = errors.map(|(at, bit)| (identifier(&bit.name), Flags::error(at), format!("clock {}", bit.clock)));
     let patterns = descriptor.patterns.iter().enumerate();
-    let patterns = patterns.map(|(at, pattern)| (identifier(&pattern.name), Flags::pattern(at), pattern.name.clone()));
+    let patterns =
+        patterns.map(|(at, pattern)| (identifier(&pattern.name), Flags::pattern_flag(at), pattern.name.clone()));
     let form = [
         ("no_code", Flags::CODE, "the bits are no word of the code"),
         ("padding", Flags::PADDING, "a 1 where a 0 belongs"),
         ("parity", Flags::PARITY, "wrong parity"),
         ("repeat", Flags::REPEAT, "the repetition differs"),
-        ("ones", Flags::ONES, "every bit is 1"),
-        ("zeros", Flags::ZEROS, "every bit is 0"),
+        ("ones", Flags::ALL_ONES, "every bit is 1"),
+        ("zeros", Flags::ALL_ZEROS, "every bit is 0"),
     ];
     let form = form.into_iter().filter(|(_, flag, _)| match *flag {
         Flags::PARITY => descriptor.parity.is_some(),

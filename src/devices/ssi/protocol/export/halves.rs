@@ -5,8 +5,8 @@
 
 use std::fmt::Write;
 
-use super::c::flags;
-use super::procedure::{Dialect, statements};
+use super::c::possible_flags;
+use super::procedure::{Dialect, decoder_statements};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
@@ -32,7 +32,7 @@ enum Language {
     Scl,
 }
 
-const HALF: u8 = 32;
+const HALF_BITS: u8 = 32;
 
 struct SplitWordDialect {
     language: Language,
@@ -41,7 +41,7 @@ struct SplitWordDialect {
 }
 
 /// The two halves of a word. A half that is always 0 is `None`.
-struct Pair {
+struct WordHalves {
     high: Option<String>,
     low: Option<String>,
 }
@@ -51,16 +51,16 @@ struct Pair {
 /// # Errors
 /// [`TooWideError`] if 32 bits do not suffice.
 pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWideError> {
-    let halves = SplitWordDialect::of(layout, Language::StructuredText)?;
+    let halves = SplitWordDialect::for_layout(layout, Language::StructuredText)?;
     let mut text = String::new();
     // Writing into a String does not fail.
     let _ = writeln!(text, "(* SSI decoder: {}", to_single_line(title).replace("*)", "* )"));
     let _ = writeln!(text, "   {} IEC 61131-3, 32 bits.", halves.describe_first_bit(layout));
-    for (name, flag, meaning) in flags(layout) {
+    for (name, flag, meaning) in possible_flags(layout) {
         let _ = writeln!(text, "   flags 16#{:X}: {name}, {}", flag.0, to_single_line(&meaning).replace("*)", "* )"));
     }
     text.push_str("*)\nFUNCTION_BLOCK SSI_DECODE\n");
-    let lines = statements(layout, &halves);
+    let lines = decoder_statements(layout, &halves);
     halves.write_variables(&mut text, &lines, ["    ", "DWORD", "UDINT", "BOOL", "VAR"]);
     for line in lines {
         let _ = writeln!(text, "{line}");
@@ -74,17 +74,17 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
 /// # Errors
 /// [`TooWideError`] if 32 bits do not suffice.
 pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> {
-    let halves = SplitWordDialect::of(layout, Language::Scl)?;
+    let halves = SplitWordDialect::for_layout(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
-    let lines = statements(layout, &halves);
+    let lines = decoder_statements(layout, &halves);
     halves.write_variables(&mut text, &lines, ["    ", "DWord", "UDInt", "Bool", "VAR_TEMP"]);
     text.push_str("BEGIN\n");
     let mut comment = |words: &str| {
-        let _ = writeln!(text, "    {}", halves.comment(words));
+        let _ = writeln!(text, "    {}", halves.comment_line(words));
     };
     comment(&format!("SSI decoder: {title}"));
     comment(&halves.describe_first_bit(layout));
-    for (name, flag, meaning) in flags(layout) {
+    for (name, flag, meaning) in possible_flags(layout) {
         comment(&format!("flags 16#{:X}: {name}, {meaning}", flag.0));
     }
     for line in lines {
@@ -95,9 +95,9 @@ pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> 
 }
 
 impl SplitWordDialect {
-    fn of(layout: &Layout, language: Language) -> Result<Self, TooWideError> {
-        let bits = layout.coding().bits();
-        if bits > HALF {
+    fn for_layout(layout: &Layout, language: Language) -> Result<Self, TooWideError> {
+        let bits = layout.position_code().bits();
+        if bits > HALF_BITS {
             return Err(TooWideError::Position { bits });
         }
         if let Range::RoundAxis { steps, revolutions } = layout.descriptor().range {
@@ -107,13 +107,13 @@ impl SplitWordDialect {
             let greatest = (steps * above).checked_add(above).zip(steps.checked_mul(below));
             greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(TooWideError::RoundAxis)?;
         }
-        Ok(SplitWordDialect { language, is_wide: layout.clocks() > HALF })
+        Ok(SplitWordDialect { language, is_wide: layout.clock_count() > HALF_BITS })
     }
 
     /// Returns the text of a comment that states which bit holds the first bit of a frame.
     fn describe_first_bit(&self, layout: &Layout) -> String {
-        let clocks = layout.clocks();
-        let (bit, name) = if self.is_wide { (clocks - 1 - HALF, "frame_high") } else { (clocks - 1, "frame") };
+        let clocks = layout.clock_count();
+        let (bit, name) = if self.is_wide { (clocks - 1 - HALF_BITS, "frame_high") } else { (clocks - 1, "frame") };
         format!("{clocks} clocks; the first bit received is bit {bit} of {name}.")
     }
 
@@ -149,7 +149,7 @@ impl SplitWordDialect {
         section(auxiliary, &used);
     }
 
-    fn call(&self, function: &str, value: &str, bits: u8) -> String {
+    fn call_expression(&self, function: &str, value: &str, bits: u8) -> String {
         match self.language {
             Language::StructuredText => format!("{function}({value}, {bits})"),
             Language::Scl => format!("{function}(IN := {value}, N := {bits})"),
@@ -159,16 +159,16 @@ impl SplitWordDialect {
     fn shifted_right(&self, half: Option<&String>, bits: u8) -> Option<String> {
         match bits {
             0 => half.cloned(),
-            HALF.. => None,
-            _ => half.map(|half| self.call("SHR", half, bits)),
+            HALF_BITS.. => None,
+            _ => half.map(|half| self.call_expression("SHR", half, bits)),
         }
     }
 
     fn shifted_left(&self, half: Option<&String>, bits: u8) -> Option<String> {
         match bits {
             0 => half.cloned(),
-            HALF.. => None,
-            _ => half.map(|half| self.call("SHL", half, bits)),
+            HALF_BITS.. => None,
+            _ => half.map(|half| self.call_expression("SHL", half, bits)),
         }
     }
 
@@ -197,16 +197,16 @@ fn half_constant(value: u64) -> Option<String> {
 const ALL: &str = "DWORD#16#FFFFFFFF";
 const NONE: &str = "DWORD#16#0";
 
-fn masked(a: Option<&String>, b: Option<&String>) -> Option<String> {
+fn or_expression(a: Option<&String>, b: Option<&String>) -> Option<String> {
     match (a?, b?) {
         (own, all) | (all, own) if all == ALL => Some(own.clone()),
         (a, b) => Some(format!("({a} AND {b})")),
     }
 }
 
-impl Pair {
+impl WordHalves {
     /// Returns an expression that compares two words half by half. A half that is zero in both words is left out.
-    fn compared(&self, other: &Pair, operator: &str, between: &str, none: &str) -> String {
+    fn compare_expression(&self, other: &WordHalves, operator: &str, between: &str, none: &str) -> String {
         let halves = [(&self.high, &other.high), (&self.low, &other.low)].into_iter();
         let halves = halves.filter(|(a, b)| a.is_some() || b.is_some());
         let text = |half: &Option<String>| half.clone().unwrap_or_else(|| NONE.to_owned());
@@ -220,66 +220,69 @@ impl Pair {
 }
 
 impl Dialect for SplitWordDialect {
-    type Word = Pair;
+    type Word = WordHalves;
 
-    fn name(&self, name: &'static str) -> Pair {
+    fn name(&self, name: &'static str) -> WordHalves {
         let (high, low) = self.half_names(name);
-        Pair { high, low: Some(low) }
+        WordHalves { high, low: Some(low) }
     }
 
-    fn hex(&self, value: u64) -> Pair {
-        Pair { high: half_constant(value >> HALF), low: half_constant(value & u64::from(u32::MAX)) }
+    fn hex(&self, value: u64) -> WordHalves {
+        WordHalves { high: half_constant(value >> HALF_BITS), low: half_constant(value & u64::from(u32::MAX)) }
     }
 
-    fn and(&self, a: &Pair, b: &Pair) -> Pair {
-        Pair { high: masked(a.high.as_ref(), b.high.as_ref()), low: masked(a.low.as_ref(), b.low.as_ref()) }
+    fn and_expression(&self, a: &WordHalves, b: &WordHalves) -> WordHalves {
+        WordHalves {
+            high: or_expression(a.high.as_ref(), b.high.as_ref()),
+            low: or_expression(a.low.as_ref(), b.low.as_ref()),
+        }
     }
 
-    fn or(&self, a: &Pair, b: &Pair) -> Pair {
-        Pair {
+    fn or_expression(&self, a: &WordHalves, b: &WordHalves) -> WordHalves {
+        WordHalves {
             high: join_terms(a.high.clone(), b.high.clone(), "OR"),
             low: join_terms(a.low.clone(), b.low.clone(), "OR"),
         }
     }
 
-    fn xor(&self, a: &Pair, b: &Pair) -> Pair {
-        Pair {
+    fn xor(&self, a: &WordHalves, b: &WordHalves) -> WordHalves {
+        WordHalves {
             high: join_terms(a.high.clone(), b.high.clone(), "XOR"),
             low: join_terms(a.low.clone(), b.low.clone(), "XOR"),
         }
     }
 
-    fn right(&self, a: &Pair, bits: u8) -> Pair {
-        if bits >= HALF {
-            return Pair { high: None, low: self.shifted_right(a.high.as_ref(), bits - HALF) };
+    fn shift_right(&self, a: &WordHalves, bits: u8) -> WordHalves {
+        if bits >= HALF_BITS {
+            return WordHalves { high: None, low: self.shifted_right(a.high.as_ref(), bits - HALF_BITS) };
         }
-        let crossing = if bits == 0 { None } else { self.shifted_left(a.high.as_ref(), HALF - bits) };
-        Pair {
+        let crossing = if bits == 0 { None } else { self.shifted_left(a.high.as_ref(), HALF_BITS - bits) };
+        WordHalves {
             high: self.shifted_right(a.high.as_ref(), bits),
             low: join_terms(self.shifted_right(a.low.as_ref(), bits), crossing, "OR"),
         }
     }
 
-    fn left(&self, a: &Pair, bits: u8) -> Pair {
-        if bits >= HALF {
-            return Pair { high: self.shifted_left(a.low.as_ref(), bits - HALF), low: None };
+    fn shift_left(&self, a: &WordHalves, bits: u8) -> WordHalves {
+        if bits >= HALF_BITS {
+            return WordHalves { high: self.shifted_left(a.low.as_ref(), bits - HALF_BITS), low: None };
         }
-        let crossing = if bits == 0 { None } else { self.shifted_right(a.low.as_ref(), HALF - bits) };
-        Pair {
+        let crossing = if bits == 0 { None } else { self.shifted_right(a.low.as_ref(), HALF_BITS - bits) };
+        WordHalves {
             high: join_terms(self.shifted_left(a.high.as_ref(), bits), crossing, "OR"),
             low: self.shifted_left(a.low.as_ref(), bits),
         }
     }
 
-    fn equal_expression(&self, a: &Pair, b: &Pair) -> String {
-        a.compared(b, "=", " AND ", "TRUE")
+    fn equal_expression(&self, a: &WordHalves, b: &WordHalves) -> String {
+        a.compare_expression(b, "=", " AND ", "TRUE")
     }
 
-    fn differs(&self, a: &Pair, b: &Pair) -> String {
-        a.compared(b, "<>", " OR ", "FALSE")
+    fn not_equal(&self, a: &WordHalves, b: &WordHalves) -> String {
+        a.compare_expression(b, "<>", " OR ", "FALSE")
     }
 
-    fn number(&self, word: &Pair) -> String {
+    fn to_number(&self, word: &WordHalves) -> String {
         format!("DWORD_TO_UDINT({})", word.low.as_deref().unwrap_or(NONE))
     }
 
@@ -287,39 +290,43 @@ impl Dialect for SplitWordDialect {
         format!("({number}) / UDINT#{by}")
     }
 
-    fn rest(&self, number: &str, by: u64) -> String {
+    fn remainder(&self, number: &str, by: u64) -> String {
         format!("({number}) MOD UDINT#{by}")
     }
 
-    fn assign(&self, name: &str, value: &str) -> String {
+    fn assignment(&self, name: &str, value: &str) -> String {
         format!("{name} := {value};")
     }
 
     /// Returns the statements that assign a word. A variable without an upper half has at most 32 bits, so the upper
     /// half of the value is always 0.
-    fn assign_word(&self, name: &'static str, value: &Pair) -> Vec<String> {
+    fn assign_word(&self, name: &'static str, value: &WordHalves) -> Vec<String> {
         let text = |half: &Option<String>| half.clone().unwrap_or_else(|| NONE.to_owned());
         match self.half_names(name) {
-            (None, own) => vec![self.assign(&own, &text(&value.low))],
+            (None, own) => vec![self.assignment(&own, &text(&value.low))],
             (Some(high), low) => {
                 let (upper, lower) = (text(&value.high), text(&value.low));
                 // The new value of a half may depend on both old halves, so the order of the assignments matters.
                 if !uses_name(&upper, &low) {
-                    vec![self.assign(&low, &lower), self.assign(&high, &upper)]
+                    vec![self.assignment(&low, &lower), self.assignment(&high, &upper)]
                 } else if !uses_name(&lower, &high) {
-                    vec![self.assign(&high, &upper), self.assign(&low, &lower)]
+                    vec![self.assignment(&high, &upper), self.assignment(&low, &lower)]
                 } else {
-                    vec![self.assign("next_low", &lower), self.assign(&high, &upper), self.assign(&low, "next_low")]
+                    vec![
+                        self.assignment("next_low", &lower),
+                        self.assignment(&high, &upper),
+                        self.assignment(&low, "next_low"),
+                    ]
                 }
             }
         }
     }
 
-    fn when(&self, condition: &str, statement: &str) -> String {
+    fn if_statement(&self, condition: &str, statement: &str) -> String {
         format!("IF {condition} THEN {statement} END_IF;")
     }
 
-    fn comment(&self, text: &str) -> String {
+    fn comment_line(&self, text: &str) -> String {
         match self.language {
             Language::StructuredText => format!("(* {} *)", to_single_line(text).replace("*)", "* )")),
             // Some versions of TIA Portal read a source file as ASCII.
@@ -331,7 +338,7 @@ impl Dialect for SplitWordDialect {
         format!("NOT {condition}")
     }
 
-    fn both(&self, a: &str, b: &str) -> String {
+    fn both_conditions(&self, a: &str, b: &str) -> String {
         format!("({a} AND {b})")
     }
 }

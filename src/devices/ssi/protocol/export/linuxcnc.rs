@@ -5,7 +5,7 @@
 //! Gray code.
 
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning};
+use crate::devices::ssi::protocol::descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::Range;
@@ -64,7 +64,7 @@ pub enum FormatError {
 /// [`FormatError::Cannot`] if LinuxCNC cannot decode the frame.
 pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let descriptor = layout.descriptor();
-    let modifier = match layout.coding().code() {
+    let modifier = match layout.position_code().code() {
         Code::Binary if descriptor.coded == GrayCoverage::Position => "",
         Code::Gray => "g",
         Code::Binary => return Err(FormatError::Cannot(UnsupportedProperty::GrayOver)),
@@ -77,24 +77,26 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     if descriptor.inverted {
         return Err(FormatError::Cannot(UnsupportedProperty::Inverted));
     }
-    let mut fields: Vec<(Field, u8)> = Vec::new();
+    let mut fields: Vec<(BitField, u8)> = Vec::new();
     for role in layout.clock_roles().into_iter().rev() {
         let field = match role {
-            Role::Zero | Role::Again(_) => Field::Padding,
-            Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_) => Field::Position,
-            Role::Error(index) => Field::Bit(descriptor.errors.get(index).map_or("error", |bit| &bit.name).to_owned()),
-            Role::Parity => Field::Bit("parity".to_owned()),
+            Role::Zero | Role::Again(_) => BitField::Padding,
+            Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_) => BitField::Position,
+            Role::Error(index) => {
+                BitField::Bit(descriptor.errors.get(index).map_or("error", |bit| &bit.name).to_owned())
+            }
+            Role::Parity => BitField::Bit("parity".to_owned()),
         };
         match fields.last_mut() {
-            Some((last, bits)) if *last == field && !matches!(field, Field::Bit(_)) => *bits += 1,
+            Some((last, bits)) if *last == field && !matches!(field, BitField::Bit(_)) => *bits += 1,
             _ => fields.push((field, 1)),
         }
     }
     let mut taken = vec!["position".to_owned()];
     let words = fields.into_iter().map(|(field, bits)| match field {
-        Field::Padding => format!("%{bits}p"),
-        Field::Position => format!("position%{bits}{modifier}e"),
-        Field::Bit(name) => format!("{}%1b", pin_name(&name, &mut taken)),
+        BitField::Padding => format!("%{bits}p"),
+        BitField::Position => format!("position%{bits}{modifier}e"),
+        BitField::Bit(name) => format!("{}%1b", pin_name(&name, &mut taken)),
     });
     Ok(words.collect())
 }
@@ -112,7 +114,7 @@ fn pin_name(name: &str, taken: &mut Vec<String>) -> String {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Field {
+enum BitField {
     Padding,
     Position,
     Bit(String),
@@ -137,7 +139,7 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
     let clocks = clocks.ok_or(FormatError::Long)?;
     // The last field is sent first.
     fields.reverse();
-    let mut position: Option<(Given, u8)> = None;
+    let mut position: Option<(OutputPin, u8)> = None;
     let mut errors = Vec::new();
     let mut clock = 1;
     for field in fields {
@@ -151,7 +153,7 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
                     format!("{}-{}", field.name, field.bits - 1 - bit)
                 },
                 clock: begins + bit,
-                meaning: Meaning::Invalid,
+                meaning: BitMeaning::Invalid,
                 active_low: false,
                 cleared_by_transfer: false,
             })),
@@ -175,20 +177,20 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
         area: begins - 1 + field.bits,
         lead: begins - 1,
         errors,
-        ..FrameDescriptor::plain(0, 0)
+        ..FrameDescriptor::binary(0, 0)
     };
     Ok(Layout::new(descriptor)?)
 }
 
 #[derive(Clone, Debug)]
-struct Given {
+struct OutputPin {
     name: String,
     bits: u8,
     kind: char,
     gray: bool,
 }
 
-fn field(text: &str) -> Result<(Given, &str), FormatError> {
+fn field(text: &str) -> Result<(OutputPin, &str), FormatError> {
     let wrong = || FormatError::Form(text.to_owned());
     let (name, behind) = text.split_once('%').ok_or_else(wrong)?;
     let digits = behind.find(|c: char| !c.is_ascii_digit()).ok_or_else(wrong)?;
@@ -201,7 +203,7 @@ fn field(text: &str) -> Result<(Given, &str), FormatError> {
         match kind {
             'g' => gray = true,
             'p' | 'b' | 'u' | 's' | 'f' | 'e' => {
-                return Ok((Given { name: name.trim().to_owned(), bits, kind, gray }, letters.as_str()));
+                return Ok((OutputPin { name: name.trim().to_owned(), bits, kind, gray }, letters.as_str()));
             }
             'h' | 'l' | 'm' => return Err(FormatError::Kind(kind)),
             _ => return Err(wrong()),

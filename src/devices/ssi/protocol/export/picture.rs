@@ -85,7 +85,7 @@ pub struct PictureLabel {
 
 /// Minimum distance between the picture's content and its edges.
 pub(super) const MARGIN: u32 = 16;
-pub(super) const FAINT: &str = "#555";
+pub(super) const FAINT_COLOUR: &str = "#555";
 
 const FONT: &str = "font-family=\"Inter, Arial, sans-serif\"";
 
@@ -96,7 +96,7 @@ impl Picture {
     }
 
     /// Returns the picture as SVG.
-    pub fn svg(&self) -> String {
+    pub fn to_svg(&self) -> String {
         let Picture { width, height, .. } = self;
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \

@@ -26,7 +26,7 @@ struct BitLocations {
 
 impl BitLocations {
     fn new(layout: &Layout, say: TranslateFn<'_>) -> Self {
-        let frame = layout.clocks();
+        let frame = layout.clock_count();
         let bits = (0..frame).rev().zip(layout.clock_roles());
         let (mut position, mut turns, mut steps, mut others) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (bit, role) in bits {

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::c::flags;
-use super::procedure::{Dialect, statements};
+use super::c::possible_flags;
+use super::procedure::{Dialect, decoder_statements};
 use crate::devices::ssi::protocol::layout::Layout;
 
 struct StructuredTextDialect;
@@ -19,11 +19,11 @@ impl Dialect for StructuredTextDialect {
         format!("LWORD#16#{value:X}")
     }
 
-    fn and(&self, a: &String, b: &String) -> String {
+    fn and_expression(&self, a: &String, b: &String) -> String {
         format!("({a} AND {b})")
     }
 
-    fn or(&self, a: &String, b: &String) -> String {
+    fn or_expression(&self, a: &String, b: &String) -> String {
         format!("({a} OR {b})")
     }
 
@@ -31,11 +31,11 @@ impl Dialect for StructuredTextDialect {
         format!("({a} XOR {b})")
     }
 
-    fn right(&self, a: &String, bits: u8) -> String {
+    fn shift_right(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("SHR({a}, {bits})") }
     }
 
-    fn left(&self, a: &String, bits: u8) -> String {
+    fn shift_left(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("SHL({a}, {bits})") }
     }
 
@@ -43,11 +43,11 @@ impl Dialect for StructuredTextDialect {
         format!("({a} = {b})")
     }
 
-    fn differs(&self, a: &String, b: &String) -> String {
+    fn not_equal(&self, a: &String, b: &String) -> String {
         format!("({a} <> {b})")
     }
 
-    fn number(&self, word: &String) -> String {
+    fn to_number(&self, word: &String) -> String {
         format!("LWORD_TO_ULINT({word})")
     }
 
@@ -55,23 +55,23 @@ impl Dialect for StructuredTextDialect {
         format!("({number}) / ULINT#{by}")
     }
 
-    fn rest(&self, number: &str, by: u64) -> String {
+    fn remainder(&self, number: &str, by: u64) -> String {
         format!("({number}) MOD ULINT#{by}")
     }
 
-    fn assign(&self, name: &str, value: &str) -> String {
+    fn assignment(&self, name: &str, value: &str) -> String {
         format!("{name} := {value};")
     }
 
     fn assign_word(&self, name: &'static str, value: &String) -> Vec<String> {
-        vec![self.assign(name, value)]
+        vec![self.assignment(name, value)]
     }
 
-    fn when(&self, condition: &str, statement: &str) -> String {
+    fn if_statement(&self, condition: &str, statement: &str) -> String {
         format!("IF {condition} THEN {statement} END_IF;")
     }
 
-    fn comment(&self, text: &str) -> String {
+    fn comment_line(&self, text: &str) -> String {
         format!("(* {} *)", text.replace("*)", "* )"))
     }
 
@@ -79,7 +79,7 @@ impl Dialect for StructuredTextDialect {
         format!("NOT {condition}")
     }
 
-    fn both(&self, a: &str, b: &str) -> String {
+    fn both_conditions(&self, a: &str, b: &str) -> String {
         format!("({a} AND {b})")
     }
 }
@@ -88,14 +88,14 @@ impl Dialect for StructuredTextDialect {
 pub fn structured_text(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     let title = title.replace("*)", "* )");
-    let clocks = layout.clocks();
+    let clocks = layout.clock_count();
     // Writing into a String cannot fail.
     let _ = writeln!(
         text,
         "(* SSI decoder: {title}\n   {clocks} clocks; the first bit received is bit {} of frame. IEC 61131-3.",
         clocks - 1
     );
-    for (name, flag, meaning) in flags(layout) {
+    for (name, flag, meaning) in possible_flags(layout) {
         let _ = writeln!(text, "   flags 16#{:X}: {name}, {meaning}", flag.0);
     }
     text.push_str(
@@ -104,7 +104,7 @@ pub fn structured_text(layout: &Layout, title: &str) -> String {
          flags : LWORD;\n    valid : BOOL; (* the position may be used *)\nEND_VAR\nVAR\n    word_ : LWORD;\n    \
          code : LWORD;\n    fold : LWORD;\n    digit : LWORD;\nEND_VAR\n",
     );
-    for line in statements(layout, &StructuredTextDialect) {
+    for line in decoder_statements(layout, &StructuredTextDialect) {
         let _ = writeln!(text, "{}", escape_type_names(&line));
     }
     text.push_str("END_FUNCTION_BLOCK\n");

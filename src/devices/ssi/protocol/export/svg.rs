@@ -1,6 +1,6 @@
 //! Pictures of a layout: the frame as a row of cells, and the timing of a burst to scale.
 
-use super::picture::{FAINT, MARGIN, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
+use super::picture::{FAINT_COLOUR, MARGIN, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 use super::text::{ExportText, TranslateFn};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
@@ -13,7 +13,7 @@ const DATA: &str = "#26a269";
 const BITS: &str = "#b8dcff";
 
 /// Returns the colour of a field in print. Black text is legible on it.
-fn colour(role: Role) -> &'static str {
+fn role_colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",
         Role::Multiturn(_) => "#ffd9a0",
@@ -47,7 +47,7 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: TranslateFn<'_>) -> St
 /// Draws the frame with one cell per clock. The cells show the bits of `frame`, if it is given.
 pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Picture {
     let roles = layout.clock_roles();
-    let clocks = u32::from(layout.clocks());
+    let clocks = u32::from(layout.clock_count());
     let mut picture = Picture::with_title(2 * MARGIN + clocks * CELL, 112, title);
     let mut begins = 0_usize;
     for (index, role) in roles.iter().enumerate() {
@@ -63,10 +63,10 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Tran
                 y: 44,
                 width: PictureLength::Whole(CELL),
                 height: 28,
-                fill: colour(*role),
-                line: FAINT,
+                fill: role_colour(*role),
+                line: FAINT_COLOUR,
             },
-            PictureShape::Text(PictureLabel { colour: Some(FAINT), ..centred(38, 9, clock.to_string()) }),
+            PictureShape::Text(PictureLabel { colour: Some(FAINT_COLOUR), ..centred(38, 9, clock.to_string()) }),
             PictureShape::Text(centred(63, 13, bit)),
         ]);
         let ends =
@@ -89,7 +89,7 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Tran
                 PolylineSegment::Across(PictureLength::Whole(to - 2)),
             ];
             picture.shapes.extend([
-                PictureShape::Line { path, colour: FAINT },
+                PictureShape::Line { path, colour: FAINT_COLOUR },
                 PictureShape::Text(PictureLabel { is_centred: true, ..PictureLabel::new(middle, y, 10, name) }),
             ]);
             begins = index + 1;
@@ -115,7 +115,7 @@ pub fn timing_picture(
     let mut picture = Picture::with_title(WIDTH, 170, title);
     // The clock idles high. The first falling edge latches the position, and each rising edge shifts out a bit.
     let mut clock = vec![PolylineSegment::Move(x(0.0), 50)];
-    for index in 0..layout.clocks() {
+    for index in 0..layout.clock_count() {
         let at = f64::from(index) * period;
         let ends = [PolylineSegment::Across(x(at + period / 2.0)), PolylineSegment::Across(x(at + period))];
         let [falls, rises] = ends;
@@ -137,16 +137,16 @@ pub fn timing_picture(
     let width = PictureLength::Scaled(x(burst).units() - first.units());
     picture.shapes.extend([
         PictureShape::Line { path: clock, colour: CLOCK },
-        PictureShape::Box { x: first, y: 92, width, height: 24, fill: BITS, line: FAINT },
+        PictureShape::Box { x: first, y: 92, width, height: 24, fill: BITS, line: FAINT_COLOUR },
         PictureShape::Line { path: data, colour: DATA },
     ]);
     for (y, name) in [(46, ExportText::ClockLine), (88, ExportText::DataLine)] {
         let label = PictureLabel::new(PictureLength::Whole(MARGIN), y, 10, say(&name));
-        picture.shapes.push(PictureShape::Text(PictureLabel { colour: Some(FAINT), ..label }));
+        picture.shapes.push(PictureShape::Text(PictureLabel { colour: Some(FAINT_COLOUR), ..label }));
     }
     let micros = burst * 1e6;
     let spans = [
-        (0.0, burst, ExportText::BurstSpan { clocks: layout.clocks(), micros }),
+        (0.0, burst, ExportText::BurstSpan { clocks: layout.clock_count(), micros }),
         (burst, burst + pause, ExportText::PauseSpan { micros: pause * 1e6, monoflop_micros: monoflop * 1e6 }),
     ];
     for (from, to, text) in spans {
@@ -155,7 +155,7 @@ pub fn timing_picture(
         let path = [&[PolylineSegment::Move(from, y), PolylineSegment::Across(to)][..], &end(from), &end(to)].concat();
         let middle = PictureLength::Scaled(f64::midpoint(from.units(), to.units()));
         picture.shapes.extend([
-            PictureShape::Line { path, colour: FAINT },
+            PictureShape::Line { path, colour: FAINT_COLOUR },
             PictureShape::Text(PictureLabel { is_centred: true, ..PictureLabel::new(middle, y + 14, 11, say(&text)) }),
         ]);
     }

@@ -26,7 +26,7 @@ impl Layout {
 /// Returns a CSV table with the number, the bit and the content of each clock.
 pub fn bit_table(layout: &Layout, say: TranslateFn<'_>) -> String {
     let mut text = say(&ExportText::TableHeading) + "\n";
-    let clocks = layout.clocks();
+    let clocks = layout.clock_count();
     for (clock, role) in (1..=clocks).zip(layout.clock_roles()) {
         let name = role_name(layout, role, say);
         let quoted = if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name };

@@ -5,7 +5,7 @@ use crate::devices::ssi::protocol::{ErrorBit, Families, FrameDescriptor, Layout,
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
-    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
 #[test]
@@ -28,7 +28,7 @@ fn format_strings_match_linuxcnc() {
             assert_eq!(read.decode(frame).position, layout.decode(frame).position, "{text}");
         }
     }
-    assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clocks(), 25);
+    assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clock_count(), 25);
 }
 
 /// A layout written by hand may give its bits any names; LinuxCNC creates a pin for each.
@@ -86,13 +86,14 @@ fn limits_of_linuxcnc_are_reported() {
 
 #[test]
 fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
-    let sheet =
-        |layout: &Layout| settings_sheet(layout, None, "", &english).lines().map(str::to_owned).collect::<Vec<_>>();
+    let sheet = |layout: &Layout| {
+        settings_sheet(layout, None, "", &english_text).lines().map(str::to_owned).collect::<Vec<_>>()
+    };
     let power_failure = |lines: &[String]| lines.iter().find(|line| line.contains("power failure bit")).cloned();
     let error = power_failure(&sheet(&layout("ahs36"))).unwrap();
     assert!(error.ends_with("1 (the last bit is an error bit)"), "{error}");
     let parity = Some(Parity { clock: 15, even: true });
-    let own = Layout::new(FrameDescriptor { clocks: 15, parity, ..FrameDescriptor::plain(0, 14) }).unwrap();
+    let own = Layout::new(FrameDescriptor { clocks: 15, parity, ..FrameDescriptor::binary(0, 14) }).unwrap();
     let lines = sheet(&own);
     let error = power_failure(&lines).unwrap();
     assert!(error.ends_with(" 0"), "{error}");
@@ -102,14 +103,14 @@ fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
 /// Two definitions of one name are one flag too few, and a compiler's warning.
 #[test]
 fn flags_have_unique_names() {
-    let text = c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");
+    let text = generate_c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");
     let names: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("#define ")?.split(' ').next()).collect();
     assert_eq!(names, ["SSI_ERROR", "SSI_ERROR_", "SSI_ONES", "SSI_NO_CODE", "SSI_PADDING", "SSI_ONES_", "SSI_ZEROS"]);
 }
 
 #[test]
 fn the_sheet_has_a_row_for_each_clock() {
-    let table = bit_table(&layout("ahs36,st=12,err=following"), &english);
+    let table = bit_table(&layout("ahs36,st=12,err=following"), &english_text);
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows.len(), 16);
     assert_eq!(rows[..2], ["clock,frame_bit,meaning", "1,14,ST11"]);

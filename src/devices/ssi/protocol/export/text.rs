@@ -119,7 +119,7 @@ pub enum SettingMeaning {
 pub type TranslateFn<'a> = &'a dyn Fn(&ExportText) -> String;
 
 /// Returns the English text, which the command line uses.
-pub fn english(text: &ExportText) -> String {
+pub fn english_text(text: &ExportText) -> String {
     text.to_string()
 }
 

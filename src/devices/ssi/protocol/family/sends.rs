@@ -1,13 +1,13 @@
 //! Search for the settings with which a family sends a given frame.
 
-use super::{Align, ErrorPlace, Family, Settings};
+use super::{Alignment, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::descriptor::FrameDescriptor;
 use crate::devices::ssi::protocol::range::Range;
 
-type Leave = fn(&mut Settings);
+type ResetSettingFn = fn(&mut Settings);
 
 /// Functions that each reset one setting to its default, in the order in which they are tried.
-const LEAVE: [Leave; 12] = [
+const RESET_FUNCTIONS: [ResetSettingFn; 12] = [
     |settings| settings.clocks = None,
     |settings| settings.align = None,
     |settings| settings.errors = None,
@@ -27,7 +27,8 @@ impl Family {
     /// and preset keep their factory setting, because they are not part of a frame.
     pub fn settings_for_frame(&self, frame: &FrameDescriptor) -> Option<Settings> {
         let asked = self.derived_settings(frame);
-        let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
+        let aligns: Vec<Option<Alignment>> =
+            std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
         let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
         let tried = aligns.into_iter().flat_map(|align| places.map(|place| (align, place)));
         tried
@@ -43,7 +44,7 @@ impl Family {
 
     /// Resets every setting that is not needed to produce the frame.
     fn drop_unneeded_settings(&self, settings: Settings, frame: &FrameDescriptor) -> Settings {
-        LEAVE.iter().fold(settings, |settings, leave| {
+        RESET_FUNCTIONS.iter().fold(settings, |settings, leave| {
             let mut fewer = settings.clone();
             leave(&mut fewer);
             if self.can_send_frame(&fewer, frame) { fewer } else { settings }
@@ -79,7 +80,7 @@ impl Family {
 }
 
 fn count(settings: &Settings) -> usize {
-    LEAVE
+    RESET_FUNCTIONS
         .iter()
         .filter(|leave| {
             let mut left = (*settings).clone();
@@ -96,7 +97,7 @@ mod tests {
 
     fn frame(families: &Families, text: &str) -> Option<FrameDescriptor> {
         let (key, settings) = Settings::parse(text).unwrap();
-        let resolved = settings.resolve(families.named(&key).unwrap()).ok()?;
+        let resolved = settings.resolve(families.find_by_key(&key).unwrap()).ok()?;
         Some(resolved.layout.descriptor().clone())
     }
 
@@ -163,7 +164,7 @@ mod tests {
         ];
         let families = Families::built_in();
         for (text, fewest) in cases {
-            let family = families.named(fewest.split(',').next().unwrap()).unwrap();
+            let family = families.find_by_key(fewest.split(',').next().unwrap()).unwrap();
             assert_eq!(
                 family.settings_for_frame(&frame(&families, text).unwrap()).unwrap().emit(&family.key),
                 fewest,
@@ -199,7 +200,7 @@ mod tests {
             }
         }
         let ahs36 = frame(&families, "ahs36").unwrap();
-        let sends = |key: &str| families.named(key).unwrap().settings_for_frame(&ahs36).is_some();
+        let sends = |key: &str| families.find_by_key(key).unwrap().settings_for_frame(&ahs36).is_some();
         assert_eq!(families.iter().filter(|family| sends(&family.key)).count(), 1);
     }
 }

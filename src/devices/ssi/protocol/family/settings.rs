@@ -1,6 +1,6 @@
 //! Conversion of a family's settings to a frame with its resolution, code, alignment, error bits and clocks.
 
-use super::{Align, ErrorPlace, Family, Frame, SettingName};
+use super::{Alignment, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode};
 use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage};
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
@@ -27,7 +27,7 @@ pub struct Settings {
     /// Number of clocks in a burst.
     pub clocks: Option<u8>,
     /// Alignment of the position.
-    pub align: Option<Align>,
+    pub align: Option<Alignment>,
     /// Whether the frame is delayed by one clock.
     pub shift: bool,
     /// Location of the error bits.
@@ -46,7 +46,7 @@ pub struct ResolvedFrame {
     /// The frame.
     pub layout: Layout,
     /// Alignment of the position.
-    pub align: Align,
+    pub align: Alignment,
     /// Location of the error bits.
     pub errors: ErrorPlace,
     /// Counting direction. It does not change how a frame is read.
@@ -54,12 +54,12 @@ pub struct ResolvedFrame {
     /// Position at the zero point of the shaft, within the range. It does not change how a frame is read.
     pub preset: u64,
     /// Remarks about settings that were accepted although the manual does not mention them.
-    pub advice: Vec<Advice>,
+    pub advice: Vec<SettingAdvice>,
 }
 
 /// A remark about a setting that was accepted although the manual does not mention it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Advice {
+pub enum SettingAdvice {
     /// The manual lists other codes for this family.
     Code(Code),
     /// The burst has more clocks than the frame has bits. The content of the additional clocks is unknown.
@@ -107,7 +107,7 @@ pub enum SettingsError {
         /// Width of the position in bits.
         bits: u8,
         /// Requested alignment.
-        align: Align,
+        align: Alignment,
         /// Supported alignments.
         possible: String,
     },
@@ -148,24 +148,31 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`] if the family cannot send such a frame.
     pub fn resolve(&self, family: &Family) -> Result<ResolvedFrame, SettingsError> {
-        let range = self.range(family)?;
+        let range = self.position_range(family)?;
         let preset = self.preset.unwrap_or(0);
-        limit(family, SettingName::Preset, (0, range.last()?), preset)?;
+        check_limit(family, SettingName::Preset, (0, range.last()?), preset)?;
         let code = self.code.unwrap_or_else(|| family.code());
         let bits = PositionCode::new(code, range.last()?)?.bits();
         let frame = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
         let Some(frame) = frame else {
             return Err(SettingsError::None { family: family.name.clone(), field: SettingName::Frame });
         };
-        let fitting = |align: &Align| lead(*align, &range, bits).is_some_and(|lead| fits(frame, lead, bits));
-        let align = self.align.or_else(|| family.align.iter().copied().find(fitting)).unwrap_or(Align::Left);
-        let lead = lead(align, &range, bits).filter(|lead| fits(frame, *lead, bits) && family.align.contains(&align));
+        let fitting =
+            |align: &Alignment| leading_zeros(*align, &range, bits).is_some_and(|lead| fits_frame(frame, lead, bits));
+        let align = self.align.or_else(|| family.align.iter().copied().find(fitting)).unwrap_or(Alignment::Left);
+        let lead = leading_zeros(align, &range, bits)
+            .filter(|lead| fits_frame(frame, *lead, bits) && family.align.contains(&align));
         let Some(lead) = lead else {
             let possible = family.align.iter().filter(|align| fitting(align));
-            return Err(SettingsError::Align { family: family.name.clone(), bits, align, possible: list(possible) });
+            return Err(SettingsError::Align {
+                family: family.name.clone(),
+                bits,
+                align,
+                possible: value_list(possible),
+            });
         };
         // Alignment to clock 25 already is alignment to clock 24 with a shift. See reference section 6, trap 3.
-        let shift_right = self.shift && align != Align::Right25;
+        let shift_right = self.shift && align != Alignment::Right25;
         if shift_right && !family.shift {
             return Err(SettingsError::None { family: family.name.clone(), field: SettingName::ShiftRight });
         }
@@ -173,12 +180,16 @@ impl Settings {
         let place = self.errors.or(frame.place.first().copied()).unwrap_or(ErrorPlace::None);
         if place != ErrorPlace::None && !frame.place.contains(&place) {
             let possible = if frame.place.is_empty() { &[ErrorPlace::None][..] } else { &frame.place };
-            return Err(SettingsError::Errors { family: family.name.clone(), place, possible: list(possible.iter()) });
+            return Err(SettingsError::Errors {
+                family: family.name.clone(),
+                place,
+                possible: value_list(possible.iter()),
+            });
         }
-        let errors = placed(frame, place, lead + bits);
+        let errors = error_bits_at(frame, place, lead + bits);
         let last_error = errors.iter().map(|bit| bit.clock).max().unwrap_or(0);
         // Error bits that follow the position leave the length of the frame unchanged if there is room for them.
-        let fixed = placed(frame, ErrorPlace::Fix, 0).iter().map(|bit| bit.clock).max().unwrap_or(0);
+        let fixed = error_bits_at(frame, ErrorPlace::Fix, 0).iter().map(|bit| bit.clock).max().unwrap_or(0);
         let whole = if place == ErrorPlace::Following && frame.area.is_some() { fixed } else { last_error };
         let own = area.max(whole);
         let clocks = self.clocks.unwrap_or(own);
@@ -205,7 +216,10 @@ impl Settings {
         };
         let named = family.codes.contains(&code);
         let longer = clocks > own && most.is_none();
-        let advice = [(!named).then_some(Advice::Code(code)), longer.then_some(Advice::Clocks { bits: own, clocks })];
+        let advice = [
+            (!named).then_some(SettingAdvice::Code(code)),
+            longer.then_some(SettingAdvice::Clocks { bits: own, clocks }),
+        ];
         let layout = Layout::new(descriptor)?;
         Ok(ResolvedFrame {
             layout,
@@ -217,9 +231,9 @@ impl Settings {
         })
     }
 
-    fn range(&self, family: &Family) -> Result<Range, SettingsError> {
+    fn position_range(&self, family: &Family) -> Result<Range, SettingsError> {
         let none = |field| SettingsError::None { family: family.name.clone(), field };
-        let limit = |field, limits, value| limit(family, field, limits, value);
+        let limit = |field, limits, value| check_limit(family, field, limits, value);
         let within = |field, (least, _, most): (u8, u8, u8), value: u8| {
             limit(field, (least.into(), most.into()), value.into()).map(|()| value)
         };
@@ -284,7 +298,12 @@ impl Settings {
     }
 }
 
-fn limit(family: &Family, field: SettingName, (least, most): (u64, u64), value: u64) -> Result<(), SettingsError> {
+fn check_limit(
+    family: &Family,
+    field: SettingName,
+    (least, most): (u64, u64),
+    value: u64,
+) -> Result<(), SettingsError> {
     if (least..=most).contains(&value) {
         Ok(())
     } else {
@@ -293,7 +312,7 @@ fn limit(family: &Family, field: SettingName, (least, most): (u64, u64), value: 
 }
 
 /// Returns the number of zeros before the position, or `None` if the position is too wide for the alignment.
-fn lead(align: Align, range: &Range, bits: u8) -> Option<u8> {
+fn leading_zeros(align: Alignment, range: &Range, bits: u8) -> Option<u8> {
     let tree = |slot: u8, behind: u8| match *range {
         Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn && singleturn <= behind => {
             slot.checked_sub(multiturn)
@@ -301,20 +320,20 @@ fn lead(align: Align, range: &Range, bits: u8) -> Option<u8> {
         _ => None,
     };
     match align {
-        Align::Left => Some(0),
-        Align::Right24 => 24_u8.checked_sub(bits),
-        Align::Right25 => 25_u8.checked_sub(bits),
-        Align::Tree12 => tree(12, 13),
-        Align::Tree13 => tree(13, 12),
+        Alignment::Left => Some(0),
+        Alignment::Right24 => 24_u8.checked_sub(bits),
+        Alignment::Right25 => 25_u8.checked_sub(bits),
+        Alignment::Tree12 => tree(12, 13),
+        Alignment::Tree13 => tree(13, 12),
     }
 }
 
-fn fits(frame: &Frame, lead: u8, bits: u8) -> bool {
+fn fits_frame(frame: &Frame, lead: u8, bits: u8) -> bool {
     lead + bits <= frame.area.unwrap_or(bits)
 }
 
 /// Returns the error bits of a frame at the given location. `behind` is the last clock of the position.
-fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
+fn error_bits_at(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
     let moved = |bit: &ErrorBit| match place {
         ErrorPlace::Following => ErrorBit { clock: bit.clock - first + behind + 1, ..bit.clone() },
@@ -323,7 +342,7 @@ fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     if place == ErrorPlace::None { Vec::new() } else { frame.errors.iter().map(moved).collect() }
 }
 
-fn list<T: ToString>(possible: impl Iterator<Item = T>) -> String {
+fn value_list<T: ToString>(possible: impl Iterator<Item = T>) -> String {
     let words: Vec<String> = possible.map(|one| one.to_string()).collect();
     if words.is_empty() { "none".to_owned() } else { words.join(", ") }
 }

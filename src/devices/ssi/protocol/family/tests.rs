@@ -1,12 +1,12 @@
 //! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
 
 use super::*;
-use crate::devices::ssi::protocol::{Direction, Flags, FrameFinding, Location, Meaning, Range, gray_to_binary};
+use crate::devices::ssi::protocol::{BitMeaning, Direction, Flags, FrameFinding, Location, Range, gray_to_binary};
 
 fn resolve(text: &str) -> Result<ResolvedFrame, String> {
     let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
     let families = Families::built_in();
-    let family = families.named(&key).ok_or_else(|| format!("no family {key}"))?;
+    let family = families.find_by_key(&key).ok_or_else(|| format!("no family {key}"))?;
     settings.resolve(family).map_err(|error| error.to_string())
 }
 
@@ -109,10 +109,10 @@ fn frames_match_the_reference() {
         assert_eq!(error.is_empty(), flags == Flags::NONE, "{text}");
         let frame = layout.encode(position, flags).unwrap();
         assert_eq!(format!("{frame:0width$b}", width = bits.len()), bits, "{text}");
-        assert_eq!(usize::from(layout.clocks()), bits.len(), "{text}");
+        assert_eq!(usize::from(layout.clock_count()), bits.len(), "{text}");
         let reading = layout.decode(frame);
         assert_eq!((reading.position, reading.flags), (position, flags), "{text}");
-        if let Location::Shaft { turns: read, steps: rest, .. } = range.place(reading.position) {
+        if let Location::Shaft { turns: read, steps: rest, .. } = range.locate(reading.position) {
             assert_eq!((read, rest), (turns, steps), "{text}");
         }
     }
@@ -141,13 +141,13 @@ fn the_kh53_has_an_error_pattern() {
         let fault = layout.decode(0xFF_FFFE);
         assert!(!layout.is_valid(fault), "{code}");
         assert_eq!(
-            layout.findings(fault),
-            [FrameFinding::Pattern { name: "overspeed or gap".to_owned(), meaning: Meaning::Invalid }]
+            layout.to_findings(fault),
+            [FrameFinding::Pattern { name: "overspeed or gap".to_owned(), meaning: BitMeaning::Invalid }]
         );
         let suspicious = layout.decode(0x0F_FFFE);
         assert!(layout.is_valid(suspicious), "{code}");
         assert_eq!(suspicious.position, if code == "gray" { gray_to_binary(0x0F_FFFE) } else { 0x0F_FFFE });
-        assert_eq!(layout.findings(layout.decode(0x0F_FFFC)), []);
+        assert_eq!(layout.to_findings(layout.decode(0x0F_FFFC)), []);
     }
 }
 
@@ -155,30 +155,30 @@ fn the_kh53_has_an_error_pattern() {
 #[test]
 fn a_safety_fault_and_a_stuck_line_are_distinguished() {
     let safe = resolve("afm60s").unwrap().layout;
-    assert_eq!(safe.clocks(), 33);
+    assert_eq!(safe.clock_count(), 33);
     let fault = safe.decode(0x1_FFFF_FFFF);
     assert!(!safe.is_valid(fault));
-    assert!(matches!(&safe.findings(fault)[0], FrameFinding::Pattern { name, .. } if name == "safety fault"));
-    assert_eq!(resolve("afm60s,st=13").unwrap().layout.clocks(), 28);
+    assert!(matches!(&safe.to_findings(fault)[0], FrameFinding::Pattern { name, .. } if name == "safety fault"));
+    assert_eq!(resolve("afm60s,st=13").unwrap().layout.clock_count(), 28);
 
     let plain = resolve("afm60").unwrap().layout;
     let high = plain.decode(0x1_FFFF_FFFF);
-    assert_eq!(plain.findings(high)[0], FrameFinding::StuckHigh { sure: true });
+    assert_eq!(plain.to_findings(high)[0], FrameFinding::StuckHigh { sure: true });
     assert!(!plain.is_valid(high));
     // 8191 of an ARS60 is all ones too: a suspicion.
     let short = resolve("ars60,st=13").unwrap().layout;
-    assert_eq!(short.findings(short.decode(0x1FFF)), [FrameFinding::StuckHigh { sure: false }]);
+    assert_eq!(short.to_findings(short.decode(0x1FFF)), [FrameFinding::StuckHigh { sure: false }]);
     assert!(short.is_valid(short.decode(0x1FFF)));
-    assert_eq!(short.findings(short.decode(0)), [FrameFinding::StuckLow { sure: false }]);
+    assert_eq!(short.to_findings(short.decode(0)), [FrameFinding::StuckLow { sure: false }]);
     // No position of 3600 in gray excess is coded as 0.
     let excess = resolve("atm60,steps=3600,code=gray-excess").unwrap().layout;
-    assert_eq!(excess.findings(excess.decode(0)), [FrameFinding::StuckLow { sure: true }, FrameFinding::Code]);
+    assert_eq!(excess.to_findings(excess.decode(0)), [FrameFinding::StuckLow { sure: true }, FrameFinding::Code]);
 }
 
 /// Section 6, trap 5: the frame of an AFS60 shrinks with its resolution, that of an AHS36 does not.
 #[test]
 fn only_some_frames_shrink_with_the_resolution() {
-    let clocks = |text: &str| resolve(text).unwrap().layout.clocks();
+    let clocks = |text: &str| resolve(text).unwrap().layout.clock_count();
     assert_eq!([clocks("afs60,st=13"), clocks("afs60,st=18")], [16, 21]);
     assert_eq!([clocks("ahs36,st=8"), clocks("ahs36,st=8,err=following")], [15, 15]);
     assert_eq!([clocks("ars60,st=12"), clocks("ars60,st=14"), clocks("ahm36,err=none")], [13, 17, 26]);
@@ -188,7 +188,7 @@ fn only_some_frames_shrink_with_the_resolution() {
 fn wrong_padding_is_reported() {
     let layout = resolve("ahs36,st=12").unwrap().layout;
     let reading = layout.decode(0b101010111100010);
-    assert_eq!(layout.findings(reading), [FrameFinding::Padding]);
+    assert_eq!(layout.to_findings(reading), [FrameFinding::Padding]);
     assert!(layout.is_valid(reading));
 }
 
@@ -197,9 +197,9 @@ fn wrong_padding_is_reported() {
 fn a_round_axis_divides_into_turns() {
     let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;
     let range = layout.descriptor().range;
-    assert_eq!(layout.coding().last(), 99);
-    assert_eq!(range.place(48), Location::Shaft { turns: 6, steps: 0, degrees: 0.0 });
-    assert_eq!(range.place(99), Location::Shaft { turns: 12, steps: 3, degrees: 135.0 });
+    assert_eq!(layout.position_code().last(), 99);
+    assert_eq!(range.locate(48), Location::Shaft { turns: 6, steps: 0, degrees: 0.0 });
+    assert_eq!(range.locate(99), Location::Shaft { turns: 12, steps: 3, degrees: 135.0 });
     assert_eq!(range.position(12, 3), Some(99));
     assert_eq!((range.position(12, 4), range.position(6, 8)), (None, None));
 }
@@ -261,9 +261,9 @@ fn direction_and_preset_do_not_change_the_frame() {
 
 #[test]
 fn undocumented_settings_are_accepted_with_advice() {
-    assert_eq!(resolve("ahs36,steps=360,code=bcd").unwrap().advice, [Advice::Code(Code::Bcd)]);
-    assert_eq!(resolve("kh53,clocks=25").unwrap().advice, [Advice::Clocks { bits: 24, clocks: 25 }]);
+    assert_eq!(resolve("ahs36,steps=360,code=bcd").unwrap().advice, [SettingAdvice::Code(Code::Bcd)]);
+    assert_eq!(resolve("kh53,clocks=25").unwrap().advice, [SettingAdvice::Clocks { bits: 24, clocks: 25 }]);
     assert_eq!(resolve("ttk70,clocks=31").unwrap().advice, []);
     // A host that cannot use the error bits clocks the resolution only (manual 3.1).
-    assert_eq!(resolve("ahs36,st=12,err=none,clocks=12").unwrap().layout.clocks(), 12);
+    assert_eq!(resolve("ahs36,st=12,err=none,clocks=12").unwrap().layout.clock_count(), 12);
 }

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Align, ErrorPlace, Settings};
+use super::{Alignment, ErrorPlace, Settings};
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{GrayCoverage, Meaning};
+use crate::devices::ssi::protocol::descriptor::{BitMeaning, GrayCoverage};
 use crate::devices::ssi::protocol::range::Direction;
 use crate::devices::ssi::protocol::spec::{Setting, SpecError};
 use crate::expected::AllowedValues;
@@ -36,75 +36,75 @@ impl Settings {
         let mut words = text.split(',').map(str::trim);
         let key = words.next().unwrap_or_default().to_ascii_lowercase();
         let mut settings = Settings::default();
-        for setting in Setting::all(words, NAMES)? {
-            settings.set(setting)?;
+        for setting in Setting::parse_all(words, NAMES)? {
+            settings.apply_setting(setting)?;
         }
         Ok((key, settings))
     }
 
     /// Returns the family key and the settings that are not `None` as one word, such as `ahm36,code=gray,st=12`.
     pub fn emit(&self, key: &str) -> String {
-        fn word<T: ToString>(value: Option<T>) -> Option<String> {
+        fn keyword_of<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
         }
         let values = [
-            word(self.code),
-            word(self.coded),
-            word(self.multiturn),
-            word(self.singleturn),
-            word(self.steps),
-            word(self.turns),
-            word(self.revolutions),
-            word(self.clocks),
-            word(self.align),
-            word(self.shift.then_some(1)),
-            word(self.errors),
-            word(self.step_nanometres),
-            word(self.direction),
-            word(self.preset),
+            keyword_of(self.code),
+            keyword_of(self.coded),
+            keyword_of(self.multiturn),
+            keyword_of(self.singleturn),
+            keyword_of(self.steps),
+            keyword_of(self.turns),
+            keyword_of(self.revolutions),
+            keyword_of(self.clocks),
+            keyword_of(self.align),
+            keyword_of(self.shift.then_some(1)),
+            keyword_of(self.errors),
+            keyword_of(self.step_nanometres),
+            keyword_of(self.direction),
+            keyword_of(self.preset),
         ];
         let named = NAMES.iter().zip(values).filter_map(|(name, value)| Some(format!(",{name}={}", value?)));
         key.to_owned() + &named.collect::<String>()
     }
 
-    fn set(&mut self, setting: Setting<'_>) -> Result<(), SpecError> {
+    fn apply_setting(&mut self, setting: Setting<'_>) -> Result<(), SpecError> {
         let value = setting.value;
-        let wrong = |expected| setting.wrong(expected);
+        let wrong = |expected| setting.wrong_value(expected);
         match setting.name {
             "code" => self.code = Some(value.parse().map_err(wrong)?),
             "over" => self.coded = Some(value.parse().map_err(wrong)?),
-            "mt" => self.multiturn = Some(setting.small()?),
-            "st" => self.singleturn = Some(setting.small()?),
-            "steps" => self.steps = Some(setting.number()?),
-            "turns" => self.turns = Some(setting.number()?),
+            "mt" => self.multiturn = Some(setting.parse_u8()?),
+            "st" => self.singleturn = Some(setting.parse_u8()?),
+            "steps" => self.steps = Some(setting.parse_u32()?),
+            "turns" => self.turns = Some(setting.parse_u32()?),
             "revolutions" => self.revolutions = Some(value.parse().map_err(wrong)?),
-            "clocks" => self.clocks = Some(setting.small()?),
+            "clocks" => self.clocks = Some(setting.parse_u8()?),
             "align" => self.align = Some(value.parse().map_err(wrong)?),
-            "shift" => self.shift = setting.switch()?,
+            "shift" => self.shift = setting.parse_switch()?,
             "err" => self.errors = Some(value.parse().map_err(wrong)?),
-            "step" => self.step_nanometres = Some(setting.number()?),
+            "step" => self.step_nanometres = Some(setting.parse_u32()?),
             "direction" => self.direction = Some(value.parse().map_err(wrong)?),
             "preset" => self.preset = Some(value.parse().map_err(|_| wrong(AllowedValues::Whole))?),
-            _ => return Err(setting.unknown()),
+            _ => return Err(setting.unknown_name()),
         }
         Ok(())
     }
 }
 
 /// A type whose values are written as keywords. Each value has a preferred keyword and can have alternatives.
-trait Words: Copy + PartialEq + 'static {
+trait Keyword: Copy + PartialEq + 'static {
     const ALL: &'static [(&'static str, Self)];
 
-    fn word(self) -> &'static str {
+    fn keyword(self) -> &'static str {
         Self::ALL.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
     }
 
-    fn named(word: &str) -> Option<Self> {
+    fn from_keyword(word: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
     }
 }
 
-impl Words for Code {
+impl Keyword for Code {
     const ALL: &'static [(&'static str, Self)] = &[
         ("binary", Code::Binary),
         ("bin", Code::Binary),
@@ -114,7 +114,7 @@ impl Words for Code {
     ];
 }
 
-impl Words for GrayCoverage {
+impl Keyword for GrayCoverage {
     const ALL: &'static [(&'static str, Self)] = &[
         ("position", GrayCoverage::Position),
         ("padded", GrayCoverage::Area),
@@ -122,25 +122,25 @@ impl Words for GrayCoverage {
     ];
 }
 
-impl Words for Direction {
+impl Keyword for Direction {
     const ALL: &'static [(&'static str, Self)] = &[("cw", Direction::Clockwise), ("ccw", Direction::CounterClockwise)];
 }
 
-impl Words for Meaning {
-    const ALL: &'static [(&'static str, Self)] = &[("invalid", Meaning::Invalid), ("warning", Meaning::Warning)];
+impl Keyword for BitMeaning {
+    const ALL: &'static [(&'static str, Self)] = &[("invalid", BitMeaning::Invalid), ("warning", BitMeaning::Warning)];
 }
 
-impl Words for Align {
+impl Keyword for Alignment {
     const ALL: &'static [(&'static str, Self)] = &[
-        ("left", Align::Left),
-        ("right24", Align::Right24),
-        ("right25", Align::Right25),
-        ("tree12_13", Align::Tree12),
-        ("tree13_12", Align::Tree13),
+        ("left", Alignment::Left),
+        ("right24", Alignment::Right24),
+        ("right25", Alignment::Right25),
+        ("tree12_13", Alignment::Tree12),
+        ("tree13_12", Alignment::Tree13),
     ];
 }
 
-impl Words for ErrorPlace {
+impl Keyword for ErrorPlace {
     const ALL: &'static [(&'static str, Self)] =
         &[("none", ErrorPlace::None), ("fix", ErrorPlace::Fix), ("following", ErrorPlace::Following)];
 }
@@ -150,7 +150,7 @@ macro_rules! in_words {
     ($($type:ty: $expected:expr,)*) => {$(
         impl fmt::Display for $type {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.word())
+                f.write_str(self.keyword())
             }
         }
 
@@ -158,7 +158,7 @@ macro_rules! in_words {
             type Err = AllowedValues;
 
             fn from_str(word: &str) -> Result<Self, AllowedValues> {
-                Self::named(word).ok_or(AllowedValues::words(&$expected))
+                Self::from_keyword(word).ok_or(AllowedValues::words(&$expected))
             }
         }
     )*};
@@ -168,8 +168,8 @@ in_words! {
     Code: ["binary", "gray", "gray-excess", "bcd"],
     GrayCoverage: ["position", "padded", "errors"],
     Direction: ["cw", "ccw"],
-    Meaning: ["invalid", "warning"],
-    Align: ["left", "right24", "right25", "tree12_13", "tree13_12"],
+    BitMeaning: ["invalid", "warning"],
+    Alignment: ["left", "right24", "right25", "tree12_13", "tree13_12"],
     ErrorPlace: ["none", "fix", "following"],
 }
 
@@ -181,7 +181,7 @@ mod tests {
     use proptest::prelude::*;
     use proptest::sample::select;
 
-    fn one_of<T: Words + fmt::Debug>() -> impl Strategy<Value = Option<T>> {
+    fn one_of<T: Keyword + fmt::Debug>() -> impl Strategy<Value = Option<T>> {
         of(select(T::ALL).prop_map(|(_, value)| value))
     }
 

@@ -3,26 +3,28 @@
 
 use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
-use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, encoder_parity, find_ambiguous_parity, sum};
+use super::members::{
+    EXCHANGE_WEIGHT, NO_FAMILY_WEIGHT, PADDED, TestCandidateFn, encoder_parity, find_ambiguous_parity, sum,
+};
 use super::plausible::{common_bit_splits, width_penalty};
-use super::reading::Read;
+use super::reading::FrameNumbers;
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Repeat};
+use crate::devices::ssi::protocol::descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity, Repeat};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
 /// Number of position widths to propose.
 const WIDTHS: usize = 4;
-const SHARES: usize = 3;
+const MIN_SHARES: usize = 3;
 /// Minimum number of frames per thousand in which a bit must deviate to be regarded as an error bit.
-const SPOKE_PERMILLE: usize = 5;
+const ERROR_BIT_PERMILLE: usize = 5;
 const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
 /// Tries frames of no family that have the given number of clocks.
 pub(super) fn try_custom_frames(
-    take: &mut Take<'_>,
-    read: &Read,
+    take: &mut TestCandidateFn<'_>,
+    read: &FrameNumbers,
     words: &FrameSet,
     (clocks, repeat): (u8, Option<Repeat>),
     inverted: bool,
@@ -42,7 +44,7 @@ pub(super) fn try_custom_frames(
         .sort_by(|a, b| (!ends(a), rank(a)).partial_cmp(&(!ends(b), rank(b))).unwrap_or(std::cmp::Ordering::Equal));
     for bits in widths_of.into_iter().take(WIDTHS) {
         let lead = above - (bits - least);
-        for (range, weight) in ranges(read, bits) {
+        for (range, weight) in possible_ranges(read, bits) {
             let base = FrameDescriptor {
                 clocks: words.clocks,
                 range,
@@ -52,12 +54,12 @@ pub(super) fn try_custom_frames(
                 between: reading.gap.map_or(0, |(from, to)| to + 1 - from),
                 parity: encoder_parity(reading, inverted),
                 inverted,
-                ..FrameDescriptor::plain(0, 0)
+                ..FrameDescriptor::binary(0, 0)
             };
             let fixed = bits_outside_position(words, read, lead, inverted);
             let high = fixed.iter().filter(|bit| bit.active_low).count();
-            let weights = [(inverted, EXCHANGED), (reading.parity.is_some(), PARITY)];
-            let weight = ANY_OTHER + weight + ALWAYS_HIGH * high as f64 + sum(&weights);
+            let weights = [(inverted, EXCHANGE_WEIGHT), (reading.parity.is_some(), PARITY)];
+            let weight = NO_FAMILY_WEIGHT + weight + ALWAYS_HIGH * high as f64 + sum(&weights);
             let base = FrameDescriptor { errors: fixed, ..base };
             let over =
                 find_ambiguous_parity(reading, inverted).into_iter().flat_map(|parity| parity_variants(&base, parity));
@@ -81,7 +83,7 @@ pub(super) fn try_custom_frames(
 fn parity_variants(frame: &FrameDescriptor, parity: Parity) -> [FrameDescriptor; 2] {
     let none = FrameDescriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
-    errors.push(named("ERROR", parity.clock, false));
+    errors.push(error_bit("ERROR", parity.clock, false));
     [
         FrameDescriptor { coded: GrayCoverage::Area, area: parity.clock, ..none.clone() },
         FrameDescriptor { coded: GrayCoverage::AreaAndErrors, errors, ..none },
@@ -89,7 +91,7 @@ fn parity_variants(frame: &FrameDescriptor, parity: Parity) -> [FrameDescriptor;
 }
 
 /// Returns the possible ranges for a reading with the given number of bits, each with its weight.
-fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
+fn possible_ranges(read: &FrameNumbers, bits: u8) -> Vec<(Range, f64)> {
     let reading = &read.reading;
     if let Some((steps, _)) = reading.steps {
         let unusual = f64::from(unusual_step_cost(steps));
@@ -97,7 +99,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
         return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, unusual)).into_iter().collect();
     }
     if reading.code == Code::Bcd {
-        let per_turn = u32::try_from(reading.round()).ok();
+        let per_turn = u32::try_from(reading.wrap_after()).ok();
         return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, 1.0)).into_iter().collect();
     }
     if let Some((_, to)) = reading.gap {
@@ -105,7 +107,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
         let range = Range::Bits { multiturn: bits - singleturn, singleturn };
         return vec![(range, width_penalty(bits - singleturn, singleturn))];
     }
-    let shares = common_bit_splits(bits, SHARES).into_iter();
+    let shares = common_bit_splits(bits, MIN_SHARES).into_iter();
     shares
         .map(|(multiturn, singleturn)| (Range::Bits { multiturn, singleturn }, width_penalty(multiturn, singleturn)))
         .collect()
@@ -113,7 +115,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
 
 /// Returns the bits outside the position that need a name. These are bits that are always 1, bits that were active, and
 /// unexplained bits.
-fn bits_outside_position(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
+fn bits_outside_position(words: &FrameSet, read: &FrameNumbers, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;
     let mut bits = Vec::new();
     for (clock, bit) in words.bits() {
@@ -123,17 +125,17 @@ fn bits_outside_position(words: &FrameSet, read: &Read, lead: u8, inverted: bool
             continue;
         }
         if read.unexplained.contains(&clock) {
-            bits.push(named("BIT", clock, false));
+            bits.push(error_bit("BIT", clock, false));
         } else if bit.usual != inverted {
-            bits.push(named("HIGH", clock, true));
-        } else if bit.unusual * 1000 > SPOKE_PERMILLE * words.words().len() {
-            bits.push(named("ERROR", clock, false));
+            bits.push(error_bit("HIGH", clock, true));
+        } else if bit.unusual * 1000 > ERROR_BIT_PERMILLE * words.words().len() {
+            bits.push(error_bit("ERROR", clock, false));
         }
     }
     bits
 }
 
-fn named(name: &str, clock: u8, active_low: bool) -> ErrorBit {
+fn error_bit(name: &str, clock: u8, active_low: bool) -> ErrorBit {
     let name = format!("{name}{clock}");
-    ErrorBit { name, clock, meaning: Meaning::Warning, active_low, cleared_by_transfer: false }
+    ErrorBit { name, clock, meaning: BitMeaning::Warning, active_low, cleared_by_transfer: false }
 }

@@ -2,17 +2,17 @@
 //! never occur and from the size of backward jumps.
 
 use super::motion::{Motion, median};
-use super::reading::{Read, Reading};
+use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
-const TRIED: usize = 40;
+const TRIED_COUNTS: usize = 40;
 /// Maximum information in bits above that of the best number of steps for another number to fit as well.
-const AS_WELL_BITS: f64 = 10.0;
+const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
 /// Returns the possible codes, each with two numbers of steps: the most usual one that fits, and the last one that
 /// fits.
-pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
-    let whole = read.reading.round();
+pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
+    let whole = read.reading.wrap_after();
     if whole == 0 || read.reading.steps.is_some() {
         return Vec::new();
     }
@@ -21,7 +21,7 @@ pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
         let reading = Reading { code, ..read.reading.clone() };
         found.extend(best_step_counts(read, &reading, &least, whole).map(|steps| (code, steps)));
     };
-    let extremes = extremes(read);
+    let extremes = number_extremes(read);
     // The range contains at least the positions from 0 to the highest one that occurred.
     add(read.reading.code, extremes.iter().map(|(_, highest)| highest + 1).collect());
     if read.reading.code == Code::Gray {
@@ -34,7 +34,7 @@ pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
 
 /// Returns two pairs of the lowest and the highest number: for all consistent frames, and for nearly all of them. A
 /// disturbed frame can be consistent by chance.
-fn extremes(read: &Read) -> Vec<(u64, u64)> {
+fn number_extremes(read: &FrameNumbers) -> Vec<(u64, u64)> {
     let good = |frame: &usize| read.motion.is_good(*frame);
     let frames = (0..read.numbers.len()).filter(good);
     let mut numbers: Vec<u64> = frames.filter_map(|frame| read.numbers.get(frame).copied().flatten()).collect();
@@ -46,20 +46,20 @@ fn extremes(read: &Read) -> Vec<(u64, u64)> {
 
 /// Returns the numbers of steps that make the motion most even: the most usual one and the last one. Returns `None` if
 /// none is better than the full range of the bits.
-fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
+fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
         (lowest.max(2)..whole).contains(steps) && (reading.code != Code::GrayExcess || steps.is_multiple_of(2))
     };
     let numbers = |steps| {
-        let allowed = Reading { steps: Some((steps, steps)), ..reading.clone() }.allowed();
+        let allowed = Reading { steps: Some((steps, steps)), ..reading.clone() }.allowed_step_counts();
         read.numbers.iter().map(|number| number.filter(|number| allowed.contains(number))).collect::<Vec<_>>()
     };
     let mut costs: Vec<(f64, u64)> = Vec::new();
     let mut add = |all: Vec<u64>| {
         for steps in all.iter().filter(|steps| fits(steps)) {
-            if costs.len() < TRIED && costs.iter().all(|(_, known)| known != steps) {
-                costs.push((Motion::of(&numbers(*steps), *steps).bits, *steps));
+            if costs.len() < TRIED_COUNTS && costs.iter().all(|(_, known)| known != steps) {
+                costs.push((Motion::from_numbers(&numbers(*steps), *steps).bits, *steps));
             }
         }
         costs.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))
@@ -68,12 +68,12 @@ fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -
     let near =
         |steps: u64| (1..=4).flat_map(|by| [steps.saturating_add(by), steps.saturating_sub(by)]).collect::<Vec<_>>();
     if let Some(steps) = jump_size(&read.motion, whole) {
-        add(usual(steps.saturating_sub(8)..=steps.saturating_add(8)));
+        add(common_step_counts(steps.saturating_sub(8)..=steps.saturating_add(8)));
         add([vec![steps], near(steps)].concat());
     }
     for least in least {
         add((*least..=least + 1).collect());
-        add(usual(*least..=least.saturating_add(reach)));
+        add(common_step_counts(*least..=least.saturating_add(reach)));
     }
     // Continues from the best number to the last one that fits as well.
     let mut best = add(Vec::new())?;
@@ -85,12 +85,15 @@ fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -
         best = next;
     }
     let (lowest, steps) = best;
-    add(usual(steps.saturating_sub(8)..=steps.saturating_add(8)));
-    if lowest + AS_WELL_BITS > read.motion.bits {
+    add(common_step_counts(steps.saturating_sub(8)..=steps.saturating_add(8)));
+    if lowest + ALTERNATIVE_MARGIN_BITS > read.motion.bits {
         return None;
     }
-    let mut as_well: Vec<u64> =
-        costs.into_iter().filter(|(cost, _)| *cost <= lowest + AS_WELL_BITS).map(|(_, steps)| steps).collect();
+    let mut as_well: Vec<u64> = costs
+        .into_iter()
+        .filter(|(cost, _)| *cost <= lowest + ALTERNATIVE_MARGIN_BITS)
+        .map(|(_, steps)| steps)
+        .collect();
     as_well.sort_by_key(|steps| (unusual_step_cost(*steps), *steps));
     let first = as_well.first().copied()?;
     let others = as_well.iter().filter(|steps| **steps != first).max();
@@ -113,7 +116,7 @@ fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
 }
 
 /// Returns the common numbers of steps in a range.
-fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
+fn common_step_counts(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     let mut all: Vec<u64> = Vec::new();
     for step in [1, 2, 5, 25] {
         for unit in [36_u64, 10] {
@@ -132,7 +135,7 @@ fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
 
 /// Returns how unusual a number of steps is, from 0 for a usual number up to 5.
 pub(super) fn unusual_step_cost(steps: u64) -> u8 {
-    if !usual(steps..=steps).is_empty() || steps.is_power_of_two() {
+    if !common_step_counts(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;
     }
     [100, 10, 4, 2].iter().zip(1..).find(|(unit, _)| steps.is_multiple_of(**unit)).map_or(5, |(_, rank)| rank)

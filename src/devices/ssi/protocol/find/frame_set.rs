@@ -7,13 +7,13 @@ use crate::devices::ssi::protocol::code::low_bits_mask;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 
 /// Maximum number of consecutive frames in which a disturbed bit or an error bit deviates.
-const SHORT: usize = 2;
+const MAX_DISTURBED_FRAMES: usize = 2;
 /// Maximum percentage of frames in which a constant bit deviates from its usual value.
 const RARE_PERCENT: usize = 25;
 /// Maximum percentage of frames in which the repetition differs from the first word.
 const REPEAT_PERCENT: usize = 10;
 /// Minimum width of a repeated word in bits.
-const LEAST_WORD: u8 = 4;
+const MIN_WORD_BITS: u8 = 4;
 
 /// Recorded frames with the same number of clocks, in the order in which they were received.
 pub(super) struct FrameSet {
@@ -60,38 +60,38 @@ impl FrameSet {
     }
 
     /// Returns the level of a line that never changes, or `None` if the frames contain both 0 and 1.
-    pub(super) fn stuck(&self) -> Option<bool> {
+    pub(super) fn stuck_level(&self) -> Option<bool> {
         let same = |word: u64| self.words.iter().all(|own| *own == word);
         if same(0) { Some(false) } else { same(low_bits_mask(self.clocks)).then_some(true) }
     }
 
     pub(super) fn distinct_count(&self) -> usize {
-        self.counts().len()
+        self.word_counts().len()
     }
 
     /// Returns whether nearly all frames have one of a few values, because the shaft stood still or jittered. Disturbed
     /// frames are tolerated.
     pub(super) fn is_at_rest(&self) -> bool {
-        let mut counts: Vec<usize> = self.counts().into_values().collect();
+        let mut counts: Vec<usize> = self.word_counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
         let few: usize = counts.iter().take(8).sum();
         (self.words.len() - few) * 8 < self.words.len()
     }
 
-    fn counts(&self) -> HashMap<u64, usize> {
+    fn word_counts(&self) -> HashMap<u64, usize> {
         let mut counts = HashMap::new();
         self.words.iter().for_each(|word| *counts.entry(*word).or_default() += 1);
         counts
     }
 
     /// Returns the repetition, if the frames contain each word twice.
-    pub(super) fn repeat(&self) -> Option<Repeat> {
+    pub(super) fn detect_repetition(&self) -> Option<Repeat> {
         let moving = |from: u8, to: u8| (from..=to).filter(|clock| self.bit(*clock).moves).count();
-        (LEAST_WORD..self.clocks).find_map(|behind| {
+        (MIN_WORD_BITS..self.clocks).find_map(|behind| {
             let most = behind.min(self.clocks - behind);
-            let word = (1..=most).take_while(|clock| self.same(*clock, clock + behind)).last()?;
+            let word = (1..=most).take_while(|clock| self.are_equal(*clock, clock + behind)).last()?;
             let elsewhere = moving(word + 1, behind) + moving(behind + word + 1, self.clocks);
-            let fits = moving(1, word) >= 4 && elsewhere == 0 && word >= LEAST_WORD;
+            let fits = moving(1, word) >= 4 && elsewhere == 0 && word >= MIN_WORD_BITS;
             fits.then_some(Repeat { word, gap: behind - word })
         })
     }
@@ -108,7 +108,7 @@ impl FrameSet {
     }
 
     /// Returns whether two clocks carry equal bits in nearly all frames.
-    fn same(&self, one: u8, other: u8) -> bool {
+    fn are_equal(&self, one: u8, other: u8) -> bool {
         let differs = |word: &&u64| (*word >> (self.clocks - one) ^ *word >> (self.clocks - other)) & 1 == 1;
         self.words.iter().filter(differs).count() * 100 <= REPEAT_PERCENT * self.words.len()
     }
@@ -126,11 +126,16 @@ impl Bit {
             run = if bit(word) == usual { 0 } else { run + 1 };
             longest = longest.max(run);
         }
-        Bit { usual, unusual, changes, moves: longest > SHORT || unusual * 100 > RARE_PERCENT * words.len() }
+        Bit {
+            usual,
+            unusual,
+            changes,
+            moves: longest > MAX_DISTURBED_FRAMES || unusual * 100 > RARE_PERCENT * words.len(),
+        }
     }
 
     /// Returns the information in bits of a bit that nothing else explains.
-    pub(super) fn cost(&self, frames: usize) -> f64 {
+    pub(super) fn information_bits(&self, frames: usize) -> f64 {
         binary_entropy(self.changes, frames)
     }
 }

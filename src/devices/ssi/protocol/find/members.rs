@@ -2,35 +2,35 @@
 
 use super::any_other::try_custom_frames;
 use super::frame_set::FrameSet;
-use super::of_family::of_family;
-use super::probe::{LayoutProbe, Trial};
-use super::reading::{Read, Reading};
+use super::of_family::try_families;
+use super::probe::{LayoutProbe, TrialReading};
+use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 
 /// Weight of a frame that belongs to no family, compared to 0.8 for a changed setting of a family.
-pub(super) const ANY_OTHER: f64 = 2.0;
-pub(super) const EXCHANGED: f64 = 2.0;
+pub(super) const NO_FAMILY_WEIGHT: f64 = 2.0;
+pub(super) const EXCHANGE_WEIGHT: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
-const NEVER_ODD: f64 = 8.0;
+const NEVER_ODD_WEIGHT: f64 = 8.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct LayoutCandidate {
     pub(super) family: Option<(String, Settings)>,
     pub(super) layout: Layout,
     pub(super) weight: f64,
-    pub(super) trial: Trial,
+    pub(super) trial: TrialReading,
 }
 
 /// Callback that tests a candidate layout with its weight, and keeps the layout if it fits.
-pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
+pub(super) type TestCandidateFn<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
 /// Returns the layouts that fit the reading and result in the motion of the probe, in no particular order.
 pub(super) fn group_members(
     probe: &LayoutProbe<'_>,
-    read: &Read,
+    read: &FrameNumbers,
     words: &FrameSet,
     repeat: Option<Repeat>,
     families: Option<&Families>,
@@ -38,7 +38,7 @@ pub(super) fn group_members(
     let mut found = Vec::new();
     let mut take = |family: Option<(String, Settings)>, layout: Layout, weight: f64| {
         if let Some(trial) = probe.try_layout(&layout) {
-            let weight = weight + if trial.never_odd { NEVER_ODD } else { 0.0 };
+            let weight = weight + if trial.never_odd { NEVER_ODD_WEIGHT } else { 0.0 };
             found.push(LayoutCandidate { family, layout, weight, trial });
         }
     };
@@ -46,19 +46,19 @@ pub(super) fn group_members(
     if let Some(families) = families.filter(|_| repeat.is_none()) {
         for (place, family) in families.iter().enumerate() {
             for inverted in inverted {
-                of_family(&mut take, read, words, (place, family), *inverted);
+                try_families(&mut take, read, words, (place, family), *inverted);
             }
         }
     }
     for inverted in inverted {
-        try_custom_frames(&mut take, read, words, (probe.clocks(), repeat), *inverted);
+        try_custom_frames(&mut take, read, words, (probe.clock_count(), repeat), *inverted);
     }
     found
 }
 
 /// Returns whether to try the frames as received, inverted, or both. In binary, swapped wires only reverse the
 /// direction.
-fn possible_inversions(read: &Read) -> &'static [bool] {
+fn possible_inversions(read: &FrameNumbers) -> &'static [bool] {
     match (read.reading.code, read.reading.inverted) {
         (Code::Binary, _) if read.reading.steps.is_none() => &[false, true],
         (_, true) => &[true],
@@ -79,7 +79,7 @@ pub(super) fn find_ambiguous_parity(reading: &Reading, inverted: bool) -> Option
 }
 
 /// Returns whether nearly all steps are even numbers. The lowest bit then carries no information.
-pub(super) fn has_only_even_steps(read: &Read) -> bool {
+pub(super) fn has_only_even_steps(read: &FrameNumbers) -> bool {
     let steps = read.motion.steps.iter().zip(&read.motion.uneven);
     let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);
     let (mut all, mut odd) = (0, 0);

@@ -26,11 +26,11 @@ pub(super) struct Motion {
 
 impl Motion {
     /// Analyses numbers that wrap after `round`. A `round` of 0 means 64 bits.
-    pub(super) fn of(numbers: &[Option<u64>], round: u64) -> Self {
+    pub(super) fn from_numbers(numbers: &[Option<u64>], round: u64) -> Self {
         let steps: Vec<Option<i64>> = numbers
             .iter()
             .zip(numbers.iter().skip(1))
-            .map(|(before, after)| Some(nearest(after.as_ref()?.wrapping_sub(*before.as_ref()?), round)))
+            .map(|(before, after)| Some(shortest_step(after.as_ref()?.wrapping_sub(*before.as_ref()?), round)))
             .collect();
         let mut uneven = Vec::with_capacity(steps.len());
         let mut block: Vec<i64> = Vec::with_capacity(BLOCK);
@@ -39,7 +39,7 @@ impl Motion {
             block.extend(steps.iter().flatten());
             let median = median(&mut block);
             uneven.extend(
-                steps.iter().map(|step| step.map_or(0, |step| nearest(step.wrapping_sub(median) as u64, round))),
+                steps.iter().map(|step| step.map_or(0, |step| shortest_step(step.wrapping_sub(median) as u64, round))),
             );
         }
         let mut sizes: Vec<i64> = uneven.iter().map(|uneven| uneven.saturating_abs()).collect();
@@ -48,7 +48,7 @@ impl Motion {
         let mut known: Vec<i64> = steps.iter().flatten().copied().collect();
         let nones = numbers.iter().filter(|number| number.is_none()).count();
         Motion {
-            bits: cost(&uneven) + NONE_BITS * nones as f64,
+            bits: information_bits(&uneven) + NONE_BITS * nones as f64,
             median: median(&mut known),
             jumps: uneven.iter().filter(|uneven| uneven.unsigned_abs() > limit).count(),
             limit,
@@ -79,7 +79,7 @@ impl Motion {
 
 /// Returns the information of all differences in bits. Each difference is encoded as a group of similar sizes and an
 /// index in the group. A frequent group needs fewer bits.
-fn cost(uneven: &[i64]) -> f64 {
+fn information_bits(uneven: &[i64]) -> f64 {
     // Groups by the number of bits, separately for differences below and above 0.
     let mut groups = [0_usize; 130];
     let mut within = 0;
@@ -98,7 +98,7 @@ fn cost(uneven: &[i64]) -> f64 {
 }
 
 /// Returns the step as the shortest distance in either direction, given that positions wrap after `round`.
-pub(super) fn nearest(step: u64, round: u64) -> i64 {
+pub(super) fn shortest_step(step: u64, round: u64) -> i64 {
     if round == 0 {
         return step as i64;
     }

@@ -1,22 +1,22 @@
 //! Candidate layouts of a family. Only settings whose position ends where the reading ends are tried.
 
 use super::frame_set::FrameSet;
-use super::members::{EXCHANGED, PADDED, Take, find_ambiguous_parity, sum};
+use super::members::{EXCHANGE_WEIGHT, PADDED, TestCandidateFn, find_ambiguous_parity, sum};
 use super::plausible::width_penalty;
-use super::reading::Read;
+use super::reading::FrameNumbers;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{FrameDescriptor, GrayCoverage};
-use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, Settings};
+use crate::devices::ssi::protocol::family::{Alignment, ErrorPlace, Family, SettingAdvice, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
 /// Weight of a setting that differs from the factory setting.
-const CHANGED: f64 = 0.8;
+const CHANGE_WEIGHT: f64 = 0.8;
 
 /// Tries every frame that the family can send. Families that come first in the list are slightly preferred.
-pub(super) fn of_family(
-    take: &mut Take<'_>,
-    read: &Read,
+pub(super) fn try_families(
+    take: &mut TestCandidateFn<'_>,
+    read: &FrameNumbers,
     words: &FrameSet,
     (place, family): (usize, &Family),
     inverted: bool,
@@ -53,7 +53,7 @@ pub(super) fn of_family(
                     };
                     for settings in all {
                         let Ok(resolved) = settings.resolve(family) else { continue };
-                        if resolved.advice.iter().any(|advice| matches!(advice, Advice::Clocks { .. })) {
+                        if resolved.advice.iter().any(|advice| matches!(advice, SettingAdvice::Clocks { .. })) {
                             continue;
                         }
                         let descriptor = FrameDescriptor { inverted, ..resolved.layout.descriptor().clone() };
@@ -75,8 +75,8 @@ pub(super) fn of_family(
                             Range::Bits { multiturn, singleturn } => width_penalty(multiturn, singleturn) / 2.0,
                             _ => 0.0,
                         };
-                        let weights = [(inverted, EXCHANGED), (*coded != GrayCoverage::Position, PADDED)];
-                        let weight = CHANGED * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
+                        let weights = [(inverted, EXCHANGE_WEIGHT), (*coded != GrayCoverage::Position, PADDED)];
+                        let weight = CHANGE_WEIGHT * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
                         take(Some((family.key.clone(), settings)), layout, weight);
                     }
                 }
@@ -90,19 +90,19 @@ fn find_resolutions(
     turns: &[Option<u8>],
     family: &Family,
     common: &Settings,
-    (last, align): (u8, Align),
+    (last, align): (u8, Alignment),
 ) -> Vec<Settings> {
     let (least, _, most) = family.singleturn;
     let late = u8::from(common.shift);
     let mut all = Vec::new();
     for multiturn in turns {
         let before = match align {
-            Align::Left => multiturn.unwrap_or(0),
-            Align::Tree12 => 12,
-            Align::Tree13 => 13,
+            Alignment::Left => multiturn.unwrap_or(0),
+            Alignment::Tree12 => 12,
+            Alignment::Tree13 => 13,
             // The position ends on a fixed clock.
-            Align::Right24 | Align::Right25 => {
-                let ends = if align == Align::Right24 { 24 } else { 25 };
+            Alignment::Right24 | Alignment::Right25 => {
+                let ends = if align == Alignment::Right24 { 24 } else { 25 };
                 if (last..=last + 1).contains(&(ends + late)) {
                     all.extend((least..=most).map(|steps| (*multiturn, steps)));
                 }

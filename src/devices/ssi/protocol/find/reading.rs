@@ -4,17 +4,17 @@
 
 use std::ops::RangeInclusive;
 
-use super::code_ends::{ends, unusual_step_cost};
+use super::code_ends::{possible_codes, unusual_step_cost};
 use super::frame_set::{FrameSet, binary_entropy};
 use super::motion::Motion;
 use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
 /// Number of frames in the first test of each reading. They are taken in runs of consecutive frames.
-const TRIED: usize = 620;
-const RUN: usize = 31;
+const FIRST_TEST_FRAMES: usize = 620;
+const RUN_LENGTH: usize = 31;
 /// Number of the best readings that are tested with all frames.
-const BEST: usize = 8;
+const BEST_READINGS: usize = 8;
 /// Maximum information in bits above that of the best reading. Only such readings are tested with other numbers of
 /// steps.
 const NEAR_BITS: f64 = 400.0;
@@ -46,7 +46,7 @@ pub(super) struct Reading {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Read {
+pub(super) struct FrameNumbers {
     pub(super) reading: Reading,
     /// Number in each frame, or `None` if the frame has no valid number. For Gray excess, it is the number in the
     /// complete Gray code.
@@ -65,27 +65,27 @@ impl Reading {
     }
 
     /// Returns the number after which positions wrap, or 0 for 64 bits.
-    pub(super) fn round(&self) -> u64 {
+    pub(super) fn wrap_after(&self) -> u64 {
         match (self.steps, self.code) {
             (Some((least, _)), _) => least,
-            (None, Code::Bcd) => self.whole(),
+            (None, Code::Bcd) => self.value_count(),
             (None, _) => 1_u64.checked_shl(self.width().into()).unwrap_or(0),
         }
     }
 
     /// Returns the number of values that the bits can represent.
-    fn whole(&self) -> u64 {
+    fn value_count(&self) -> u64 {
         match self.code {
             Code::Bcd => 10_u64.saturating_pow(u32::from(self.width().div_ceil(4))),
             _ => low_bits_mask(self.width()).saturating_add(1),
         }
     }
 
-    pub(super) fn allowed(&self) -> RangeInclusive<u64> {
+    pub(super) fn allowed_step_counts(&self) -> RangeInclusive<u64> {
         match (self.steps, self.code) {
             (None, _) => 0..=u64::MAX,
             (Some((steps, _)), Code::GrayExcess) => {
-                let before = self.whole().saturating_sub(steps) / 2;
+                let before = self.value_count().saturating_sub(steps) / 2;
                 before..=before + steps - 1
             }
             (Some((steps, _)), _) => 0..=steps - 1,
@@ -93,10 +93,10 @@ impl Reading {
     }
 
     /// Returns the number in each word, or `None` if the word has no valid number.
-    pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
-        let digits = PositionCode::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
+    pub(super) fn read_numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
+        let digits = PositionCode::new(Code::Bcd, self.value_count() - 1).ok().filter(|_| self.code == Code::Bcd);
         let all = low_bits_mask(self.last + 1 - self.first);
-        let allowed = self.allowed();
+        let allowed = self.allowed_step_counts();
         let number = |word: &u64| {
             let word = if self.inverted { !word } else { *word };
             let mut bits = word >> (clocks - self.last) & all;
@@ -114,7 +114,7 @@ impl Reading {
         words.iter().map(number).collect()
     }
 
-    pub(super) fn has(&self, clock: u8) -> bool {
+    pub(super) fn uses_clock(&self, clock: u8) -> bool {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }
 
@@ -122,7 +122,7 @@ impl Reading {
     fn has_usual_bits(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
-        let constant = |clock: &u8| !self.has(*clock) && !seen.bit(*clock).moves;
+        let constant = |clock: &u8| !self.uses_clock(*clock) && !seen.bit(*clock).moves;
         word.is_some_and(|word| (1..=seen.clocks).filter(constant).all(|clock| usual(word, clock)))
     }
 
@@ -138,12 +138,12 @@ impl Reading {
         let frames = seen.words().len();
         let mut bits = 0.0;
         let mut unexplained = Vec::new();
-        for (clock, bit) in seen.bits().filter(|(clock, _)| !self.has(*clock)) {
+        for (clock, bit) in seen.bits().filter(|(clock, _)| !self.uses_clock(*clock)) {
             if let Some(parity) = self.parity.filter(|parity| parity.clock == clock) {
-                bits += PARITY_BITS + binary_entropy(frames - right(seen, parity), frames);
+                bits += PARITY_BITS + binary_entropy(frames - parity_matches(seen, parity), frames);
                 continue;
             }
-            bits += bit.cost(frames);
+            bits += bit.information_bits(frames);
             if bit.moves {
                 unexplained.push(clock);
                 bits += UNEXPLAINED_BITS;
@@ -165,17 +165,17 @@ impl Reading {
     fn trailing_parity(&self, seen: &FrameSet) -> Option<Parity> {
         let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
         let frames = seen.words().len();
-        let fits = |even| right(seen, Parity { clock, even }) * 100 >= PARITY_PERCENT * frames;
+        let fits = |even| parity_matches(seen, Parity { clock, even }) * 100 >= PARITY_PERCENT * frames;
         [true, false].into_iter().find(|even| fits(*even)).map(|even| Parity { clock, even })
     }
 }
 
-impl Read {
+impl FrameNumbers {
     pub(super) fn new(seen: &FrameSet, reading: Reading) -> Self {
-        let numbers = reading.numbers(seen.words(), seen.clocks);
-        let motion = Motion::of(&numbers, reading.round());
+        let numbers = reading.read_numbers(seen.words(), seen.clocks);
+        let motion = Motion::from_numbers(&numbers, reading.wrap_after());
         let (bits, unexplained) = reading.non_motion_information(seen);
-        let mut read = Read { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
+        let mut read = FrameNumbers { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
         // A disturbed frame does not prove that the end of the range was passed. At a real end, no higher bit changes,
         // even briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
@@ -185,7 +185,7 @@ impl Read {
     }
 
     /// Returns the total information in bits without the penalty for unexplained clocks.
-    pub(super) fn cost(&self) -> f64 {
+    pub(super) fn total_cost(&self) -> f64 {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
 
@@ -197,35 +197,36 @@ impl Read {
     }
 }
 
-fn right(seen: &FrameSet, parity: Parity) -> usize {
+fn parity_matches(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_parity_valid(**word, parity)).count()
 }
 
 /// Returns the readings with the most even motion, with the best first.
-pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
+pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
     let frames = seen.words().len();
-    let sample = sample(seen.words());
+    let sample = sample_runs(seen.words());
     let mut tried: Vec<(f64, Reading)> = Vec::new();
     for reading in possible_readings(seen) {
         // The end of a run and the start of the next one are not consecutive.
-        let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
+        let runs = sample.chunks(RUN_LENGTH).map(|run| reading.read_numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
-        let whole = Motion::of(&numbers, reading.round()).bits * frames as f64 / sample.len().max(1) as f64;
+        let whole =
+            Motion::from_numbers(&numbers, reading.wrap_after()).bits * frames as f64 / sample.len().max(1) as f64;
         tried.push((whole + reading.non_motion_information(seen).0, reading));
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut all: Vec<Read> = Vec::new();
+    let mut all: Vec<FrameNumbers> = Vec::new();
     let mut best = f64::INFINITY;
-    for (_, reading) in tried.into_iter().take(BEST) {
-        let plain = Read::new(seen, reading);
+    for (_, reading) in tried.into_iter().take(BEST_READINGS) {
+        let plain = FrameNumbers::new(seen, reading);
         if is_missing_highest_bit(seen, &plain) {
             continue;
         }
         best = best.min(plain.bits);
-        let near = if plain.bits < best + NEAR_BITS { ends(&plain) } else { Vec::new() };
-        let other_ends = near
-            .into_iter()
-            .map(|(code, steps)| Read::new(seen, Reading { code, steps: Some(steps), ..plain.reading.clone() }));
+        let near = if plain.bits < best + NEAR_BITS { possible_codes(&plain) } else { Vec::new() };
+        let other_ends = near.into_iter().map(|(code, steps)| {
+            FrameNumbers::new(seen, Reading { code, steps: Some(steps), ..plain.reading.clone() })
+        });
         all.extend(other_ends.filter(|read| read.closed && read.bits < plain.bits));
         all.push(plain);
     }
@@ -234,8 +235,8 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
 }
 
 /// Returns whether a bit before the position changes where the numbers wrap. Such a bit is the true highest bit.
-fn is_missing_highest_bit(seen: &FrameSet, read: &Read) -> bool {
-    let round = read.reading.round();
+fn is_missing_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
+    let round = read.reading.wrap_after();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
     let Some(clock) = moving.filter(|_| round != 0) else { return false };
     let near = 2 * read.motion.median.unsigned_abs() + read.motion.limit;
@@ -270,7 +271,7 @@ fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
                     continue;
                 }
                 let parity = reading.trailing_parity(seen);
-                let gap = gap(seen, *first, *last).filter(|_| code != Code::Bcd);
+                let gap = constant_run(seen, *first, *last).filter(|_| code != Code::Bcd);
                 ways.extend(gap.map(|gap| Reading { gap: Some(gap), parity, ..reading.clone() }));
                 ways.push(Reading { parity, ..reading });
             }
@@ -280,7 +281,7 @@ fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
 }
 
 /// Returns the longest run of constant clocks within the position.
-fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
+fn constant_run(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
     let mut longest: Option<(u8, u8)> = None;
     let mut from = None;
     for clock in first..=last {
@@ -299,11 +300,11 @@ fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
 }
 
 /// Returns runs of consecutive frames from all parts of the recording.
-fn sample(words: &[u64]) -> Vec<u64> {
-    if words.len() <= TRIED {
+fn sample_runs(words: &[u64]) -> Vec<u64> {
+    if words.len() <= FIRST_TEST_FRAMES {
         return words.to_vec();
     }
-    let runs: Vec<&[u64]> = words.chunks_exact(RUN).collect();
-    let count = TRIED / RUN;
+    let runs: Vec<&[u64]> = words.chunks_exact(RUN_LENGTH).collect();
+    let count = FIRST_TEST_FRAMES / RUN_LENGTH;
     (0..count).filter_map(|at| runs.get(at * runs.len() / count)).flat_map(|run| run.iter().copied()).collect()
 }

@@ -11,13 +11,13 @@ use crate::devices::ssi::protocol::{Flags, FrameDescriptor, Range};
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
-    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
 /// Returns 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
 fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     let mut rng = Rng::with_seed(7);
-    let last = layout.coding().last();
+    let last = layout.position_code().last();
     let round = u128::from(last) + 1;
     let start = last / 4;
     let frames = (0..2000).map(|index| {
@@ -31,7 +31,8 @@ fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
 
 /// Compares the frames that encoders send, not the names of their settings.
 fn is_same_frame(one: &Layout, other: &Layout) -> bool {
-    let shape = |layout: &Layout| (layout.clock_roles().len(), layout.coding().code(), layout.descriptor().coded);
+    let shape =
+        |layout: &Layout| (layout.clock_roles().len(), layout.position_code().code(), layout.descriptor().coded);
     one.clock_roles() == other.clock_roles() && shape(one) == shape(other)
 }
 
@@ -42,7 +43,7 @@ fn the_class_of_every_family_ranks_first() {
         for (code, speed) in [("binary", speed), ("gray", -speed)] {
             let text = format!("{},code={code}", family.key);
             let truth = layout(&text);
-            let search = find(&turning(&truth, speed), truth.clocks(), &families);
+            let search = find(&turning(&truth, speed), truth.clock_count(), &families);
             // If the end of the range is not passed, it is not known whether higher bits belong to the position.
             assert!(
                 matches!(search.doubt, None | Some(SearchUncertainty::Open)),
@@ -75,7 +76,7 @@ fn settings_are_found() {
     ];
     for text in settings {
         let truth = layout(text);
-        let search = find(&turning(&truth, 1.3), truth.clocks(), &families);
+        let search = find(&turning(&truth, 1.3), truth.clock_count(), &families);
         assert_eq!(search.doubt, Some(SearchUncertainty::Open), "{text}");
         let first = &search.classes[0];
         assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)), "{text}");
@@ -92,13 +93,13 @@ fn indistinguishable_layouts_form_one_class() {
         let split = layout(&format!("atm60,code=gray,{align}"));
         assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &split)), "{align}");
     }
-    assert!(first.open.contains(&Open::TurnOnce));
+    assert!(first.open.contains(&OpenQuestion::TurnOnce));
     let afm60 = layout("afm60");
     let first = find(&turning(&afm60, 3.1), 33, &families).classes.remove(0);
     let keys: Vec<&str> =
         first.members.iter().filter_map(|member| member.family.as_ref()).map(|(key, _)| key.as_str()).collect();
     assert!(keys.contains(&"afm60") && keys.contains(&"afm60s"), "{keys:?}");
-    assert!(first.open.contains(&Open::TypeLabel));
+    assert!(first.open.contains(&OpenQuestion::TypeLabel));
 }
 
 #[test]
@@ -106,7 +107,7 @@ fn a_shaft_at_rest_yields_no_layout() {
     let families = Families::built_in();
     for family in families.iter() {
         let truth = layout(&family.key);
-        let search = find(&turning(&truth, 0.0), truth.clocks(), &families);
+        let search = find(&turning(&truth, 0.0), truth.clock_count(), &families);
         assert_eq!(search.doubt, Some(SearchUncertainty::Standing), "{}", family.key);
         assert_eq!(search.classes, []);
     }
@@ -133,15 +134,15 @@ fn encoders_of_no_family_are_found() {
         code: crate::devices::ssi::protocol::Code::GrayExcess,
         area: 12,
         lead: 3,
-        ..FrameDescriptor::plain(0, 0)
+        ..FrameDescriptor::binary(0, 0)
     })
     .unwrap();
     let search = find(&turning(&excess, 0.7), 12, &families);
-    assert_eq!((search.doubt, search.classes[0].members[0].layout.coding().last()), (None, 359), "{search:?}");
+    assert_eq!((search.doubt, search.classes[0].members[0].layout.position_code().last()), (None, 359), "{search:?}");
 
     let parity = crate::devices::ssi::protocol::Parity { clock: 21, even: true };
     let with_parity =
-        Layout::new(FrameDescriptor { clocks: 21, parity: Some(parity), ..FrameDescriptor::plain(0, 20) }).unwrap();
+        Layout::new(FrameDescriptor { clocks: 21, parity: Some(parity), ..FrameDescriptor::binary(0, 20) }).unwrap();
     let search = find(&turning(&with_parity, 2.7), 21, &families);
     assert_eq!(search.doubt, Some(SearchUncertainty::Open));
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
@@ -255,7 +256,7 @@ fn every_proposal_round_trips_as_text() {
             let text = proposal.spec_text(&families);
             let descriptor = FrameDescriptor::parse(&text).unwrap_or_else(|| {
                 let (key, settings) = Settings::parse(&text).unwrap();
-                Ok(settings.resolve(families.named(&key).unwrap()).unwrap().layout.descriptor().clone())
+                Ok(settings.resolve(families.find_by_key(&key).unwrap()).unwrap().layout.descriptor().clone())
             });
             let layout = Layout::new(descriptor.unwrap()).unwrap();
             for frame in recording.frames.iter().step_by(50) {

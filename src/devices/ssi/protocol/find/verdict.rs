@@ -2,45 +2,46 @@
 
 use super::frame_set::FrameSet;
 use super::members::{LayoutCandidate, has_only_even_steps};
-use super::probe::Trial;
-use super::reading::Read;
-use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, Open, SearchUncertainty, WEIGHT_BITS};
+use super::probe::TrialReading;
+use super::reading::FrameNumbers;
+use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum difference between the first two classes in bits.
 const LEAD_BITS: f64 = 100.0;
 /// Maximum information of an even motion as a fraction of the bits of its numbers.
-const EVEN: f64 = 0.7;
+const EVEN_MOTION_INFORMATION: f64 = 0.7;
 /// Maximum information of an even motion as a fraction of the bits of its numbers, for a certain result.
-const SURE_EVEN: f64 = 0.35;
+const CERTAIN_INFORMATION: f64 = 0.35;
 /// Maximum percentage of frames that jump or have no valid number.
 const DISTURBED_PERCENT: usize = 15;
 /// Minimum number of frames for a certain result.
-const SURE_FRAMES: usize = 200;
-const SURE_BITS: u8 = 5;
+const CERTAIN_FRAMES: usize = 200;
+const CERTAIN_BITS: u8 = 5;
 /// Minimum number of different frames for a certain result.
-const SURE_DIFFERENT: usize = 64;
+const CERTAIN_DIFFERENT_FRAMES: usize = 64;
 const MEMBERS: usize = 200;
 
-pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<SearchUncertainty> {
+pub(super) fn search_uncertainty(words: &FrameSet, groups: &[Group]) -> Option<SearchUncertainty> {
     let Some(first) = groups.first() else { return Some(SearchUncertainty::Nothing) };
     let frames = words.words().len();
-    if !is_even(&first.read, frames, EVEN) {
+    if !is_even(&first.read, frames, EVEN_MOTION_INFORMATION) {
         return Some(SearchUncertainty::Nothing);
     }
     if groups.get(1).is_some_and(|next| next.bits - first.bits < LEAD_BITS) {
         return Some(SearchUncertainty::Close);
     }
-    let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
-    let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= SURE_DIFFERENT;
+    let sure = frames >= CERTAIN_FRAMES && first.read.reading.width() >= CERTAIN_BITS;
+    let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= CERTAIN_DIFFERENT_FRAMES;
     // The readings are compared here without the penalties for unusual layouts.
-    let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
-    let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven_properties(words, first).is_empty();
+    let sure = sure && groups.iter().skip(1).all(|next| next.read.total_cost() - first.read.total_cost() >= LEAD_BITS);
+    let proven =
+        sure && is_even(&first.read, frames, CERTAIN_INFORMATION) && unproven_properties(words, first).is_empty();
     (!proven).then_some(SearchUncertainty::Open)
 }
 
 /// Returns whether many jumps have the same size. This indicates a wrong code rather than disturbances.
-fn has_uniform_jumps(read: &Read) -> bool {
+fn has_uniform_jumps(read: &FrameNumbers) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
     sizes.sort_unstable();
@@ -51,13 +52,13 @@ fn has_uniform_jumps(read: &Read) -> bool {
 
 /// Returns whether the motion has less information than the given fraction of the bits of its numbers, and few frames
 /// are disturbed.
-fn is_even(read: &Read, frames: usize, part: f64) -> bool {
+fn is_even(read: &FrameNumbers, frames: usize, part: f64) -> bool {
     let disturbed = read.motion.jumps / 2 + read.motion.nones;
     read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
         && disturbed * 100 <= DISTURBED_PERCENT * frames
 }
 
-fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<Open> {
+fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
     let Group { read, members, .. } = group;
     let reading = &read.reading;
     let mut open = Vec::new();
@@ -65,38 +66,38 @@ fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<Open> {
     // A constant bit within the position can have any meaning. If the end of the range was passed, a constant bit
     // before the position does not belong to it.
     match constant_run.filter(|(from, _)| !read.closed || *from > reading.first) {
-        Some((from, to)) => open.push(Open::TurnFarther { from, to }),
-        None if !read.closed => open.push(Open::PassAnEnd),
+        Some((from, to)) => open.push(OpenQuestion::TurnFarther { from, to }),
+        None if !read.closed => open.push(OpenQuestion::PassAnEnd),
         None => {}
     }
-    if let Some((least, most)) = steps(read).filter(|(least, most)| least != most && read.closed) {
+    if let Some((least, most)) = step_count_bounds(read).filter(|(least, most)| least != most && read.closed) {
         let small = |steps: u64| u32::try_from(steps).unwrap_or(u32::MAX);
-        open.push(Open::PassTheEnd { least: small(least), most: small(most) });
+        open.push(OpenQuestion::PassTheEnd { least: small(least), most: small(most) });
     }
     if has_only_even_steps(read) || !has_varied_steps(read) {
-        open.push(Open::OtherSpeed);
+        open.push(OpenQuestion::OtherSpeed);
     }
     if let Some(clock) = read.unexplained.first() {
-        open.push(Open::Unexplained { clock: *clock });
+        open.push(OpenQuestion::Unexplained { clock: *clock });
     }
-    let differ = |other: fn(&Trial, &Trial) -> bool| {
+    let differ = |other: fn(&TrialReading, &TrialReading) -> bool| {
         members.first().is_some_and(|first| members.iter().any(|member| other(&first.trial, &member.trial)))
     };
     if differ(|one, other| one.backwards != other.backwards) {
-        open.push(Open::Direction);
+        open.push(OpenQuestion::Direction);
     }
     if open.is_empty() && differ(|one, other| one.positions != other.positions) {
-        open.push(Open::PassAnEnd);
+        open.push(OpenQuestion::PassAnEnd);
     }
     open
 }
 
 /// Returns the minimum and maximum number of steps. They differ if the first or the last position never occurred.
-fn steps(read: &Read) -> Option<(u64, u64)> {
-    let allowed = read.reading.allowed();
+fn step_count_bounds(read: &FrameNumbers) -> Option<(u64, u64)> {
+    let allowed = read.reading.allowed_step_counts();
     let (first, last) = match read.reading.steps {
         Some(_) => (*allowed.start(), *allowed.end()),
-        None => (0, read.reading.round().checked_sub(1)?),
+        None => (0, read.reading.wrap_after().checked_sub(1)?),
     };
     let good = (0..read.numbers.len()).filter(|frame| read.motion.is_good(*frame));
     let mut seen =
@@ -110,7 +111,7 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
 }
 
 /// Returns whether the step sizes vary enough to show that a lower bit is missing.
-pub(super) fn has_varied_steps(read: &Read) -> bool {
+pub(super) fn has_varied_steps(read: &FrameNumbers) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);
     for uneven in even {
@@ -142,7 +143,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
     let fit =
         1.0 - (read.bits + WEIGHT_BITS * weight) / (random + read.unexplained.len() as f64 * frames as f64).max(1.0);
     let explained = read.motion.consistent_frame_count();
-    let outside = words.bits().filter(|(clock, bit)| !read.reading.has(*clock) && !bit.moves);
+    let outside = words.bits().filter(|(clock, bit)| !read.reading.uses_clock(*clock) && !bit.moves);
     let misfits = outside.map(|(_, bit)| bit.unusual).max().unwrap_or(0).max(read.motion.nones);
     ClassEvidence {
         score: (fit.clamp(0.0, 1.0) * explained as f64 / frames.max(1) as f64).min(most),
@@ -156,7 +157,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
 }
 
 /// Returns the motions of the shaft that would distinguish or confirm the members.
-fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
+fn open(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;
     let differ = |what: fn(&LayoutCandidate) -> Vec<u8>| {
@@ -168,14 +169,14 @@ fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
         _ => Vec::new(),
     };
     if differ(turns) {
-        open.push(Open::TurnOnce);
+        open.push(OpenQuestion::TurnOnce);
     }
     if differ(|member| member.layout.descriptor().errors.iter().map(|bit| bit.clock).collect()) {
-        open.push(Open::SeeAnError);
+        open.push(OpenQuestion::SeeAnError);
     }
     let families = || members.iter().filter_map(|member| member.family.as_ref().map(|(key, _)| key));
     if families().any(|key| families().next().is_some_and(|first| first != key)) {
-        open.push(Open::TypeLabel);
+        open.push(OpenQuestion::TypeLabel);
     }
     open
 }

@@ -1,8 +1,8 @@
 //! Validation of a descriptor, and calculation of the shifts and masks of its layout.
 
-use super::{Flags, Layout, Part};
+use super::{BitPart, Flags, Layout};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bits_mask};
-use crate::devices::ssi::protocol::descriptor::{FrameDescriptor, GrayCoverage, Meaning, Parity, Word};
+use crate::devices::ssi::protocol::descriptor::{BitMeaning, FrameDescriptor, GrayCoverage, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
 /// The reason why a frame is impossible.
@@ -148,7 +148,7 @@ struct Clocks {
 }
 
 pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError> {
-    let (clocks, word) = (descriptor.clocks, descriptor.word());
+    let (clocks, word) = (descriptor.clocks, descriptor.clocks_per_word());
     if clocks == 0 || clocks > 64 {
         return Err(LayoutError::Clocks(clocks));
     }
@@ -168,7 +168,7 @@ pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError>
         (GrayCoverage::Area | GrayCoverage::AreaAndErrors, _) => return Err(LayoutError::NotGray),
     };
     let coding = PositionCode::new(code, last)?;
-    let parts = parts(&descriptor, &coding)?;
+    let parts = word_parts(&descriptor, &coding)?;
     let [_, lower] = parts;
     let lost = descriptor.shift_right && lower.in_word == word - descriptor.area;
     if lost && !matches!(code, Code::Binary | Code::Gray) {
@@ -176,12 +176,12 @@ pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError>
     }
 
     let mut taken = Clocks { clocks: word, taken: Vec::new() };
-    let position = placed(&parts, low_bits_mask(coding.bits()));
+    let position = place_bits(&parts, low_bits_mask(coding.bits()));
     for clock in (1..=word).filter(|clock| position >> (word - clock) & 1 == 1) {
-        taken.take(clock, ClockUse::Position)?;
+        taken.claim(clock, ClockUse::Position)?;
     }
     for bit in &descriptor.errors {
-        taken.take(bit.clock, ClockUse::Error(bit.name.clone()))?;
+        taken.claim(bit.clock, ClockUse::Error(bit.name.clone()))?;
         let done = match descriptor.coded {
             GrayCoverage::Area => Some(WordOperation::Coded),
             _ if descriptor.shift_right => Some(WordOperation::Shifted),
@@ -204,7 +204,7 @@ pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError>
         }
     };
     if let Some(Parity { clock, .. }) = descriptor.parity {
-        taken.take(clock, ClockUse::Parity)?;
+        taken.claim(clock, ClockUse::Parity)?;
         // The parity is calculated from the bits as sent, after coding and shifting.
         let inside = |done, area| Err(LayoutError::Inside { name: ClockUse::Parity, clock, area, done });
         if clock <= coded_clocks {
@@ -240,13 +240,13 @@ pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError>
         low,
         parity,
         patterns: patterns.collect::<Result<_, _>>()?,
-        invalid: invalid(&descriptor),
+        invalid: invalid_flags(&descriptor),
         descriptor,
     })
 }
 
 /// Returns the locations of the upper and lower part of the code word within a word.
-fn parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[Part; 2], LayoutError> {
+fn word_parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[BitPart; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);
     let needed = u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits);
@@ -264,19 +264,19 @@ fn parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[Part; 2
         (_, Some(singleturn)) => singleturn,
         (_, None) => return Err(LayoutError::Between),
     };
-    let behind = descriptor.word() - descriptor.lead - descriptor.between - bits;
-    let low = Part { in_word: behind, in_code: 0, mask: low_bits_mask(lower) };
+    let behind = descriptor.clocks_per_word() - descriptor.lead - descriptor.between - bits;
+    let low = BitPart { in_word: behind, in_code: 0, mask: low_bits_mask(lower) };
     // A part without bits has shifts of 0, because a shift by the full width would overflow.
     let high = if lower == bits {
-        Part::default()
+        BitPart::default()
     } else {
-        Part { in_word: behind + lower + descriptor.between, in_code: lower, mask: low_bits_mask(bits - lower) }
+        BitPart { in_word: behind + lower + descriptor.between, in_code: lower, mask: low_bits_mask(bits - lower) }
     };
     Ok([high, low])
 }
 
 /// Moves the bits of a code word to their locations.
-fn placed(parts: &[Part; 2], code: u64) -> u64 {
+fn place_bits(parts: &[BitPart; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }
 
@@ -284,17 +284,17 @@ fn check_count(what: RepeatedPart, limit: usize, count: usize) -> Result<(), Lay
     if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
 }
 
-fn invalid(descriptor: &FrameDescriptor) -> Flags {
+fn invalid_flags(descriptor: &FrameDescriptor) -> Flags {
     let errors = descriptor.errors.iter().map(|bit| bit.meaning).enumerate();
     let patterns = descriptor.patterns.iter().map(|pattern| pattern.meaning).enumerate();
     let raised = errors.map(|(index, meaning)| (Flags::error(index), meaning));
-    let met = patterns.map(|(index, meaning)| (Flags::pattern(index), meaning));
-    let own = Flags::CODE.with(Flags::PARITY).with(Flags::REPEAT);
-    raised.chain(met).filter(|(_, meaning)| *meaning == Meaning::Invalid).fold(own, |all, (flag, _)| all.with(flag))
+    let met = patterns.map(|(index, meaning)| (Flags::pattern_flag(index), meaning));
+    let own = Flags::CODE.union(Flags::PARITY).union(Flags::REPEAT);
+    raised.chain(met).filter(|(_, meaning)| *meaning == BitMeaning::Invalid).fold(own, |all, (flag, _)| all.union(flag))
 }
 
 impl Clocks {
-    fn take(&mut self, clock: u8, name: ClockUse) -> Result<(), LayoutError> {
+    fn claim(&mut self, clock: u8, name: ClockUse) -> Result<(), LayoutError> {
         if clock == 0 || clock > self.clocks {
             return Err(LayoutError::Behind { name, clock, clocks: self.clocks });
         }

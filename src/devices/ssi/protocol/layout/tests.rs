@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::devices::ssi::protocol::{Code, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
+use crate::devices::ssi::protocol::{BitMeaning, Code, ErrorBit, Fraction, Parity, Range, Repeat};
 
 /// Returns any possible frame, with error bits, zeros, repetition, parity, and any code.
 pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
@@ -41,7 +41,7 @@ pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
                     .map(|index| ErrorBit {
                         name: format!("E{index}"),
                         clock: area + 1 + index,
-                        meaning: Meaning::Invalid,
+                        meaning: BitMeaning::Invalid,
                         active_low,
                         cleared_by_transfer: false,
                     })
@@ -61,14 +61,14 @@ proptest! {
 
     #[test]
     fn encoded_frames_decode(layout in layouts(), position in any::<u64>(), raised in 0..4_u32) {
-        let last = layout.coding().last();
+        let last = layout.position_code().last();
         let position = last.checked_add(1).map_or(position, |count| position % count);
         let errors = layout.descriptor().errors.len();
         let flags = (0..errors).filter(|index| raised >> index & 1 == 1);
-        let flags = flags.fold(Flags::NONE, |all, index| all.with(Flags::error(index)));
+        let flags = flags.fold(Flags::NONE, |all, index| all.union(Flags::error(index)));
         let frame = layout.encode(position, flags).unwrap();
         let reading = layout.decode(frame);
-        let seen = FrameReading { flags: Flags(reading.flags.0 & !(Flags::ONES.0 | Flags::ZEROS.0)), ..reading };
+        let seen = FrameReading { flags: Flags(reading.flags.0 & !(Flags::ALL_ONES.0 | Flags::ALL_ZEROS.0)), ..reading };
         let kept = if layout.loses_lowest_bit() { position & !1 } else { position };
         prop_assert_eq!(seen, FrameReading { position: kept, flags });
     }
@@ -76,34 +76,40 @@ proptest! {
     /// A parity bit finds every single flipped bit, a repetition every one in either word.
     #[test]
     fn flipped_bits_are_detected_by_parity_and_repetition(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
-        let last = layout.coding().last();
+        let last = layout.position_code().last();
         let position = last.checked_add(1).map_or(position, |count| position % count);
-        let clocks = layout.clocks();
+        let clocks = layout.clock_count();
         let frame = layout.encode(position, Flags::NONE).unwrap() ^ 1 << (at % clocks);
         let reading = layout.decode(frame);
         let descriptor = layout.descriptor();
         if descriptor.repeat.is_some() {
-            prop_assert!(reading.flags.any(Flags::REPEAT.with(Flags::PADDING)));
+            prop_assert!(reading.flags.intersects(Flags::REPEAT.union(Flags::PADDING)));
         } else if descriptor.parity.is_some() {
-            prop_assert!(reading.flags.has(Flags::PARITY));
+            prop_assert!(reading.flags.contains(Flags::PARITY));
         }
     }
 
     #[test]
     fn any_bits_decode_without_panic(layout in layouts(), frame in any::<u64>()) {
         let reading = layout.decode(frame);
-        prop_assert!(reading.position <= layout.coding().last());
-        prop_assert_eq!(layout.cells(frame).len(), usize::from(layout.clocks()));
-        let _ = layout.findings(reading);
+        prop_assert!(reading.position <= layout.position_code().last());
+        prop_assert_eq!(layout.to_cells(frame).len(), usize::from(layout.clock_count()));
+        let _ = layout.to_findings(reading);
     }
 }
 
 fn plain() -> FrameDescriptor {
-    FrameDescriptor::plain(12, 13)
+    FrameDescriptor::binary(12, 13)
 }
 
 fn bit(name: &str, clock: u8) -> ErrorBit {
-    ErrorBit { name: name.to_owned(), clock, meaning: Meaning::Invalid, active_low: false, cleared_by_transfer: false }
+    ErrorBit {
+        name: name.to_owned(),
+        clock,
+        meaning: BitMeaning::Invalid,
+        active_low: false,
+        cleared_by_transfer: false,
+    }
 }
 
 #[test]
@@ -179,7 +185,7 @@ fn gray_decodes_with_and_without_the_error_bit() {
         code: Code::Gray,
         coded,
         errors: vec![bit("ERROR", 25)],
-        ..FrameDescriptor::plain(0, 24)
+        ..FrameDescriptor::binary(0, 24)
     };
     let plain = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
     let whole = Layout::new(descriptor(GrayCoverage::AreaAndErrors)).unwrap();
@@ -194,18 +200,18 @@ fn gray_decodes_with_and_without_the_error_bit() {
 #[test]
 fn gray_may_cover_the_position_or_also_the_zeros() {
     let descriptor =
-        |coded| FrameDescriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..FrameDescriptor::plain(0, 12) };
+        |coded| FrameDescriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..FrameDescriptor::binary(0, 12) };
     let position = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
     let area = Layout::new(descriptor(GrayCoverage::Area)).unwrap();
     // 101 = binary 1100101, gray 1010111; with two zeros after it: gray of 110010100 = 101011110.
     assert_eq!(position.encode(101, Flags::NONE), Some(0b1_0101_1100));
     assert_eq!(area.encode(101, Flags::NONE), Some(0b1_0101_1110));
     assert_eq!(position.encode(100, Flags::NONE), area.encode(100, Flags::NONE));
-    assert!(position.decode(0b1_0101_1110).flags.has(Flags::PADDING));
+    assert!(position.decode(0b1_0101_1110).flags.contains(Flags::PADDING));
     assert_eq!(area.decode(0b1_0101_1110).position, 101);
 }
 
 #[test]
 fn the_smallest_frame_passes_the_checks() {
-    assert_eq!(Ok(Layout::default()), Layout::new(FrameDescriptor::plain(0, 1)));
+    assert_eq!(Ok(Layout::default()), Layout::new(FrameDescriptor::binary(0, 1)));
 }

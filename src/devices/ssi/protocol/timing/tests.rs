@@ -15,7 +15,7 @@ fn reads(clocks: u8, clock_hz: f64, pause_us: u64) -> ReadConditions {
 }
 
 fn times(key: &str) -> Times {
-    Families::built_in().named(key).unwrap().times
+    Families::built_in().find_by_key(key).unwrap().times
 }
 
 /// An encoder of no family: reference section 1 has tm 15…25 µs, 2 MHz and the table of cables for all of SSI, and 33

@@ -55,13 +55,13 @@ fn bits(range: &Range, code: Code) -> Result<u8, LayoutError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::ssi::protocol::{ErrorBit, Layout, Meaning, Parity, Repeat};
+    use crate::devices::ssi::protocol::{BitMeaning, ErrorBit, Layout, Parity, Repeat};
 
     fn error(clock: u8) -> ErrorBit {
         ErrorBit {
             name: "E".to_owned(),
             clock,
-            meaning: Meaning::Invalid,
+            meaning: BitMeaning::Invalid,
             active_low: false,
             cleared_by_transfer: false,
         }
@@ -74,14 +74,14 @@ mod tests {
     #[test]
     fn a_frame_without_zeros_grows_and_shrinks_with_its_position() {
         // AFM60: 12 + 18 bits, error bit behind them on 31.
-        let before = FrameDescriptor { clocks: 31, errors: vec![error(31)], ..FrameDescriptor::plain(12, 18) };
+        let before = FrameDescriptor { clocks: 31, errors: vec![error(31)], ..FrameDescriptor::binary(12, 18) };
         let now = with_positions(&before, bits(12, 15), Code::Gray).unwrap();
         assert_eq!((now.clocks, now.area, now.errors[0].clock, now.code), (28, 27, 28, Code::Gray));
         let back = with_positions(&now, bits(12, 18), Code::Binary).unwrap();
         assert_eq!(back, before);
         // Decimal digits: 3600 steps need four, and 12 bits were 12 clocks.
         let steps = Range::Steps { per_turn: 3600, turns: 1 };
-        let plain = FrameDescriptor { range: steps, ..FrameDescriptor::plain(0, 12) };
+        let plain = FrameDescriptor { range: steps, ..FrameDescriptor::binary(0, 12) };
         let bcd = with_positions(&plain, steps, Code::Bcd).unwrap();
         assert_eq!((bcd.clocks, bcd.area), (16, 16));
     }
@@ -89,7 +89,8 @@ mod tests {
     #[test]
     fn trailing_zeros_absorb_changes_of_the_position() {
         // AHS36: 14 clocks for the position, the error bit on 15.
-        let before = FrameDescriptor { clocks: 15, area: 14, errors: vec![error(15)], ..FrameDescriptor::plain(0, 12) };
+        let before =
+            FrameDescriptor { clocks: 15, area: 14, errors: vec![error(15)], ..FrameDescriptor::binary(0, 12) };
         let now = with_positions(&before, bits(0, 13), Code::Binary).unwrap();
         assert_eq!((now.clocks, now.area, now.errors[0].clock), (15, 14, 15));
         let longer = with_positions(&before, bits(0, 16), Code::Binary).unwrap();
@@ -103,7 +104,7 @@ mod tests {
             clocks: 27,
             parity: Some(Parity { clock: 13, even: true }),
             repeat: Some(Repeat { word: 13, gap: 1 }),
-            ..FrameDescriptor::plain(0, 12)
+            ..FrameDescriptor::binary(0, 12)
         };
         let now = with_positions(&before, bits(0, 14), Code::Binary).unwrap();
         assert_eq!((now.clocks, now.parity.unwrap().clock, now.repeat.unwrap().word), (31, 15, 15));
@@ -112,7 +113,7 @@ mod tests {
 
     #[test]
     fn impossible_frames_are_refused() {
-        let plain = FrameDescriptor::plain(0, 12);
+        let plain = FrameDescriptor::binary(0, 12);
         assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
         let odd = Range::Steps { per_turn: 361, turns: 1 };
         assert!(with_positions(&plain, odd, Code::GrayExcess).is_err());

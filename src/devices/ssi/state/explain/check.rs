@@ -7,11 +7,11 @@ use crate::app::explain::literal_text;
 use crate::devices::ssi::procedures::check::{CheckFinding, CheckStep, SsiStepResult};
 use crate::devices::ssi::state::TEXTS;
 
-pub fn check(lines: &[SsiStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, step, finding_text)).collect()
+pub fn check_lines(lines: &[SsiStepResult]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
-fn step(step: CheckStep) -> Text {
+fn check_step_text(step: CheckStep) -> Text {
     TEXTS.text(match step {
         CheckStep::Adapter => "ssi_check.adapter",
         CheckStep::Supply => "ssi_check.supply",

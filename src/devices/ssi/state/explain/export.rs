@@ -46,7 +46,7 @@ pub fn export(text: &ExportText) -> Text {
         ExportText::HighestNumber { bit, fits: true } => own("ssi_sheet.number").with("bit", bit),
         ExportText::HighestNumber { bit, fits: false } => own("ssi_sheet.number_unfit").with("bit", bit),
         ExportText::Setting(number, value) => {
-            own("ssi_sheet.setting").with("number", number).with_text("value", meaning(*value))
+            own("ssi_sheet.setting").with("number", number).with_text("value", setting_text(*value))
         }
         ExportText::FrameTypeNone { bits } => own("ssi_sheet.no_type").with("bits", bits),
         ExportText::LastIsError => own("ssi_sheet.last_is_error"),
@@ -68,7 +68,7 @@ pub fn export(text: &ExportText) -> Text {
     }
 }
 
-fn meaning(value: SettingMeaning) -> Text {
+fn setting_text(value: SettingMeaning) -> Text {
     match value {
         SettingMeaning::Gray => TEXTS.text("ssi_form.gray"),
         SettingMeaning::Binary => TEXTS.text("ssi_form.binary"),
@@ -85,7 +85,7 @@ fn meaning(value: SettingMeaning) -> Text {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::devices::ssi::protocol::english;
+    use crate::devices::ssi::protocol::english_text;
 
     /// The English catalogue texts match those of the command line.
     #[test]
@@ -152,7 +152,7 @@ mod tests {
         let obstacles = obstacles.map(ExportText::Obstacle);
         let values = values.map(|value| ExportText::Setting(2, value));
         for text in others.iter().chain(&codes).chain(&obstacles).chain(&values) {
-            assert_eq!(export(text).to_string_in(English), english(text));
+            assert_eq!(export(text).to_string_in(English), english_text(text));
             let german = export(text).to_string_in(German);
             assert!(!german.contains('{') && !german.is_empty(), "{german}");
         }

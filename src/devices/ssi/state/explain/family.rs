@@ -8,23 +8,23 @@ use crate::devices::ssi::state::TEXTS;
 use crate::store::StoreError;
 
 /// Returns a note or the source of a family in both languages.
-pub fn note(family: &Family, words: &str) -> Text {
-    Text::new("plain.words").with_name("words", words, family.german(words))
+pub fn note_text(family: &Family, words: &str) -> Text {
+    Text::new("plain.words").with_name("words", words, family.german_or(words))
 }
 
 /// Returns the message about the file of a family that cannot be read or used.
-pub fn store(error: &StoreError) -> Text {
+pub fn family_error_text(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<FamilyError>() {
         Some(FamilyError { file, line, column, problem: what }) => TEXTS
             .text("store.ssi_family")
             .with("path", file)
-            .with_text("why", syntax_error_text(*line, *column, problem(what))),
+            .with_text("why", syntax_error_text(*line, *column, family_problem_text(what))),
         None => general::store_error_text(error),
     }
 }
 
-fn problem(problem: &FamilyProblem) -> Text {
+fn family_problem_text(problem: &FamilyProblem) -> Text {
     match problem {
         FamilyProblem::Parser(words) => literal_text(words),
         FamilyProblem::Key(key) => TEXTS.text("ssi_family.key").with("key", format!("{key:?}")),
@@ -35,7 +35,7 @@ fn problem(problem: &FamilyProblem) -> Text {
 
 #[cfg(test)]
 mod tests {
-    use super::note;
+    use super::note_text;
     use crate::app::Language;
     use crate::devices::ssi::protocol::Families;
 
@@ -43,13 +43,13 @@ mod tests {
     fn family_notes_are_translated_to_german() {
         for family in Families::built_in().iter() {
             for words in family.notes.iter().chain([&family.source]) {
-                let text = note(family, words);
+                let text = note_text(family, words);
                 assert_eq!(text.to_string_in(Language::English), *words);
                 assert_ne!(text.to_string_in(Language::German), *words);
             }
         }
         // A user's family without German texts uses those of its file.
         let family = Families::built_in().iter().next().cloned().unwrap();
-        assert_eq!(note(&family, "Own words").to_string_in(Language::German), "Own words");
+        assert_eq!(note_text(&family, "Own words").to_string_in(Language::German), "Own words");
     }
 }

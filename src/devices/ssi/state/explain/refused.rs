@@ -11,11 +11,11 @@ use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
 pub fn layout(error: &LayoutError) -> Text {
-    refused(layout_reason(error))
+    rejection_text(layout_reason(error))
 }
 
 pub fn settings(error: &SettingsError) -> Text {
-    refused(settings_reason(error))
+    rejection_text(settings_reason(error))
 }
 
 /// Returns the reason why settings are impossible, as a part of a sentence.
@@ -53,7 +53,7 @@ pub(super) fn settings_reason(error: &SettingsError) -> Text {
 }
 
 /// Returns the message for an invalid LinuxCNC format string, or for a frame that has no format string.
-pub fn format(error: &FormatError) -> Text {
+pub fn format_error_text(error: &FormatError) -> Text {
     let why = match error {
         FormatError::Cannot(what) => {
             let what = match what {
@@ -71,11 +71,11 @@ pub fn format(error: &FormatError) -> Text {
         FormatError::Long => TEXTS.text("ssi_lc.long"),
         FormatError::Layout(error) => layout_reason(error),
     };
-    refused(why)
+    rejection_text(why)
 }
 
 /// Returns the message for a layout that has no decoder for 32-bit controllers.
-pub fn wide(error: TooWideError) -> Text {
+pub fn too_wide_text(error: TooWideError) -> Text {
     match error {
         TooWideError::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
         TooWideError::RoundAxis => TEXTS.text("ssi.wide_round"),
@@ -92,7 +92,7 @@ pub fn frame_text(error: &FrameTextError) -> Text {
 }
 
 /// Returns the reason why a recording of clock and data contains no frames.
-pub fn bursts(error: BurstError) -> Text {
+pub fn burst_error_text(error: BurstError) -> Text {
     match error {
         BurstError::NoClock => TEXTS.text("ssi_capture.no_clock"),
         BurstError::NoPause => TEXTS.text("ssi_capture.no_pause"),
@@ -101,7 +101,7 @@ pub fn bursts(error: BurstError) -> Text {
     }
 }
 
-fn refused(why: Text) -> Text {
+fn rejection_text(why: Text) -> Text {
     TEXTS.text("ssi.refused").with_text("why", why)
 }
 

@@ -1,37 +1,37 @@
 //! Form rows for a family, which contain the settings of its encoders.
 
-use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
+use super::{CODES, Field, FieldInput, GRAY_COVERAGES, Group, RangeKind, Row, byte, number_word, position_rows};
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Align, Code, ErrorPlace, Family, Fraction, Frame, Range, Settings};
+use crate::devices::ssi::protocol::{Alignment, Code, ErrorPlace, Family, Fraction, Frame, Range, Settings};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::design::LayoutDesigner;
 
-pub(super) fn groups(designer: &LayoutDesigner, family: &Family, settings: &Settings) -> Vec<Group> {
+pub(super) fn family_groups(designer: &LayoutDesigner, family: &Family, settings: &Settings) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
-    let kinds = kinds(family);
+    let kinds = possible_range_kinds(family);
     let position = position_rows(&kinds, family.multiturn.is_some(), descriptor);
     let mut frame = Vec::new();
     let resolved = settings.resolve(family).ok();
     if family.align.len() > 1 {
-        let own = resolved.as_ref().map_or(Align::Left, |resolved| resolved.align);
-        let all: Vec<(Align, Text)> = family.align.iter().map(|align| (*align, alignment_text(*align))).collect();
-        frame.push(Row::choice(Field::Align, "ssi_form.align", &all, &own).with_hint("ssi_form.align_hint"));
+        let own = resolved.as_ref().map_or(Alignment::Left, |resolved| resolved.align);
+        let all: Vec<(Alignment, Text)> = family.align.iter().map(|align| (*align, alignment_text(*align))).collect();
+        frame.push(Row::with_choice(Field::Align, "ssi_form.align", &all, &own).with_hint("ssi_form.align_hint"));
     }
     if family.shift {
-        frame.push(Row::switch(Field::Shift, "ssi_form.shift", settings.shift).with_hint("ssi_form.shift_hint"));
+        frame.push(Row::with_switch(Field::Shift, "ssi_form.shift", settings.shift).with_hint("ssi_form.shift_hint"));
     }
-    let places = places(designer, family);
+    let places = possible_error_places(designer, family);
     if places.len() > 1 {
         let own = resolved.as_ref().map_or(ErrorPlace::None, |resolved| resolved.errors);
         let all: Vec<(ErrorPlace, Text)> = places.iter().map(|place| (*place, error_place_text(*place))).collect();
-        frame.push(Row::choice(Field::Errors, "ssi_form.errors", &all, &own));
+        frame.push(Row::with_choice(Field::Errors, "ssi_form.errors", &all, &own));
     }
-    frame.push(Row::number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""));
+    frame.push(Row::with_number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""));
     vec![Group { title: "ssi_form.position", rows: position }, Group { title: "ssi_form.frame", rows: frame }]
 }
 
 /// Returns the settings of a family after an entry, or `None` if the field does not belong to them.
-pub(super) fn entered(
+pub(super) fn settings_after_entry(
     designer: &LayoutDesigner,
     family: &Family,
     settings: &Settings,
@@ -53,7 +53,7 @@ pub(super) fn entered(
                 clocks: None,
                 ..next
             };
-            next = match kinds(family).get(*kind)? {
+            next = match possible_range_kinds(family).get(*kind)? {
                 RangeKind::Steps => Settings { steps: Some(360), ..others },
                 RangeKind::RoundAxis => {
                     let revolutions = Some(Fraction { numerator: 1, denominator: 1 });
@@ -67,28 +67,28 @@ pub(super) fn entered(
         }
         (Field::Multiturn, FieldInput::Number(bits)) => next.multiturn = Some(byte(*bits)?),
         (Field::Singleturn | Field::Bits, FieldInput::Number(bits)) => next.singleturn = Some(byte(*bits)?),
-        (Field::Steps, FieldInput::Number(steps)) => next.steps = Some(word(*steps)?),
-        (Field::Turns, FieldInput::Number(turns)) => next.turns = Some(word(*turns)?),
+        (Field::Steps, FieldInput::Number(steps)) => next.steps = Some(number_word(*steps)?),
+        (Field::Turns, FieldInput::Number(turns)) => next.turns = Some(number_word(*turns)?),
         (Field::RevolutionsAbove | Field::RevolutionsBelow, FieldInput::Number(number)) => {
             let Range::RoundAxis { revolutions, .. } = range else { return None };
-            let number = word(*number)?;
+            let number = number_word(*number)?;
             next.revolutions = Some(match field {
                 Field::RevolutionsAbove => Fraction { numerator: number, ..revolutions },
                 _ => Fraction { denominator: number, ..revolutions },
             });
         }
-        (Field::StepLength, FieldInput::Number(length)) => next.step_nanometres = Some(word(*length)?),
+        (Field::StepLength, FieldInput::Number(length)) => next.step_nanometres = Some(number_word(*length)?),
         (Field::Code, FieldInput::Choice(code)) => {
             next.code = Some(*CODES.get(*code)?);
             if next.code != Some(Code::Gray) {
                 next.coded = None;
             }
         }
-        (Field::Over, FieldInput::Choice(over)) => next.coded = Some(*OVER.get(*over)?),
+        (Field::Over, FieldInput::Choice(over)) => next.coded = Some(*GRAY_COVERAGES.get(*over)?),
         (Field::Align, FieldInput::Choice(align)) => next.align = Some(*family.align.get(*align)?),
         (Field::Shift, FieldInput::Switch(is_on)) => next.shift = *is_on,
         (Field::Errors, FieldInput::Choice(place)) => {
-            next.errors = Some(*places(designer, family).get(*place)?);
+            next.errors = Some(*possible_error_places(designer, family).get(*place)?);
             // The length of the frame depends on the error bits again.
             next.clocks = None;
         }
@@ -104,7 +104,7 @@ pub(super) fn entered(
     Some(next)
 }
 
-fn kinds(family: &Family) -> Vec<RangeKind> {
+fn possible_range_kinds(family: &Family) -> Vec<RangeKind> {
     if family.step_nanometres.is_some() {
         return vec![RangeKind::Length];
     }
@@ -113,19 +113,19 @@ fn kinds(family: &Family) -> Vec<RangeKind> {
     std::iter::once(RangeKind::Bits).chain(steps).chain(round).collect()
 }
 
-fn places(designer: &LayoutDesigner, family: &Family) -> Vec<ErrorPlace> {
-    let bits = designer.layout().coding().bits();
+fn possible_error_places(designer: &LayoutDesigner, family: &Family) -> Vec<ErrorPlace> {
+    let bits = designer.layout().position_code().bits();
     let frame: Option<&Frame> = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
     frame.map(|frame| frame.place.clone()).unwrap_or_default()
 }
 
-fn alignment_text(align: Align) -> Text {
+fn alignment_text(align: Alignment) -> Text {
     TEXTS.text(match align {
-        Align::Left => "ssi_form.left",
-        Align::Right24 => "ssi_form.right24",
-        Align::Right25 => "ssi_form.right25",
-        Align::Tree12 => "ssi_form.tree12",
-        Align::Tree13 => "ssi_form.tree13",
+        Alignment::Left => "ssi_form.left",
+        Alignment::Right24 => "ssi_form.right24",
+        Alignment::Right25 => "ssi_form.right25",
+        Alignment::Tree12 => "ssi_form.tree12",
+        Alignment::Tree13 => "ssi_form.tree13",
     })
 }
 

@@ -1,36 +1,38 @@
 //! Form rows for a frame that belongs to no family, or that its family cannot send.
 
-use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
-use crate::devices::ssi::protocol::{ErrorBit, Fraction, FrameDescriptor, Meaning, Parity, Range, Repeat};
+use super::{CODES, Field, FieldInput, GRAY_COVERAGES, Group, RangeKind, Row, byte, number_word, position_rows};
+use crate::devices::ssi::protocol::{BitMeaning, ErrorBit, Fraction, FrameDescriptor, Parity, Range, Repeat};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::design::{Edit, LayoutDesigner};
 
 const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
-const MOST_ERRORS: usize = 8;
+const MAX_ERRORS: usize = 8;
 
-pub(super) fn groups(designer: &LayoutDesigner) -> Vec<Group> {
+pub(super) fn free_groups(designer: &LayoutDesigner) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
     let position = position_rows(&KINDS, true, descriptor);
     let mut groups = vec![
         Group { title: "ssi_form.position", rows: position },
-        Group { title: "ssi_form.frame", rows: frame(descriptor) },
+        Group { title: "ssi_form.frame", rows: frame_rows(descriptor) },
     ];
     groups.extend(descriptor.errors.iter().enumerate().map(|(index, bit)| error(index, bit)));
     groups
 }
 
-fn frame(descriptor: &FrameDescriptor) -> Vec<Row> {
+fn frame_rows(descriptor: &FrameDescriptor) -> Vec<Row> {
     let mut rows = vec![
-        Row::number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""),
-        Row::number(Field::Lead, "ssi_form.lead", descriptor.lead, "bit"),
+        Row::with_number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""),
+        Row::with_number(Field::Lead, "ssi_form.lead", descriptor.lead, "bit"),
     ];
     if descriptor.range.multiturn_bits() > 0 {
-        rows.push(Row::number(Field::Between, "ssi_form.between", descriptor.between, "bit"));
+        rows.push(Row::with_number(Field::Between, "ssi_form.between", descriptor.between, "bit"));
     }
-    rows.push(Row::number(Field::Area, "ssi_form.area", descriptor.area, "").with_hint("ssi_form.area_hint"));
-    rows.push(Row::switch(Field::Shift, "ssi_form.shift", descriptor.shift_right).with_hint("ssi_form.shift_hint"));
+    rows.push(Row::with_number(Field::Area, "ssi_form.area", descriptor.area, "").with_hint("ssi_form.area_hint"));
     rows.push(
-        Row::switch(Field::Inverted, "ssi_form.inverted", descriptor.inverted).with_hint("ssi_form.inverted_hint"),
+        Row::with_switch(Field::Shift, "ssi_form.shift", descriptor.shift_right).with_hint("ssi_form.shift_hint"),
+    );
+    rows.push(
+        Row::with_switch(Field::Inverted, "ssi_form.inverted", descriptor.inverted).with_hint("ssi_form.inverted_hint"),
     );
     let own = descriptor.parity.map(|parity| parity.even);
     let all = [
@@ -38,36 +40,38 @@ fn frame(descriptor: &FrameDescriptor) -> Vec<Row> {
         (Some(true), TEXTS.text("ssi_form.parity_even")),
         (Some(false), TEXTS.text("ssi_form.parity_odd")),
     ];
-    rows.push(Row::choice(Field::Parity, "ssi_form.parity", &all, &own));
+    rows.push(Row::with_choice(Field::Parity, "ssi_form.parity", &all, &own));
     if let Some(parity) = descriptor.parity {
-        rows.push(Row::number(Field::ParityClock, "ssi_form.parity_clock", parity.clock, ""));
+        rows.push(Row::with_number(Field::ParityClock, "ssi_form.parity_clock", parity.clock, ""));
     }
     rows.push(
-        Row::switch(Field::Repeat, "ssi_form.repeat", descriptor.repeat.is_some()).with_hint("ssi_form.repeat_hint"),
+        Row::with_switch(Field::Repeat, "ssi_form.repeat", descriptor.repeat.is_some())
+            .with_hint("ssi_form.repeat_hint"),
     );
     if let Some(repeat) = descriptor.repeat {
-        rows.push(Row::number(Field::Gap, "ssi_form.gap", repeat.gap, "bit"));
+        rows.push(Row::with_number(Field::Gap, "ssi_form.gap", repeat.gap, "bit"));
     }
     rows
 }
 
 fn error(index: usize, bit: &ErrorBit) -> Group {
-    let all = [(Meaning::Invalid, TEXTS.text("ssi_form.invalid")), (Meaning::Warning, TEXTS.text("ssi_form.warning"))];
+    let all =
+        [(BitMeaning::Invalid, TEXTS.text("ssi_form.invalid")), (BitMeaning::Warning, TEXTS.text("ssi_form.warning"))];
     let name = super::Entry::Words(bit.name.clone());
     Group {
         title: "ssi_form.error_bit",
         rows: vec![
             Row { field: Field::ErrorName(index), name: TEXTS.text("ssi_form.error_name"), entry: name, hint: None },
-            Row::number(Field::ErrorClock(index), "ssi_form.error_clock", bit.clock, ""),
-            Row::choice(Field::ErrorMeaning(index), "ssi_form.error_meaning", &all, &bit.meaning),
-            Row::switch(Field::ErrorLow(index), "ssi_form.error_low", bit.active_low),
-            Row::switch(Field::ErrorCleared(index), "ssi_form.error_cleared", bit.cleared_by_transfer),
+            Row::with_number(Field::ErrorClock(index), "ssi_form.error_clock", bit.clock, ""),
+            Row::with_choice(Field::ErrorMeaning(index), "ssi_form.error_meaning", &all, &bit.meaning),
+            Row::with_switch(Field::ErrorLow(index), "ssi_form.error_low", bit.active_low),
+            Row::with_switch(Field::ErrorCleared(index), "ssi_form.error_cleared", bit.cleared_by_transfer),
         ],
     }
 }
 
 /// Returns the change of a frame of no family after an entry, or `None` if the field does not belong to it.
-pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
+pub(super) fn edit_after_entry(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = apply_range_input(&before.range, field, input) {
         return Some(Edit::Position(range, before.code));
@@ -77,7 +81,7 @@ pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInpu
     }
     let mut next = before.clone();
     match (field, input) {
-        (Field::Over, FieldInput::Choice(over)) => next.coded = *OVER.get(*over)?,
+        (Field::Over, FieldInput::Choice(over)) => next.coded = *GRAY_COVERAGES.get(*over)?,
         (Field::Clocks, FieldInput::Number(clocks)) => next.clocks = byte(*clocks)?,
         // Parts after the position move with it.
         (Field::Lead, FieldInput::Number(lead)) => {
@@ -96,7 +100,7 @@ pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInpu
             next.clocks = before.clocks.checked_mul(2)?.checked_add(1)?;
         }
         (Field::Repeat, FieldInput::Switch(false)) => {
-            next.clocks = before.word();
+            next.clocks = before.clocks_per_word();
             next.repeat = None;
         }
         (Field::Gap, FieldInput::Number(gap)) => {
@@ -109,7 +113,7 @@ pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInpu
         }
         (Field::ErrorClock(index), FieldInput::Number(clock)) => next.errors.get_mut(index)?.clock = byte(*clock)?,
         (Field::ErrorMeaning(index), FieldInput::Choice(choice)) => {
-            next.errors.get_mut(index)?.meaning = if *choice == 0 { Meaning::Invalid } else { Meaning::Warning };
+            next.errors.get_mut(index)?.meaning = if *choice == 0 { BitMeaning::Invalid } else { BitMeaning::Warning };
         }
         (Field::ErrorLow(index), FieldInput::Switch(is_on)) => next.errors.get_mut(index)?.active_low = *is_on,
         (Field::ErrorCleared(index), FieldInput::Switch(is_on)) => {
@@ -136,17 +140,21 @@ fn apply_range_input(range: &Range, field: Field, input: &FieldInput) -> Option<
     Some(match (*range, field) {
         (Range::Bits { singleturn, .. }, Field::Multiturn) => Range::Bits { multiturn: byte(*number)?, singleturn },
         (Range::Bits { multiturn, .. }, Field::Singleturn) => Range::Bits { multiturn, singleturn: byte(*number)? },
-        (Range::Steps { turns, .. }, Field::Steps) => Range::Steps { per_turn: word(*number)?, turns },
-        (Range::Steps { per_turn, .. }, Field::Turns) => Range::Steps { per_turn, turns: word(*number)? },
-        (Range::RoundAxis { revolutions, .. }, Field::Steps) => Range::RoundAxis { steps: word(*number)?, revolutions },
+        (Range::Steps { turns, .. }, Field::Steps) => Range::Steps { per_turn: number_word(*number)?, turns },
+        (Range::Steps { per_turn, .. }, Field::Turns) => Range::Steps { per_turn, turns: number_word(*number)? },
+        (Range::RoundAxis { revolutions, .. }, Field::Steps) => {
+            Range::RoundAxis { steps: number_word(*number)?, revolutions }
+        }
         (Range::RoundAxis { steps, revolutions }, Field::RevolutionsAbove) => {
-            Range::RoundAxis { steps, revolutions: Fraction { numerator: word(*number)?, ..revolutions } }
+            Range::RoundAxis { steps, revolutions: Fraction { numerator: number_word(*number)?, ..revolutions } }
         }
         (Range::RoundAxis { steps, revolutions }, Field::RevolutionsBelow) => {
-            Range::RoundAxis { steps, revolutions: Fraction { denominator: word(*number)?, ..revolutions } }
+            Range::RoundAxis { steps, revolutions: Fraction { denominator: number_word(*number)?, ..revolutions } }
         }
         (Range::Length { step_nanometres, .. }, Field::Bits) => Range::Length { bits: byte(*number)?, step_nanometres },
-        (Range::Length { bits, .. }, Field::StepLength) => Range::Length { bits, step_nanometres: word(*number)? },
+        (Range::Length { bits, .. }, Field::StepLength) => {
+            Range::Length { bits, step_nanometres: number_word(*number)? }
+        }
         _ => return None,
     })
 }
@@ -184,7 +192,7 @@ fn with_parity(mut next: FrameDescriptor, choice: usize) -> Option<FrameDescript
         (0, None) => {}
         (choice, Some(parity)) => next.parity = Some(Parity { even: choice == 1, ..parity }),
         (choice, None) => {
-            let clock = next.word().checked_add(1)?;
+            let clock = next.clocks_per_word().checked_add(1)?;
             next.parity = Some(Parity { clock, even: choice == 1 });
             match &mut next.repeat {
                 Some(repeat) => {
@@ -202,7 +210,7 @@ impl LayoutDesigner {
     /// Returns the frame with an additional error bit, or `None` if the frame already has the maximum number.
     pub fn with_error_bit(&self) -> Option<FrameDescriptor> {
         let mut next = self.design().profile.descriptor.clone();
-        if next.errors.len() >= MOST_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
+        if next.errors.len() >= MAX_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
             return None;
         }
         next.clocks += 1;
@@ -211,7 +219,7 @@ impl LayoutDesigner {
         next.errors.push(ErrorBit {
             name,
             clock: next.clocks,
-            meaning: Meaning::Invalid,
+            meaning: BitMeaning::Invalid,
             active_low: false,
             cleared_by_transfer: false,
         });

@@ -7,7 +7,7 @@ const GOOD: u64 = 0x15_5E68;
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
-    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
 /// Returns the words of a stream, a millisecond apart.
@@ -29,51 +29,51 @@ fn names(record: &Record) -> Vec<(String, u64)> {
         FrameFinding::Error { name, .. } => name.clone(),
         other => format!("{other:?}"),
     };
-    record.tally().finding_counts().iter().map(|noted| (name(&noted.finding), noted.count)).collect()
+    record.finding_counts().finding_counts().iter().map(|noted| (name(&noted.finding), noted.count)).collect()
 }
 
 #[test]
 fn words_around_a_gap_are_not_consecutive() {
     let mut record = Record::new(layout("afs60"));
-    record.add(vec![run(0, &[1, 2, 3]), run(3, &[4, 5])], 0);
-    assert_eq!((record.words(21), record.count(21)), (vec![1, 2, 3, 4, 5], 5));
+    record.add_words(vec![run(0, &[1, 2, 3]), run(3, &[4, 5])], 0);
+    assert_eq!((record.latest_words(21), record.count(21)), (vec![1, 2, 3, 4, 5], 5));
     // Two runs of three words were not taken in time.
-    record.add(vec![run(11, &[6, 7]), run(13, &[8])], 2);
-    assert_eq!((record.words(21), record.count(21)), (vec![6, 7, 8], 3));
+    record.add_words(vec![run(11, &[6, 7]), run(13, &[8])], 2);
+    assert_eq!((record.latest_words(21), record.count(21)), (vec![6, 7, 8], 3));
     assert_eq!((record.dropped_count(), record.count(20)), (6, 0));
 }
 
 #[test]
 fn renaming_an_error_bit_keeps_its_count() {
     let mut record = Record::new(layout("afs60"));
-    record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
+    record.add_words(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     // This number of words is not stored, but recorded.
     record.kept.clear();
     let mut descriptor = record.layout.descriptor().clone();
     descriptor.errors[2].name = "LIGHT".to_owned();
     record.reinterpret(&Layout::new(descriptor).unwrap());
-    record.add(vec![run(3, &[GOOD | 1])], 0);
-    assert_eq!(record.positions(), 4);
+    record.add_words(vec![run(3, &[GOOD | 1])], 0);
+    assert_eq!(record.position_count(), 4);
     assert_eq!(names(&record), [("ERRSYNC".to_owned(), 1), ("LIGHT".to_owned(), 1)]);
     record.reinterpret(&layout("afs60,code=gray"));
-    assert_eq!(record.positions(), 1, "only the last word is kept");
+    assert_eq!(record.position_count(), 1, "only the last word is kept");
 }
 
 #[test]
 fn a_cleared_count_stays_cleared_with_another_layout() {
     let mut record = Record::new(layout("afs60"));
-    record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
+    record.add_words(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     record.reset_tally();
-    record.add(vec![run(3, &[GOOD | 2])], 0);
+    record.add_words(vec![run(3, &[GOOD | 2])], 0);
     record.reinterpret(&layout("afs60,code=gray"));
-    assert_eq!((names(&record), record.positions()), (vec![("ERRSI".to_owned(), 1)], 4));
+    assert_eq!((names(&record), record.position_count()), (vec![("ERRSI".to_owned(), 1)], 4));
 }
 
 #[test]
 fn the_last_word_belongs_to_this_session() {
     let mut record = Record::new(layout("afs60"));
-    record.add(vec![run(0, &[GOOD])], 0);
+    record.add_words(vec![run(0, &[GOOD])], 0);
     assert!(record.last().is_some());
-    record.begin(&Zoned::now());
+    record.begin_session(&Zoned::now());
     assert_eq!(record.last(), None);
 }

@@ -33,13 +33,13 @@ const DATA: [&str; 2] = ["dat", "miso"];
 ///
 /// # Errors
 /// Returns a message with the line, the reason and a remedy if the export is unusable.
-pub(super) fn levels(text: &str) -> Option<Result<Vec<LineLevels>, Text>> {
-    let table = Table::of(text)?;
-    Some(table.times().and_then(|times| table.levels(times)))
+pub(super) fn parse_levels(text: &str) -> Option<Result<Vec<LineLevels>, Text>> {
+    let table = Table::parse(text)?;
+    Some(table.find_times().and_then(|times| table.parse_levels(times)))
 }
 
 impl<'t> Table<'t> {
-    fn of(text: &'t str) -> Option<Self> {
+    fn parse(text: &'t str) -> Option<Self> {
         let mut rate_hz = None;
         let mut has_comment = false;
         let mut rows = Vec::new();
@@ -58,13 +58,13 @@ impl<'t> Table<'t> {
         let (_, first) = *rows.first()?;
         let count = |delimiter: &char| first.matches(*delimiter).count();
         let delimiter = [',', ';', '\t'].into_iter().max_by_key(|own| (count(own), *own == ','))?;
-        let cells = |line: &'t str| line.split(delimiter).map(cell).collect::<Vec<_>>();
+        let cells = |line: &'t str| line.split(delimiter).map(unquote).collect::<Vec<_>>();
         let heading = cells(first);
         let has_time = heading.first().is_some_and(|own| time_unit(own, rate_hz).is_some() || is_time_column(own));
         let is_saleae = heading.first().is_some_and(|own| own.to_ascii_lowercase().starts_with("time ["));
         // A table that has only columns of 0 and 1 contains levels. Other tables also have a time column.
         let are_levels = rows.get(1).is_some_and(|(_, row)| {
-            let mut levels = row.split(delimiter).map(cell).skip(1).peekable();
+            let mut levels = row.split(delimiter).map(unquote).skip(1).peekable();
             levels.peek().is_some() && levels.all(|own| matches!(own, "0" | "1" | "X"))
         });
         if !(has_comment || is_saleae || has_time && are_levels) {
@@ -77,7 +77,7 @@ impl<'t> Table<'t> {
         Some(Table { heading, delimiter, rate_hz, rows })
     }
 
-    fn times(&self) -> Result<Times, Text> {
+    fn find_times(&self) -> Result<Times, Text> {
         let first = self.heading.first().copied().unwrap_or_default();
         if let Some(unit) = time_unit(first, self.rate_hz) {
             return Ok(Times::Column(unit));
@@ -88,7 +88,7 @@ impl<'t> Table<'t> {
         }
     }
 
-    fn levels(&self, times: Times) -> Result<Vec<LineLevels>, Text> {
+    fn parse_levels(&self, times: Times) -> Result<Vec<LineLevels>, Text> {
         let skipped = match times {
             Times::Column(_) => 1,
             Times::Samples(_) => 0,
@@ -101,7 +101,7 @@ impl<'t> Table<'t> {
         let mut last = f64::NEG_INFINITY;
         for (index, (line, row)) in self.rows.iter().enumerate() {
             let at = |id| TEXTS.text(id).with("line", line);
-            let cells: Vec<&str> = row.split(self.delimiter).map(cell).collect();
+            let cells: Vec<&str> = row.split(self.delimiter).map(unquote).collect();
             if cells.len() != self.heading.len() {
                 let id = if cells.len() < self.heading.len() { "ssi_capture.cut_off" } else { "ssi_capture.columns" };
                 return Err(at(id).with("columns", cells.len()).with("expected", self.heading.len()));
@@ -130,7 +130,7 @@ impl<'t> Table<'t> {
                 .collect::<Result<_, Text>>()?;
             read.push((time, bits));
         }
-        let (clock, data) = self.lines(skipped, &read)?;
+        let (clock, data) = self.find_channels(skipped, &read)?;
         let of = |bits: &[Option<bool>], channel: usize| bits.get(channel).copied().flatten();
         let mut levels: Vec<LineLevels> = Vec::new();
         for (at, bits) in &read {
@@ -142,7 +142,7 @@ impl<'t> Table<'t> {
 
     /// Returns the clock channel and the data channel, identified by name. If the names do not help, the clock is the
     /// channel that changes more often.
-    fn lines(&self, skipped: usize, read: &[(f64, Vec<Option<bool>>)]) -> Result<(usize, usize), Text> {
+    fn find_channels(&self, skipped: usize, read: &[(f64, Vec<Option<bool>>)]) -> Result<(usize, usize), Text> {
         let names: Vec<String> = self.heading.iter().skip(skipped).map(|name| name.to_lowercase()).collect();
         let named = |words: &[&str]| names.iter().position(|name| words.iter().any(|word| name.contains(word)));
         if let (Some(clock), Some(data)) = (named(&CLOCK), named(&DATA))
@@ -171,7 +171,7 @@ impl<'t> Table<'t> {
     }
 }
 
-fn cell(text: &str) -> &str {
+fn unquote(text: &str) -> &str {
     text.trim().trim_matches('"').trim()
 }
 

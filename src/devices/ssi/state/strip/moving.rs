@@ -9,12 +9,12 @@ use crate::devices::ssi::protocol::{FrameDescriptor, GrayCoverage, Layout, Parit
 /// Other parts stay in place. However, error and parity bits directly after the position move with its end if
 /// `following` is set. A bit that is moved onto another one swaps places with it.
 #[must_use]
-pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
+pub fn move_part(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
     let Some(at) = clock(layout, handle) else { return layout.clone() };
     let to = to.min(64);
     let between = to.abs_diff(at);
     let tried = (0..between).map(|back| if to > at { to - back } else { to + back });
-    let mut tried = tried.filter_map(|to| Layout::new(with(layout, handle, (at, to), following)?).ok());
+    let mut tried = tried.filter_map(|to| Layout::new(try_move(layout, handle, (at, to), following)?).ok());
     tried.next().unwrap_or_else(|| layout.clone())
 }
 
@@ -22,7 +22,7 @@ pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout
 pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
     let descriptor = layout.descriptor();
     let mut handles = vec![Handle::Position];
-    match PositionParts::of(layout) {
+    match PositionParts::from_layout(layout) {
         PositionParts::Both(..) if descriptor.between == 0 => {
             handles.extend([Handle::LeadEnd, Handle::Split, Handle::BetweenEnd, Handle::StepsEnd]);
         }
@@ -49,7 +49,7 @@ pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
 pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     let descriptor = layout.descriptor();
     let begins = descriptor.lead + u8::from(descriptor.shift_right);
-    let parts = PositionParts::of(layout);
+    let parts = PositionParts::from_layout(layout);
     let is_bits = !matches!(parts, PositionParts::Whole(_));
     match (handle, parts) {
         (Handle::LeadEnd, _) => is_bits.then_some(begins),
@@ -68,15 +68,15 @@ pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Single {
+pub(super) enum SingleBit {
     Error(usize),
     Parity,
 }
 
 /// Returns the error and parity bits that directly follow the position.
-pub(super) fn bits_after_position(layout: &Layout) -> Vec<Single> {
+pub(super) fn bits_after_position(layout: &Layout) -> Vec<SingleBit> {
     let descriptor = layout.descriptor();
-    let mut next = end(layout) + 1;
+    let mut next = position_end(layout) + 1;
     let mut chain = Vec::new();
     while let Some(single) = single_bit_at(descriptor, next) {
         chain.push(single);
@@ -85,16 +85,16 @@ pub(super) fn bits_after_position(layout: &Layout) -> Vec<Single> {
     chain
 }
 
-fn single_bit_at(descriptor: &FrameDescriptor, clock: u8) -> Option<Single> {
-    let error = descriptor.errors.iter().position(|bit| bit.clock == clock).map(Single::Error);
-    error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
+fn single_bit_at(descriptor: &FrameDescriptor, clock: u8) -> Option<SingleBit> {
+    let error = descriptor.errors.iter().position(|bit| bit.clock == clock).map(SingleBit::Error);
+    error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| SingleBit::Parity))
 }
 
 /// Returns the last clock of the position. Bits that are shifted out of the area do not have a clock.
-pub(super) fn end(layout: &Layout) -> u8 {
+pub(super) fn position_end(layout: &Layout) -> u8 {
     let descriptor = layout.descriptor();
     let late = u8::from(descriptor.shift_right);
-    (descriptor.lead + descriptor.between + PositionParts::of(layout).bits() + late).min(descriptor.area)
+    (descriptor.lead + descriptor.between + PositionParts::from_layout(layout).bits() + late).min(descriptor.area)
 }
 
 /// Returns whether the frame depends on the end of the area.
@@ -104,13 +104,13 @@ const fn depends_on_area_end(descriptor: &FrameDescriptor) -> bool {
 
 /// Returns the frame with a part moved from one clock to another. The frame may be impossible. Returns `None` if no
 /// descriptor can express it.
-fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<FrameDescriptor> {
+fn try_move(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<FrameDescriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();
-    let both = matches!(PositionParts::of(layout), PositionParts::Both(..));
+    let both = matches!(PositionParts::from_layout(layout), PositionParts::Both(..));
     match handle {
         Handle::LeadEnd => {
-            new.lead = plus(new.lead, by)?;
+            new.lead = checked_offset(new.lead, by)?;
             new.range =
                 if both { with_resized_range(new.range, -by, 0)? } else { resize_single_part_range(new.range, -by)? };
         }
@@ -118,114 +118,114 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         Handle::Split => new.range = with_resized_range(new.range, by, -by)?,
         Handle::TurnsEnd => {
             new.range = with_resized_range(new.range, by, 0)?;
-            new.between = plus(new.between, -by)?;
+            new.between = checked_offset(new.between, -by)?;
         }
         Handle::BetweenEnd => {
             new.range = with_resized_range(new.range, 0, -by)?;
-            new.between = plus(new.between, by)?;
+            new.between = checked_offset(new.between, by)?;
         }
         Handle::StepsEnd => {
             new.range =
                 if both { with_resized_range(new.range, 0, by)? } else { resize_single_part_range(new.range, by)? };
-            follow(layout, &mut new, by, following)?;
+            move_following_parts(layout, &mut new, by, following)?;
         }
         Handle::Position => {
-            new.lead = plus(new.lead, by)?;
-            follow(layout, &mut new, by, following)?;
+            new.lead = checked_offset(new.lead, by)?;
+            move_following_parts(layout, &mut new, by, following)?;
         }
         Handle::AreaEnd => new.area = to,
         Handle::WordEnd => {
             new.repeat = new.repeat.map(|repeat| Repeat { word: to, ..repeat });
-            new.clocks = plus(new.clocks, 2 * by)?;
+            new.clocks = checked_offset(new.clocks, 2 * by)?;
         }
         Handle::GapEnd => {
             let Repeat { word, gap } = new.repeat?;
-            new.repeat = Some(Repeat { word, gap: plus(gap, by)? });
-            new.clocks = plus(new.clocks, by)?;
+            new.repeat = Some(Repeat { word, gap: checked_offset(gap, by)? });
+            new.clocks = checked_offset(new.clocks, by)?;
         }
         Handle::FrameEnd => {
             new.clocks = to;
             new.patterns =
                 new.patterns.into_iter().map(|pattern| with_longer_pattern(pattern, by)).collect::<Option<_>>()?;
         }
-        Handle::Error(index) => put(&mut new, Single::Error(index), at, to),
-        Handle::Parity => put(&mut new, Single::Parity, at, to),
+        Handle::Error(index) => move_bit(&mut new, SingleBit::Error(index), at, to),
+        Handle::Parity => move_bit(&mut new, SingleBit::Parity, at, to),
     }
     if !depends_on_area_end(&new) {
         // The area has no effect on the frame, but it must have room for the position.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
-        new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
+        new.area = new.area.max(u8::try_from(needed).ok()?).min(new.clocks_per_word());
     }
     Some(new)
 }
 
 /// Returns the width of the code word. The code does not change when parts are moved.
 fn bits(new: &FrameDescriptor, old: &Layout) -> u8 {
-    match PositionParts::of(old) {
+    match PositionParts::from_layout(old) {
         PositionParts::Whole(bits) => bits,
         PositionParts::Both(..) | PositionParts::One(_) => new.range.bits().unwrap_or(u8::MAX),
     }
 }
 
 /// Moves the parts after the position together with its end.
-fn follow(old: &Layout, new: &mut FrameDescriptor, by: i16, following: bool) -> Option<()> {
+fn move_following_parts(old: &Layout, new: &mut FrameDescriptor, by: i16, following: bool) -> Option<()> {
     let chain = bits_after_position(old);
     if !following || chain.is_empty() {
         return Some(());
     }
-    if depends_on_area_end(new) && end(old) == new.area {
-        new.area = plus(new.area, by)?;
+    if depends_on_area_end(new) && position_end(old) == new.area {
+        new.area = checked_offset(new.area, by)?;
     }
     for single in chain {
         let clock = bit_clock(new, single)?;
-        set(new, single, plus(clock, by)?);
+        set_bit(new, single, checked_offset(clock, by)?);
     }
     Some(())
 }
 
 /// Moves a bit to another clock. If there is already a bit at that clock, the bits swap places.
-fn put(descriptor: &mut FrameDescriptor, single: Single, at: u8, to: u8) {
+fn move_bit(descriptor: &mut FrameDescriptor, single: SingleBit, at: u8, to: u8) {
     let other = single_bit_at(descriptor, to);
-    set(descriptor, single, to);
+    set_bit(descriptor, single, to);
     if let Some(other) = other {
-        set(descriptor, other, at);
+        set_bit(descriptor, other, at);
     }
 }
 
-fn bit_clock(descriptor: &FrameDescriptor, single: Single) -> Option<u8> {
+fn bit_clock(descriptor: &FrameDescriptor, single: SingleBit) -> Option<u8> {
     match single {
-        Single::Error(index) => descriptor.errors.get(index).map(|bit| bit.clock),
-        Single::Parity => descriptor.parity.map(|parity| parity.clock),
+        SingleBit::Error(index) => descriptor.errors.get(index).map(|bit| bit.clock),
+        SingleBit::Parity => descriptor.parity.map(|parity| parity.clock),
     }
 }
 
-fn set(descriptor: &mut FrameDescriptor, single: Single, clock: u8) {
+fn set_bit(descriptor: &mut FrameDescriptor, single: SingleBit, clock: u8) {
     match single {
-        Single::Error(index) => {
+        SingleBit::Error(index) => {
             if let Some(bit) = descriptor.errors.get_mut(index) {
                 bit.clock = clock;
             }
         }
-        Single::Parity => descriptor.parity = descriptor.parity.map(|parity| Parity { clock, ..parity }),
+        SingleBit::Parity => descriptor.parity = descriptor.parity.map(|parity| Parity { clock, ..parity }),
     }
 }
 
-fn plus(value: u8, by: i16) -> Option<u8> {
+fn checked_offset(value: u8, by: i16) -> Option<u8> {
     u8::try_from(i16::from(value) + by).ok()
 }
 
 /// Returns the range with other numbers of turn bits and step bits, or `None` if either becomes 0.
 fn with_resized_range(range: Range, turns: i16, steps: i16) -> Option<Range> {
     let Range::Bits { multiturn, singleturn } = range else { return None };
-    let multiturn = plus(multiturn, turns).filter(|bits| *bits > 0)?;
-    let singleturn = plus(singleturn, steps).filter(|bits| *bits > 0)?;
+    let multiturn = checked_offset(multiturn, turns).filter(|bits| *bits > 0)?;
+    let singleturn = checked_offset(singleturn, steps).filter(|bits| *bits > 0)?;
     Some(Range::Bits { multiturn, singleturn })
 }
 
 /// Returns the range with another number of bits, or `None` if the number becomes 0 or the range is not defined by
 /// bits.
 fn resize_single_part_range(range: Range, by: i16) -> Option<Range> {
-    let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
+    let more = |bits| checked_offset(bits, by).filter(|bits| *bits > 0);
     match range {
         Range::Bits { multiturn, singleturn: 0 } => Some(Range::Bits { multiturn: more(multiturn)?, singleturn: 0 }),
         Range::Bits { multiturn, singleturn } => Some(Range::Bits { multiturn, singleturn: more(singleturn)? }),

@@ -7,16 +7,22 @@ use crate::app::Language;
 use crate::devices::ssi::protocol::{Code, ErrorBit, Families, Fraction, FrameDescriptor, Parity, Repeat, Settings};
 
 fn bit(name: &str, clock: u8) -> ErrorBit {
-    ErrorBit { name: name.to_owned(), clock, meaning: Meaning::Invalid, active_low: false, cleared_by_transfer: false }
+    ErrorBit {
+        name: name.to_owned(),
+        clock,
+        meaning: BitMeaning::Invalid,
+        active_low: false,
+        cleared_by_transfer: false,
+    }
 }
 
 fn family(key: &str, settings: &Settings) -> Strip {
     let families = Families::built_in();
-    Strip::of(&settings.resolve(families.named(key).unwrap()).unwrap().layout)
+    Strip::from_layout(&settings.resolve(families.find_by_key(key).unwrap()).unwrap().layout)
 }
 
 fn frame(strip: &Strip, position: u64, errors: &[usize]) -> u64 {
-    let flags = errors.iter().fold(Flags::NONE, |all, index| all.with(Flags::error(*index)));
+    let flags = errors.iter().fold(Flags::NONE, |all, index| all.union(Flags::error(*index)));
     strip.layout().encode(position, flags).unwrap()
 }
 
@@ -77,7 +83,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
 fn without_area(layout: &Layout) -> FrameDescriptor {
     let mut descriptor = layout.descriptor().clone();
     if !descriptor.shift_right && descriptor.coded == GrayCoverage::Position {
-        descriptor.area = descriptor.word();
+        descriptor.area = descriptor.clocks_per_word();
     }
     descriptor
 }
@@ -87,50 +93,50 @@ proptest! {
 
     #[test]
     fn moves_can_be_reversed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
-        let strip = Strip::of(&layout);
+        let strip = Strip::from_layout(&layout);
         let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let at = strip.clock(handle).unwrap();
-        let there = strip.moved(handle, to, following);
+        let there = strip.with_part_moved(handle, to, following);
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
         // A bit moved directly after others follows them from now on.
         prop_assume!(moving::bits_after_position(there.layout()).len() == moving::bits_after_position(&layout).len() || !following);
         // So does the end of an area that the position now fills.
-        let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
+        let fills = |layout: &Layout| moving::position_end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);
-        let back = there.moved(handle, at, following);
+        let back = there.with_part_moved(handle, at, following);
         prop_assert_eq!(back.clock(handle), Some(at), "{:?} at {}", handle, reached);
         prop_assert_eq!(without_area(back.layout()), without_area(&layout), "{:?}: {} to {}", handle, at, reached);
     }
 
     #[test]
     fn limits_are_reached_and_not_passed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8) {
-        let strip = Strip::of(&layout);
+        let strip = Strip::from_layout(&layout);
         let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let (least, most) = strip.limits(handle, false);
         for end in [least, most] {
-            prop_assert_eq!(strip.moved(handle, end, false).clock(handle), Some(end));
+            prop_assert_eq!(strip.with_part_moved(handle, end, false).clock(handle), Some(end));
         }
-        let reached = strip.moved(handle, to, false).clock(handle).unwrap();
+        let reached = strip.with_part_moved(handle, to, false).clock(handle).unwrap();
         prop_assert!((least..=most).contains(&reached));
     }
 
     #[test]
     fn every_clock_is_in_a_field_and_has_a_label(layout in layouts()) {
-        let strip = Strip::of(&layout);
+        let strip = Strip::from_layout(&layout);
         let mut next = 1;
         for field in strip.fields() {
             prop_assert_eq!(field.first, next);
             next = field.last + 1;
         }
-        prop_assert_eq!(next, layout.clocks() + 1);
-        prop_assert_eq!(strip.cells().len(), usize::from(layout.clocks()));
-        for clock in 1..=layout.clocks() {
-            let words = cell(&strip, clock).to_string_in(Language::English);
+        prop_assert_eq!(next, layout.clock_count() + 1);
+        prop_assert_eq!(strip.cells().len(), usize::from(layout.clock_count()));
+        for clock in 1..=layout.clock_count() {
+            let words = cell_text(&strip, clock).to_string_in(Language::English);
             prop_assert!(words.starts_with(&format!("Clock {clock}: ")) && !words.contains('{'), "{}", words);
         }
         for own in strip.strip_handles() {
-            for text in [handle(&strip, *own), value(&strip, *own), hint(*own)] {
+            for text in [handle_text(&strip, *own), value(&strip, *own), handle_hint(*own)] {
                 let words = text.to_string_in(Language::German);
                 prop_assert!(words != text.id() && !words.contains('{'), "{}", words);
             }
@@ -149,35 +155,35 @@ fn frames_are_divided_into_fields() {
     assert_eq!(tree.position(), Some((5, 20)));
     // MT is 5 to 12, so that its fourth bit from below is on clock 9.
     assert_eq!(
-        cell(&tree, 9).to_string_in(Language::English),
+        cell_text(&tree, 9).to_string_in(Language::English),
         "Clock 9: bit MT3 of the turns (number of turn bits: 8)"
     );
-    assert_eq!(short(&tree, &tree.fields()[2]).to_string_in(Language::German), "ST 8");
+    assert_eq!(short_label(&tree, &tree.fields()[2]).to_string_in(Language::German), "ST 8");
 
     let twice = Layout::new(FrameDescriptor {
         clocks: 20,
         parity: Some(Parity { clock: 9, even: false }),
         repeat: Some(Repeat { word: 9, gap: 1 }),
-        ..FrameDescriptor::plain(0, 8)
+        ..FrameDescriptor::binary(0, 8)
     });
-    let twice = Strip::of(&twice.unwrap());
+    let twice = Strip::from_layout(&twice.unwrap());
     let fields =
         [(Kind::Steps, 1, 8), (Kind::Parity, 9, 9), (Kind::Gap, 10, 10), (Kind::Again, 11, 19), (Kind::After, 20, 20)];
     assert_eq!(kinds(&twice), fields);
-    assert_eq!(cell(&twice, 9).to_string_in(Language::German), "Takt 9: ungerade Parität über die Takte 1 bis 8");
-    assert_eq!(cell(&twice, 13).to_string_in(Language::English), "Clock 13: repeats the bit of clock 3");
+    assert_eq!(cell_text(&twice, 9).to_string_in(Language::German), "Takt 9: ungerade Parität über die Takte 1 bis 8");
+    assert_eq!(cell_text(&twice, 13).to_string_in(Language::English), "Clock 13: repeats the bit of clock 3");
 }
 
 /// AHS36 with 14 bits, its error bit on clock 15; then with 12.
 #[test]
 fn error_bits_optionally_follow_the_end_of_the_steps() {
     let strip = family("ahs36", &Settings::default());
-    assert!(follows(strip.layout()));
-    let fixed = strip.moved(Handle::StepsEnd, 12, false);
+    assert!(bits_follow_position(strip.layout()));
+    let fixed = strip.with_part_moved(Handle::StepsEnd, 12, false);
     assert_eq!(frame(&fixed, 0xABC, &[0]), 0x55E1);
-    let following = strip.moved(Handle::StepsEnd, 12, true);
+    let following = strip.with_part_moved(Handle::StepsEnd, 12, true);
     assert_eq!(frame(&following, 0xABC, &[0]), 0x55E4);
-    assert_eq!((follows(fixed.layout()), follows(following.layout())), (false, true));
+    assert_eq!((bits_follow_position(fixed.layout()), bits_follow_position(following.layout())), (false, true));
     // The error bit blocks the move; a following bit does not, but the end of the frame does.
     assert_eq!(strip.limits(Handle::StepsEnd, false), (1, 14));
     assert_eq!(strip.limits(Handle::StepsEnd, true), (1, 14));
@@ -188,17 +194,17 @@ fn error_bits_optionally_follow_the_end_of_the_steps() {
 #[test]
 fn moving_boundaries_yields_the_formats_of_the_manual() {
     let position = 0xA5 << 8 | 0x3C;
-    let whole = Strip::of(&Layout::new(FrameDescriptor::plain(12, 13)).unwrap());
-    let tree = whole.moved(Handle::LeadEnd, 4, true).moved(Handle::StepsEnd, 20, true);
+    let whole = Strip::from_layout(&Layout::new(FrameDescriptor::binary(12, 13)).unwrap());
+    let tree = whole.with_part_moved(Handle::LeadEnd, 4, true).with_part_moved(Handle::StepsEnd, 20, true);
     assert_eq!(frame(&tree, position, &[]), 0x014_A780);
-    let other = whole.moved(Handle::Split, 13, true).moved(Handle::LeadEnd, 5, true);
-    assert_eq!(frame(&other.moved(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
-    let right = tree.moved(Handle::Position, 9, true);
+    let other = whole.with_part_moved(Handle::Split, 13, true).with_part_moved(Handle::LeadEnd, 5, true);
+    assert_eq!(frame(&other.with_part_moved(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
+    let right = tree.with_part_moved(Handle::Position, 9, true);
     assert_eq!(frame(&right, position, &[]), 0x001_4A78);
     // Two zeros between: the lowest bits of the turns belong to them now.
-    let apart = tree.moved(Handle::BetweenEnd, 14, true);
+    let apart = tree.with_part_moved(Handle::BetweenEnd, 14, true);
     assert_eq!(kinds(&apart)[1..4], [(Kind::Turns, 5, 12), (Kind::Between, 13, 14), (Kind::Steps, 15, 20)]);
-    assert_eq!(apart.moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
+    assert_eq!(apart.with_part_moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
     assert!(apart.strip_handles().contains(&Handle::TurnsEnd) && !apart.strip_handles().contains(&Handle::Split));
 }
 
@@ -206,14 +212,14 @@ fn moving_boundaries_yields_the_formats_of_the_manual() {
 #[test]
 fn extending_the_frame_adds_zeros() {
     let ttk = family("ttk70", &Settings::default());
-    let longer = ttk.moved(Handle::FrameEnd, 31, true);
+    let longer = ttk.with_part_moved(Handle::FrameEnd, 31, true);
     assert_eq!(frame(&longer, 0x12_3456, &[0]), 0x091A_2B40);
     assert_eq!(ttk.limits(Handle::FrameEnd, true), (26, 64));
     let kh53 = family("kh53", &Settings::default());
-    let longer = kh53.moved(Handle::FrameEnd, 26, true);
-    assert!(longer.layout().decode(0x3FF_FFF8).flags.has(Flags::pattern(0)));
-    assert!(!longer.layout().decode(0xFF_FFFE).flags.has(Flags::pattern(0)));
-    assert_eq!(longer.moved(Handle::FrameEnd, 0, true).layout(), kh53.layout());
+    let longer = kh53.with_part_moved(Handle::FrameEnd, 26, true);
+    assert!(longer.layout().decode(0x3FF_FFF8).flags.contains(Flags::pattern_flag(0)));
+    assert!(!longer.layout().decode(0xFF_FFFE).flags.contains(Flags::pattern_flag(0)));
+    assert_eq!(longer.with_part_moved(Handle::FrameEnd, 0, true).layout(), kh53.layout());
 }
 
 #[test]
@@ -221,11 +227,11 @@ fn error_bits_swap_positions() {
     let strip = family("afs60", &Settings::default());
     let names = |strip: &Strip| [19, 20, 21].map(|clock| strip.layout().role_name(strip.cells()[clock - 1].role));
     assert_eq!(names(&strip), ["ERRDIG", "ERRSI", "ERRSYNC"]);
-    let moved = strip.moved(Handle::Error(0), 21, true);
+    let moved = strip.with_part_moved(Handle::Error(0), 21, true);
     assert_eq!(names(&moved), ["ERRSYNC", "ERRSI", "ERRDIG"]);
     // A bit of the position is not a possible place, and after the frame there is none.
-    assert_eq!(strip.moved(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
-    assert_eq!(strip.moved(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
+    assert_eq!(strip.with_part_moved(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
+    assert_eq!(strip.with_part_moved(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
 }
 
 #[test]
@@ -236,7 +242,10 @@ fn step_positions_move_as_one_field() {
     assert!(inside.iter().all(|handle| !strip.strip_handles().contains(handle) && strip.clock(*handle).is_none()));
     // 12 bits on clocks 1 to 12, two zeros, the error bit on clock 15.
     assert_eq!(strip.limits(Handle::Position, true), (1, 3));
-    assert_eq!(kinds(&strip.moved(Handle::Position, 9, true))[..2], [(Kind::Before, 1, 2), (Kind::Position, 3, 14)]);
+    assert_eq!(
+        kinds(&strip.with_part_moved(Handle::Position, 9, true))[..2],
+        [(Kind::Before, 1, 2), (Kind::Position, 3, 14)]
+    );
 }
 
 #[test]
@@ -245,7 +254,7 @@ fn cells_show_their_decoded_values() {
     // 1234h, ERRSI, and a 1 on clock 18, which is always 0.
     let shown = strip.cell_states(0x91A2 << 2 | 1);
     let tells: Vec<_> = (1..).zip(&shown).filter_map(|(clock, cell)| cell.tells.map(|tells| (clock, tells))).collect();
-    assert_eq!(tells, [(15, Meaning::Invalid), (18, Meaning::Warning)]);
+    assert_eq!(tells, [(15, BitMeaning::Invalid), (18, BitMeaning::Warning)]);
     let bits: String = shown.iter().map(|cell| if cell.bit { '1' } else { '0' }).collect();
     assert_eq!(bits, "100100011010001001");
 }

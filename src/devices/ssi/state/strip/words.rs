@@ -2,11 +2,11 @@
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
-use crate::devices::ssi::protocol::{GrayCoverage, Meaning, Role};
+use crate::devices::ssi::protocol::{BitMeaning, GrayCoverage, Role};
 use crate::devices::ssi::state::TEXTS;
 
 /// Returns a sentence about the content of a clock.
-pub fn cell(strip: &Strip, clock: u8) -> Text {
+pub fn cell_text(strip: &Strip, clock: u8) -> Text {
     let index = usize::from(clock).checked_sub(1);
     let cell = index.and_then(|index| strip.cells().get(index));
     let text = TEXTS.text("ssi.strip_cell").with("clock", clock);
@@ -51,17 +51,17 @@ pub fn name(strip: &Strip, own: &Field) -> Text {
 }
 
 /// Returns a short label for a narrow field, with the width in bits.
-pub fn short(strip: &Strip, field: &Field) -> Text {
+pub fn short_label(strip: &Strip, field: &Field) -> Text {
     let id = match field.is_zero_field() {
         true => "ssi.strip_short_zeros",
         false if field.is_single_bit() => "ssi.strip_name",
         false => "ssi.strip_short",
     };
-    TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
+    TEXTS.text(id).with("name", field_name(strip, field)).with("count", field.count())
 }
 
 /// Returns the short name of a field, which exports use as well.
-pub fn bare(strip: &Strip, field: &Field) -> String {
+pub fn field_name(strip: &Strip, field: &Field) -> String {
     match field.kind {
         _ if field.is_zero_field() => "0".to_owned(),
         Kind::Turns => "MT".to_owned(),
@@ -73,7 +73,7 @@ pub fn bare(strip: &Strip, field: &Field) -> String {
     }
 }
 
-pub fn clocks(field: &Field) -> Text {
+pub fn clocks_text(field: &Field) -> Text {
     if field.first == field.last {
         TEXTS.text("ssi.strip_on_clock").with("clock", field.first)
     } else {
@@ -81,7 +81,7 @@ pub fn clocks(field: &Field) -> Text {
     }
 }
 
-pub fn handle(strip: &Strip, handle: Handle) -> Text {
+pub fn handle_text(strip: &Strip, handle: Handle) -> Text {
     TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_lead_end",
         Handle::Split => "ssi.strip_split",
@@ -103,7 +103,7 @@ pub fn value(strip: &Strip, handle: Handle) -> Text {
     let clock = strip.clock(handle).unwrap_or(0);
     let at = |id| TEXTS.text(id).with("clock", clock);
     match handle {
-        Handle::Error(index) => at("ssi.strip_bit_at").with_text("what", meaning(strip, index)),
+        Handle::Error(index) => at("ssi.strip_bit_at").with_text("what", meaning_text(strip, index)),
         Handle::Parity => at("ssi.strip_on_clock"),
         Handle::Position => at("ssi.strip_from_clock"),
         _ if clock == 0 => TEXTS.text("ssi.strip_at_beginning"),
@@ -120,7 +120,7 @@ pub fn reach_text(strip: &Strip, handle: Handle, following: bool) -> Text {
     }
 }
 
-pub fn hint(handle: Handle) -> Text {
+pub fn handle_hint(handle: Handle) -> Text {
     TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_move_lead_end",
         Handle::Split => "ssi.strip_move_split",
@@ -140,19 +140,19 @@ fn error_name(strip: &Strip, index: usize) -> String {
     strip.layout().role_name(Role::Error(index))
 }
 
-fn meaning(strip: &Strip, index: usize) -> Text {
+fn meaning_text(strip: &Strip, index: usize) -> Text {
     let bit = strip.layout().descriptor().errors.get(index);
     TEXTS.text(match bit.map(|bit| (bit.meaning, bit.cleared_by_transfer)) {
-        Some((Meaning::Warning, _)) => "ssi.strip_means_warning",
-        Some((Meaning::Invalid, true)) => "ssi.strip_means_was_invalid",
-        Some((Meaning::Invalid, false)) | None => "ssi.strip_means_invalid",
+        Some((BitMeaning::Warning, _)) => "ssi.strip_means_warning",
+        Some((BitMeaning::Invalid, true)) => "ssi.strip_means_was_invalid",
+        Some((BitMeaning::Invalid, false)) | None => "ssi.strip_means_invalid",
     })
 }
 
 fn error(strip: &Strip, index: usize) -> Text {
     let low = strip.layout().descriptor().errors.get(index).is_some_and(|bit| bit.active_low);
     let id = if low { "ssi.strip_error_low" } else { "ssi.strip_error" };
-    TEXTS.text(id).with("name", error_name(strip, index)).with_text("what", meaning(strip, index))
+    TEXTS.text(id).with("name", error_name(strip, index)).with_text("what", meaning_text(strip, index))
 }
 
 fn parity(strip: &Strip) -> Text {

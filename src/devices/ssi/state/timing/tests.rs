@@ -11,12 +11,18 @@ use crate::devices::ssi::state::strip::Kind;
 
 fn diagram(family: &str, clock_hz: f64, pause_us: f64, synchronous: bool) -> BurstDiagram {
     let families = Families::built_in();
-    let family = families.named(family).unwrap();
+    let family = families.find_by_key(family).unwrap();
     let layout = Settings::default().resolve(family).unwrap().layout;
     let pause = Duration::from_secs_f64(pause_us * 1e-6);
-    let reads =
-        ReadConditions { clocks: layout.clocks(), clock_hz, pause, cable_metres: None, synchronous, any_steps: false };
-    BurstDiagram::of(&layout, &family.times, &reads)
+    let reads = ReadConditions {
+        clocks: layout.clock_count(),
+        clock_hz,
+        pause,
+        cable_metres: None,
+        synchronous,
+        any_steps: false,
+    };
+    BurstDiagram::new(&layout, &family.times, &reads)
 }
 
 fn micros(seconds: f64) -> f64 {
@@ -24,7 +30,7 @@ fn micros(seconds: f64) -> f64 {
 }
 
 fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
-    diagram.spans().iter().map(|span| diagram.words(span).to_string_in(Language::English)).collect()
+    diagram.spans().iter().map(|span| diagram.span_text(span).to_string_in(Language::English)).collect()
 }
 
 /// Reference section 1: 33 bits at 400 kHz take 82.5 µs, tm is 15 to 25 µs.
@@ -35,15 +41,15 @@ fn a_short_pause_is_drawn_without_a_break() {
         ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs to 25 µs", "Minimum pause: 25 µs"];
     assert_eq!(span_texts(&diagram), times);
     // 122.5 µs from burst to burst, and two and a half clocks of the next.
-    assert_eq!(diagram.pieces().len(), 1);
-    assert_eq!(micros(diagram.end()), 128.75);
-    let edges: Vec<f64> = diagram.edges().into_iter().map(micros).collect();
+    assert_eq!(diagram.sections().len(), 1);
+    assert_eq!(micros(diagram.end_time()), 128.75);
+    let edges: Vec<f64> = diagram.clock_edges().into_iter().map(micros).collect();
     assert_eq!(edges[..3], [0.0, 1.25, 2.5]);
     assert_eq!(edges[65..], [81.25, 122.5, 123.75, 125.0, 126.25, 127.5]);
     let bits = diagram.bits();
     assert_eq!((micros(bits[0].from), micros(bits[0].to), bits.len()), (1.25, 3.75, 33));
     assert_eq!((micros(bits[32].from), micros(bits[32].to)), (81.25, 82.5), "then the line is low");
-    let (from, least, most) = diagram.low();
+    let (from, least, most) = diagram.low_times();
     assert_eq!([from, least, most].map(micros), [82.5, 97.5, 107.5]);
     let steps = diagram.strip().fields().iter().find(|field| field.kind == Kind::Steps).unwrap();
     let (from, to) = diagram.field(steps);
@@ -74,10 +80,10 @@ fn the_sampling_moment_is_shown() {
 fn a_long_pause_is_drawn_with_a_marked_break() {
     let diagram = diagram("afm60", 400e3, 82_500.0, false);
     // The burst, the events after it up to 25 µs and two fifths of a burst; the same before the next burst.
-    let pieces: Vec<_> = diagram.pieces().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
+    let pieces: Vec<_> = diagram.sections().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
     assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
-    assert_eq!(skipped_operations(diagram.broken(0)).to_string_in(Language::German), "82,41 ms ausgelassen");
-    assert_eq!(diagram.broken(1), 0.0);
+    assert_eq!(skipped_operations(diagram.gap_after(0)).to_string_in(Language::German), "82,41 ms ausgelassen");
+    assert_eq!(diagram.gap_after(1), 0.0);
 }
 
 #[test]
@@ -146,11 +152,11 @@ proptest! {
     #[test]
     fn every_event_is_on_the_axis(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
         let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);
-        let pieces = diagram.pieces();
+        let pieces = diagram.sections();
         prop_assert!(pieces.iter().all(|piece| piece.from < piece.to));
         prop_assert!(pieces.windows(2).all(|two| two[0].to < two[1].from));
         let ends = diagram.spans().iter().flat_map(|span| [span.from, span.least, span.to]);
-        for at in ends.chain(diagram.marks().iter().map(|mark| mark.at)).chain(diagram.edges()) {
+        for at in ends.chain(diagram.marks().iter().map(|mark| mark.at)).chain(diagram.clock_edges()) {
             prop_assert!(pieces.iter().any(|piece| (piece.from..=piece.to).contains(&at)), "{at}: {pieces:?}");
         }
         // The rest of the pause does not compress the burst to nothing.

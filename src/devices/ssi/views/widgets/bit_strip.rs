@@ -22,7 +22,7 @@ mod rows;
 use egui::accesskit::Role;
 use egui::{EventFilter, Id, Key, Modifiers, Rect, Sense, Ui, WidgetInfo};
 
-use crate::devices::ssi::protocol::{Meaning, Role as Carries};
+use crate::devices::ssi::protocol::{BitMeaning, Role as Carries};
 use crate::devices::ssi::state::strip::{self, CellState, Handle, Strip};
 use crate::ui::Theme;
 
@@ -73,23 +73,24 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
     // The cells show the frame after the drag, while the handles stay at their present places.
-    let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
+    let preview = held.and_then(|drag| Some(model.strip.with_part_moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
     let cells =
         model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cell_states(frame)).unwrap_or_default();
     let room = ui.available_width();
-    let rows = Rows::new(room, model.strip.layout().clocks());
-    let meaning_of = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single_bit());
+    let rows = Rows::new(room, model.strip.layout().clock_count());
+    let meaning_of =
+        |field: &strip::Field| common_meaning(&cells, field.first..=field.last).filter(|_| field.is_single_bit());
     let (tags, levels) = names::name_tags(ui, theme, shown, &rows, meaning_of);
-    let clocks = shown.layout().clocks();
-    let sized = rows.clone().at(egui::Pos2::ZERO, &levels);
+    let clocks = shown.layout().clock_count();
+    let sized = rows.clone().at_origin(egui::Pos2::ZERO, &levels);
     let (outer, _) = ui.allocate_exact_size(sized.size(clocks), Sense::hover());
-    let rows = rows.at(outer.min, &levels);
+    let rows = rows.at_origin(outer.min, &levels);
     let view = StripContext { ui, theme, model, shown, cells: &cells, rows: &rows, base };
 
-    let chosen = view.choose();
+    let chosen = view.handle_selection();
     view.fields(&tags);
-    let pressed = view.press(&tags);
+    let pressed = view.handle_press(&tags);
     view.paint(&tags);
     let moved = if model.movable { grips::draw_handles(&view, drag) } else { None };
     moved.or(pressed).or(chosen)
@@ -107,17 +108,17 @@ struct StripContext<'a> {
 }
 
 impl StripContext<'_> {
-    fn choose(&self) -> Option<StripEvent> {
+    fn handle_selection(&self) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
-        let clocks = model.strip.layout().clocks();
+        let clocks = model.strip.layout().clock_count();
         let id = self.base.with("cells");
-        let area = self.rows.runs(1, clocks).into_iter().reduce(Rect::union).unwrap_or(Rect::NOTHING);
+        let area = self.rows.range_rects(1, clocks).into_iter().reduce(Rect::union).unwrap_or(Rect::NOTHING);
         let response = ui.interact(area, id, Sense::focusable_noninteractive());
         let selected = model.selected.filter(|clock| (1..=clocks).contains(clock));
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Slider, ui.is_enabled(), model.label);
             info.value = selected.map(f64::from);
-            info.current_text_value = selected.map(|clock| self.says(clock));
+            info.current_text_value = selected.map(|clock| self.cell_label(clock));
             info
         });
         if !response.has_focus() {
@@ -145,8 +146,8 @@ impl StripContext<'_> {
     }
 
     /// Returns the accessible label of a cell with its bit.
-    fn says(&self, clock: u8) -> String {
-        let words = self.theme.format_text(&strip::cell(self.shown, clock));
+    fn cell_label(&self, clock: u8) -> String {
+        let words = self.theme.format_text(&strip::cell_text(self.shown, clock));
         match self.cell_state_at(clock) {
             Some(cell) => format!("{words} = {}", u8::from(cell.bit)),
             None => words,
@@ -158,7 +159,7 @@ impl StripContext<'_> {
     }
 
     /// Returns the number of the bit at a clock. The lowest bit has the number 0.
-    fn number(&self, clock: u8) -> Option<u8> {
+    fn bit_number(&self, clock: u8) -> Option<u8> {
         let cell = self.shown.cells().get(usize::from(clock.checked_sub(1)?))?;
         match cell.role {
             Carries::Multiturn(bit) | Carries::Singleturn(bit) | Carries::Position(bit) => Some(bit),
@@ -166,14 +167,15 @@ impl StripContext<'_> {
         }
     }
 
-    fn press(&self, tags: &[NameTag]) -> Option<StripEvent> {
+    fn handle_press(&self, tags: &[NameTag]) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let mut event = None;
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
             for clock in field.first..=field.last {
-                let cell = self.rows.cell(clock);
-                let rect = Rect::from_min_max(egui::pos2(cell.left(), self.rows.number(clock).y - 7.0), cell.max);
+                let cell = self.rows.cell_rect(clock);
+                let rect =
+                    Rect::from_min_max(egui::pos2(cell.left(), self.rows.number_position(clock).y - 7.0), cell.max);
                 let response = ui.interact(rect, self.base.with("cell").with(clock), Sense::CLICK);
                 if response.clicked() {
                     // The arrow keys then move the selection from this cell.
@@ -183,7 +185,7 @@ impl StripContext<'_> {
                     event = Some(if turns { StripEvent::Toggled(clock) } else { StripEvent::Selected(clock) });
                 }
                 response.on_hover_ui(|ui| {
-                    ui.label(self.says(clock));
+                    ui.label(self.cell_label(clock));
                 });
             }
         }
@@ -195,10 +197,10 @@ impl StripContext<'_> {
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
             let (run, _) = names::widest_run(self.rows, field);
-            let rect = tag.rect(self.rows, Rows::lane(run)).union(Rows::lane(run));
+            let rect = tag.tag_rect(self.rows, Rows::lane_rect(run)).union(Rows::lane_rect(run));
             let response = self.ui.interact(rect, self.base.with("field").with(tag.field), Sense::hover());
             let name = self.theme.format_text(&strip::field(self.shown, field));
-            let place = self.theme.format_text(&strip::clocks(field));
+            let place = self.theme.format_text(&strip::clocks_text(field));
             response.widget_info(|| {
                 let mut info = WidgetInfo::labeled(Role::Group, true, format!("{name}, {place}"));
                 let bits = (field.first..=field.last).filter_map(|clock| self.cell_state_at(clock));
@@ -213,9 +215,9 @@ impl StripContext<'_> {
     }
 }
 
-fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Meaning> {
+fn common_meaning(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<BitMeaning> {
     let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.tells);
-    own.min_by_key(|meaning| *meaning == Meaning::Warning)
+    own.min_by_key(|meaning| *meaning == BitMeaning::Warning)
 }
 
 /// Reserves the left and right arrow keys for a widget, so they do not move the focus.

@@ -20,7 +20,7 @@ use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke,
 
 use super::bit_strip::field_ink;
 use crate::app::Text;
-use crate::devices::ssi::state::strip::{CellState, bare, short};
+use crate::devices::ssi::state::strip::{CellState, field_name, short_label};
 use crate::devices::ssi::state::timing::{BurstDiagram, skipped_operations};
 use crate::ui::Theme;
 
@@ -36,13 +36,13 @@ pub(crate) struct TimingDiagram<'a> {
 }
 
 /// Height of a signal row.
-const ROW: f32 = 24.0;
-const WORDS: f32 = 15.0;
-const LANE: f32 = 19.0;
+const ROW_HEIGHT: f32 = 24.0;
+const TEXT_HEIGHT: f32 = 15.0;
+const LANE_HEIGHT: f32 = 19.0;
 /// Length of the lines before the first edge.
-const BEFORE: f32 = 12.0;
+const LEAD_LENGTH: f32 = 12.0;
 /// Minimum bit width at which a digit is drawn.
-const DIGIT: f32 = 9.0;
+const MIN_DIGIT_WIDTH: f32 = 9.0;
 
 struct Rows {
     flags: f32,
@@ -66,29 +66,36 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let lines = ["ssi.timing_clock", "ssi.timing_data"].map(|id| caption(&TEXTS.text(id), muted));
     let width = ui.available_width();
     let gutter = lines.iter().map(|line| line.size().x).fold(0.0, f32::max) + theme.space.between;
-    let room = Rangef::new(gutter + BEFORE, (width - theme.space.inside).max(gutter + 2.0 * BEFORE));
-    let axis = Axis::new(diagram.pieces(), room);
+    let room = Rangef::new(gutter + LEAD_LENGTH, (width - theme.space.inside).max(gutter + 2.0 * LEAD_LENGTH));
+    let axis = Axis::new(diagram.sections(), room);
 
-    let breaks = axis.breaks();
-    let left_out = (0..breaks.len()).map(|piece| caption(&skipped_operations(diagram.broken(piece)), muted));
-    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.event.words(), text)));
+    let breaks = axis.break_ranges();
+    let left_out = (0..breaks.len()).map(|piece| caption(&skipped_operations(diagram.gap_after(piece)), muted));
+    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.event.to_text(), text)));
     let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
     flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));
     flags.sort_by(|a, b| a.0.total_cmp(&b.0));
     let sizes: Vec<LabelExtent> =
         flags.iter().map(|(x, galley, _)| LabelExtent { x: *x, width: galley.size().x }).collect();
-    let flags_put = place::flags(&sizes, (0.0, width));
+    let flags_put = place::place_labels(&sizes, (0.0, width));
 
-    let bars = diagram.spans().iter().map(|span| caption(&diagram.words(span), text));
+    let bars = diagram.spans().iter().map(|span| caption(&diagram.span_text(span), text));
     let bars: Vec<Arc<Galley>> = bars.collect();
     let ends = diagram.spans().iter().map(|span| (axis.x(span.from), axis.x(span.to)));
     let sizes = ends.zip(&bars).map(|(ends, galley)| Bar { ends, width: galley.size().x });
-    let bars_put = place::bars(&sizes.collect::<Vec<_>>(), (0.0, width));
+    let bars_put = place::place_bars(&sizes.collect::<Vec<_>>(), (0.0, width));
 
     let count = |put: &[LabelPlacement]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
-    let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
+    let heights = [
+        count(&flags_put) * TEXT_HEIGHT + 4.0,
+        ROW_HEIGHT,
+        8.0,
+        ROW_HEIGHT,
+        TEXT_HEIGHT + 4.0,
+        count(&bars_put) * LANE_HEIGHT,
+    ];
     let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
-    let values: Vec<String> = diagram.spans().iter().map(|span| theme.format_text(&diagram.words(span))).collect();
+    let values: Vec<String> = diagram.spans().iter().map(|span| theme.format_text(&diagram.span_text(span))).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, model.label);
         info.current_text_value = Some(values.join(", "));
@@ -106,15 +113,15 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
         picture.draw_guides(&flags, &flags_put);
         picture.clock(outer.left() + gutter);
         picture.data(outer.left() + gutter);
-        picture.names();
-        picture.breaks(&breaks);
-        picture.bars(&bars, &bars_put);
-        if let Some(pos) = response.hover_pos().filter(|pos| axis.at(pos.x - outer.left()).is_some()) {
+        picture.paint_names();
+        picture.paint_breaks(&breaks);
+        picture.paint_bars(&bars, &bars_put);
+        if let Some(pos) = response.hover_pos().filter(|pos| axis.time_at(pos.x - outer.left()).is_some()) {
             let stroke = Stroke::new(1.0, theme.palette.accent);
             painter.vline(pos.x, rows.clock.min - 4.0..=rows.bottom, stroke);
         }
     }
-    let under = response.hover_pos().and_then(|pos| axis.at(pos.x - outer.left()));
+    let under = response.hover_pos().and_then(|pos| axis.time_at(pos.x - outer.left()));
     if let Some(at) = under {
         response.on_hover_ui_at_pointer(|ui| {
             for (number, text) in diagram.texts_at(at).iter().enumerate() {
@@ -143,20 +150,20 @@ impl Picture<'_> {
         self.left + self.axis.x(at)
     }
 
-    fn line(&self) -> Color32 {
+    fn line_colour(&self) -> Color32 {
         self.theme.palette.muted.into()
     }
 
     /// Draws the labels of moments and breaks, and a vertical line through all rows at each moment.
     fn draw_guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[LabelPlacement]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
-            let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
+            let top = self.rows.flags - (put.level + 1) as f32 * TEXT_HEIGHT;
             let at = pos2(self.left + put.left, top);
             if *is_moment {
                 let (x, faint) = (self.left + x, Stroke::new(1.0, self.theme.palette.line));
                 let below = (at.x..=at.x + galley.size().x).contains(&x);
-                let ends = [pos2(x, if below { top + WORDS } else { top + 2.0 }), pos2(x, self.rows.clock.max)];
-                self.painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, self.line()), 3.0, 3.0));
+                let ends = [pos2(x, if below { top + TEXT_HEIGHT } else { top + 2.0 }), pos2(x, self.rows.clock.max)];
+                self.painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, self.line_colour()), 3.0, 3.0));
                 self.painter.vline(x, self.rows.clock.max..=self.rows.bottom, faint);
             }
             self.painter.galley(at, galley.clone(), self.theme.palette.text.into());
@@ -168,13 +175,13 @@ impl Picture<'_> {
         let row = self.rows.clock;
         let mut points = vec![pos2(from, row.min)];
         let mut high = true;
-        for edge in self.model.diagram.edges() {
+        for edge in self.model.diagram.clock_edges() {
             let x = self.x(edge);
             points.push(pos2(x, if high { row.min } else { row.max }));
             high = !high;
             points.push(pos2(x, if high { row.min } else { row.max }));
         }
-        points.push(pos2(self.x(self.model.diagram.end()), if high { row.min } else { row.max }));
+        points.push(pos2(self.x(self.model.diagram.end_time()), if high { row.min } else { row.max }));
         self.painter.add(Shape::line(points, Stroke::new(1.5, self.theme.palette.text)));
     }
 
@@ -192,19 +199,19 @@ impl Picture<'_> {
         for (number, bit) in bits.iter().enumerate() {
             let cell = diagram.strip().cells().get(number);
             let field = cell.and_then(|cell| diagram.strip().fields().get(cell.field));
-            let ink = field.map_or_else(|| self.line(), |field| field_ink(self.theme, field.kind));
+            let ink = field.map_or_else(|| self.line_colour(), |field| field_ink(self.theme, field.kind));
             self.bit((self.x(bit.from), self.x(bit.to)), ink, shown.get(number).map(|cell| cell.bit));
         }
-        let (low, least, most) = diagram.low();
+        let (low, least, most) = diagram.low_times();
         let next = self.x(diagram.next());
         let (low, least, most) = (self.x(low), self.x(least), self.x(most));
         self.painter.add(Shape::line(
             vec![pos2(low, row.max), pos2(least, row.max), pos2(most, row.min), pos2(next.max(most), row.min)],
             stroke,
         ));
-        let end = self.x(diagram.end());
+        let end = self.x(diagram.end_time());
         if next < end {
-            self.bit((next, end), self.line(), None);
+            self.bit((next, end), self.line_colour(), None);
         }
     }
 
@@ -226,7 +233,7 @@ impl Picture<'_> {
             pos2(from + slant, row.max),
         ];
         self.painter.add(Shape::convex_polygon(points, ink.gamma_multiply(strength), Stroke::new(1.0, ink)));
-        if let Some(bit) = bit.filter(|_| to - from >= DIGIT) {
+        if let Some(bit) = bit.filter(|_| to - from >= MIN_DIGIT_WIDTH) {
             let font = FontId::monospace(self.theme.sizes.caption);
             let at = pos2(f32::midpoint(from, to), middle);
             let digit = if bit { "1" } else { "0" };
@@ -234,12 +241,13 @@ impl Picture<'_> {
         }
     }
 
-    fn names(&self) {
+    fn paint_names(&self) {
         let diagram = self.model.diagram;
         for field in diagram.strip().fields() {
             let (from, to) = diagram.field(field);
             let (from, to) = (self.x(from), self.x(to));
-            let words = [self.theme.format_text(&short(diagram.strip(), field)), bare(diagram.strip(), field)];
+            let words =
+                [self.theme.format_text(&short_label(diagram.strip(), field)), field_name(diagram.strip(), field)];
             let font = FontId::proportional(self.theme.sizes.caption);
             let ink = self.theme.palette.muted;
             let galley = |words: String| self.painter.layout_no_wrap(words, font.clone(), ink.into());
@@ -252,7 +260,7 @@ impl Picture<'_> {
         }
     }
 
-    fn breaks(&self, breaks: &[Rangef]) {
+    fn paint_breaks(&self, breaks: &[Rangef]) {
         for gap in breaks {
             let middle = self.left + gap.center();
             let (top, bottom) = (self.rows.clock.min - 4.0, self.rows.data.max + 4.0);
@@ -266,18 +274,18 @@ impl Picture<'_> {
             self.painter.add(Shape::convex_polygon(points, Color32::from(self.theme.palette.sunken), Stroke::NONE));
             for side in [-4.0, 4.0] {
                 let ends = [pos2(middle + side + slant, top), pos2(middle + side - slant, bottom)];
-                self.painter.line_segment(ends, Stroke::new(1.0, self.line()));
+                self.painter.line_segment(ends, Stroke::new(1.0, self.line_colour()));
             }
         }
     }
 
     /// Draws each time as a bar with end marks. The bar is dashed between its minimum and its maximum end.
-    fn bars(&self, words: &[Arc<Galley>], put: &[LabelPlacement]) {
+    fn paint_bars(&self, words: &[Arc<Galley>], put: &[LabelPlacement]) {
         let palette = self.theme.palette;
         for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {
-            let y = self.rows.lanes + (put.level as f32 + 0.5) * LANE;
+            let y = self.rows.lanes + (put.level as f32 + 0.5) * LANE_HEIGHT;
             let (from, least, to) = (self.x(span.from), self.x(span.least), self.x(span.to));
-            let stroke = Stroke::new(1.5, self.line());
+            let stroke = Stroke::new(1.5, self.line_colour());
             self.painter.hline(from..=least, y, stroke);
             self.painter.extend(Shape::dashed_line(&[pos2(least, y), pos2(to, y)], stroke, 3.0, 2.0));
             for x in [from, least, to] {

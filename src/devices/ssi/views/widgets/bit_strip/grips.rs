@@ -8,26 +8,28 @@ use super::{Drag, StripContext, StripEvent, paint, reserve_arrow_keys};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
 /// Distance in points of a handle's sensitive area from its edge.
-const BESIDE: f32 = 7.0;
-const WIDTH: f32 = 14.0;
+const GRIP_DISTANCE: f32 = 7.0;
+const GRIP_WIDTH: f32 = 14.0;
 /// Width in points of the last handle's sensitive area after the last clock.
-const ROOM: f32 = 9.5;
+const LAST_GRIP_WIDTH: f32 = 9.5;
 /// Distance in points of a handle's visible tab from its edge.
-const TAB: f32 = 3.0;
-const SECOND_TAB: f32 = 8.0;
+const TAB_DISTANCE: f32 = 3.0;
+const SECOND_TAB_DISTANCE: f32 = 8.0;
 /// Fraction of a field at each of its ends that does not drag the whole field.
-const ENDS: f32 = 0.25;
+const END_FRACTION: f32 = 0.25;
 
 pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let mut event = None;
     for handle in model.strip.strip_handles() {
-        let Some((rect, at)) = place(view.rows, model.strip, *handle).zip(model.strip.clock(*handle)) else { continue };
+        let Some((rect, at)) = grip_rect(view.rows, model.strip, *handle).zip(model.strip.clock(*handle)) else {
+            continue;
+        };
         let id = id(view.base, *handle);
         let turns = matches!(handle, Handle::Error(_) | Handle::Parity);
         let response = ui.interact(rect, id, if turns { Sense::click_and_drag() } else { Sense::drag() });
         response.widget_info(|| {
-            let label = view.theme.format_text(&strip::handle(model.strip, *handle));
+            let label = view.theme.format_text(&strip::handle_text(model.strip, *handle));
             let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), label);
             info.role = Role::Slider;
             info.current_text_value = Some(view.theme.format_text(&strip::value(model.strip, *handle)));
@@ -40,7 +42,7 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
         if response.clicked() || response.drag_started() {
             response.request_focus();
         }
-        event = apply_drag(view, &response, *handle, at, drag).or(keys(view, &response, *handle, at)).or(event);
+        event = apply_drag(view, &response, *handle, at, drag).or(handle_keys(view, &response, *handle, at)).or(event);
         let is_held = response.dragged();
         if is_held || response.hovered() {
             ui.set_cursor_icon(match (handle.is_on_clock(), is_held) {
@@ -50,7 +52,7 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
             });
         }
         let state = paint::GripState { active: is_held || response.hovered(), focused: response.has_focus() };
-        paint::grip(view, *handle, state, drag.filter(|_| is_held));
+        paint::paint_grip(view, *handle, state, drag.filter(|_| is_held));
         if !is_held {
             show_tooltip(view, response, *handle);
         }
@@ -68,44 +70,45 @@ pub(super) fn is_dragged(ui: &Ui, base: Id, drag: Drag) -> bool {
     ui.ctx().is_being_dragged(id(base, drag.handle))
 }
 
-fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
+fn grip_rect(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let clock = strip.clock(handle)?;
     if matches!(handle, Handle::Error(_) | Handle::Parity) {
-        let cell = rows.cell(clock);
-        return Some(cell.union(Rows::lane(cell)));
+        let cell = rows.cell_rect(clock);
+        return Some(cell.union(Rows::lane_rect(cell)));
     }
     if handle == Handle::Position {
         let (first, last) = strip.position()?;
-        let runs = rows.runs(first, last);
+        let runs = rows.range_rects(first, last);
         let widest = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))?;
         // The ends of the field belong to its boundaries, so only its middle moves the position.
-        let lane = Rows::lane(widest);
-        let ends = (lane.width() * ENDS).max(WIDTH).min(lane.width() / 3.0);
+        let lane = Rows::lane_rect(widest);
+        let ends = (lane.width() * END_FRACTION).max(GRIP_WIDTH).min(lane.width() / 3.0);
         return Some(lane.shrink2(Vec2::new(ends, 0.0)));
     }
-    let edge = edge(rows, strip, handle)?;
-    let x = edge.center().x + side(handle) * if has_second_tab(strip, handle) { WIDTH } else { BESIDE };
+    let edge = edge_rect(rows, strip, handle)?;
+    let x =
+        edge.center().x + field_side(handle) * if has_second_tab(strip, handle) { GRIP_WIDTH } else { GRIP_DISTANCE };
     let (top, bottom) = match handle {
         // Another boundary can be at the same edge.
-        Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
+        Handle::AreaEnd => (edge.top() - GRIP_DISTANCE * 3.0, edge.top()),
         _ => (edge.top(), edge.bottom()),
     };
     // The last handle ends with the strip.
-    let right = if handle == Handle::FrameEnd { edge.center().x + ROOM } else { x + WIDTH / 2.0 };
-    Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=right, top..=bottom))
+    let right = if handle == Handle::FrameEnd { edge.center().x + LAST_GRIP_WIDTH } else { x + GRIP_WIDTH / 2.0 };
+    Some(Rect::from_x_y_ranges(x - GRIP_WIDTH / 2.0..=right, top..=bottom))
 }
 
-pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
+pub(super) fn edge_rect(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
-    let clocks = strip.layout().clocks();
+    let clocks = strip.layout().clock_count();
     // A boundary after bits that are shifted out would lie after the last clock.
     let clock = strip.clock(handle)?.min(clocks);
-    Some(rows.edge(clock, begins, clocks))
+    Some(rows.edge_rect(clock, begins, clocks))
 }
 
 /// Returns the horizontal distance of a boundary's tab from its edge. Negative values are to the left.
-pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
-    side(handle) * if has_second_tab(strip, handle) { SECOND_TAB } else { TAB }
+pub(super) fn tab_offset(strip: &Strip, handle: Handle) -> f32 {
+    field_side(handle) * if has_second_tab(strip, handle) { SECOND_TAB_DISTANCE } else { TAB_DISTANCE }
 }
 
 /// Returns whether the tab of a handle is the second one at its edge. The boundary between turns and steps is closer to
@@ -115,7 +118,7 @@ fn has_second_tab(strip: &Strip, handle: Handle) -> bool {
 }
 
 /// Returns the side of the edge on which the field of a boundary lies: -1 before, 1 after, 0 on both sides.
-const fn side(handle: Handle) -> f32 {
+const fn field_side(handle: Handle) -> f32 {
     match handle {
         Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,
         Handle::TurnsEnd | Handle::StepsEnd => -1.0,
@@ -136,7 +139,7 @@ fn apply_drag(
     if !held && !released {
         return None;
     }
-    let clocks = model.strip.layout().clocks();
+    let clocks = model.strip.layout().clock_count();
     let own = drag.filter(|drag| drag.handle == handle);
     let pressed = || ui.input(|input| input.pointer.press_origin()).map(|pos| view.rows.clock(pos, clocks));
     let from = own.map_or_else(pressed, |drag| drag.from);
@@ -149,9 +152,9 @@ fn apply_drag(
                 let by = i16::from(under) - i16::from(from.unwrap_or(under));
                 u8::try_from((i16::from(at) + by).max(0)).unwrap_or(u8::MAX)
             }
-            _ => view.rows.boundary(pos, clocks),
+            _ => view.rows.nearest_boundary(pos, clocks),
         };
-        model.strip.moved(handle, wanted, model.following).clock(handle).unwrap_or(at)
+        model.strip.with_part_moved(handle, wanted, model.following).clock(handle).unwrap_or(at)
     });
     if released {
         ui.data_mut(|data| data.remove::<Drag>(view.base));
@@ -166,7 +169,7 @@ fn apply_drag(
 }
 
 /// Handles the keys that move a handle by one clock or as far as possible.
-fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
+fn handle_keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
     if !response.has_focus() {
         return None;
     }
@@ -184,7 +187,7 @@ fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) ->
     } else {
         return None;
     };
-    let reached = model.strip.moved(handle, to, model.following).clock(handle)?;
+    let reached = model.strip.with_part_moved(handle, to, model.following).clock(handle)?;
     (reached != at).then_some(StripEvent::Moved(handle, reached))
 }
 
@@ -192,10 +195,10 @@ fn show_tooltip(view: &StripContext<'_>, response: Response, handle: Handle) {
     response.on_hover_ui(|ui| {
         ui.set_max_width(280.0);
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-        let name = view.theme.format_text(&strip::handle(view.model.strip, handle));
+        let name = view.theme.format_text(&strip::handle_text(view.model.strip, handle));
         let value = view.theme.format_text(&strip::value(view.model.strip, handle));
         ui.label(format!("{name}: {value}"));
-        ui.label(view.theme.caption(view.theme.format_text(&strip::hint(handle))));
+        ui.label(view.theme.caption(view.theme.format_text(&strip::handle_hint(handle))));
         let reach = strip::reach_text(view.model.strip, handle, view.model.following);
         ui.label(view.theme.caption(view.theme.format_text(&reach)));
     });

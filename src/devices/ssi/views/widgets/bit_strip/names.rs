@@ -7,10 +7,10 @@ use std::sync::Arc;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, FontId, Galley, Painter, Rect, Stroke, Ui, Vec2, pos2};
 
-use super::rows::{NAME, Rows};
+use super::rows::{NAME_HEIGHT, Rows};
 use crate::analysis::quality::Verdict;
-use crate::devices::ssi::protocol::Meaning;
-use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
+use crate::devices::ssi::protocol::BitMeaning;
+use crate::devices::ssi::state::strip::{Field, Strip, field_name, name, short_label};
 use crate::ui::{Theme, controls};
 
 pub(super) struct NameTag {
@@ -25,9 +25,9 @@ pub(super) struct NameTag {
     galley: Arc<Galley>,
 }
 
-const APART: f32 = 6.0;
+const NAME_SPACING: f32 = 6.0;
 /// Maximum width of a name. A longer name is truncated, and the tooltip shows it in full.
-const WIDEST: f32 = 160.0;
+const MAX_NAME_WIDTH: f32 = 160.0;
 /// Maximum number of rows of names above the last one. It is the maximum number of error bits in a frame.
 const LEVELS: usize = 8;
 
@@ -46,17 +46,17 @@ struct OverflowingName {
 
 impl OverflowingName {
     /// Places the name in a free space beside the names that are already placed.
-    fn placed(self, tags: &[NameTag]) -> NameTag {
+    fn place_beside(self, tags: &[NameTag]) -> NameTag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
-        let is_in = (-APART..=self.room + APART - width).contains(&middle);
+        let is_in = (-NAME_SPACING..=self.room + NAME_SPACING - width).contains(&middle);
         let (left, level) = if self.alone && is_in && self.is_free(tags, middle, 0) {
             (middle, 0)
         } else {
             let left = if self.begins {
-                (self.x - APART / 2.0).min(self.room + APART - width)
+                (self.x - NAME_SPACING / 2.0).min(self.room + NAME_SPACING - width)
             } else {
-                self.x + APART / 2.0 - width
+                self.x + NAME_SPACING / 2.0 - width
             };
             let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
             // If a name cannot avoid leader lines, it avoids at least the other names.
@@ -71,7 +71,7 @@ impl OverflowingName {
     fn has_no_overlap(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
-        own.map(NameTag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
+        own.map(NameTag::horizontal_span).all(|(from, to)| right + NAME_SPACING <= from || to + NAME_SPACING <= left)
     }
 
     /// Returns whether the name does not overlap another name, does not cross the leader line of a lower name, and has
@@ -80,7 +80,7 @@ impl OverflowingName {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
         let crossed = others.any(|tag| {
-            let (from, to) = tag.span();
+            let (from, to) = tag.horizontal_span();
             match tag.level.cmp(&level) {
                 Ordering::Equal => false,
                 Ordering::Greater => tag.leader.is_some_and(|x| left <= x && x <= right),
@@ -92,20 +92,20 @@ impl OverflowingName {
 }
 
 impl NameTag {
-    fn span(&self) -> (f32, f32) {
+    fn horizontal_span(&self) -> (f32, f32) {
         (self.left, self.left + self.galley.size().x)
     }
 
-    pub(super) fn rect(&self, rows: &Rows, lane: Rect) -> Rect {
-        let top = lane.bottom() + self.level as f32 * NAME;
-        Rect::from_min_size(pos2(rows.left() + self.left, top), Vec2::new(self.galley.size().x, NAME))
+    pub(super) fn tag_rect(&self, rows: &Rows, lane: Rect) -> Rect {
+        let top = lane.bottom() + self.level as f32 * NAME_HEIGHT;
+        Rect::from_min_size(pos2(rows.left_edge() + self.left, top), Vec2::new(self.galley.size().x, NAME_HEIGHT))
     }
 
     pub(super) fn paint(&self, painter: &Painter, theme: &Theme, (rows, lane): (&Rows, Rect), colour: Color32) {
-        let rect = self.rect(rows, lane);
+        let rect = self.tag_rect(rows, lane);
         if let Some(x) = self.leader {
             let stroke = Stroke::new(1.0, theme.palette.line);
-            painter.vline(rows.left() + x, lane.center().y + 4.0..=rect.top() + 3.0, stroke);
+            painter.vline(rows.left_edge() + x, lane.center().y + 4.0..=rect.top() + 3.0, stroke);
         }
         painter.galley_with_override_text_color(rect.left_top(), self.galley.clone(), colour);
     }
@@ -118,25 +118,27 @@ pub(super) fn name_tags(
     theme: &Theme,
     strip: &Strip,
     rows: &Rows,
-    meaning_of: impl Fn(&Field) -> Option<Meaning>,
+    meaning_of: impl Fn(&Field) -> Option<BitMeaning>,
 ) -> (Vec<NameTag>, Vec<usize>) {
     let galley = |own: &Field, words: String| {
         let size = theme.sizes.caption;
         let (font, words) = match meaning_of(own) {
-            Some(meaning) => {
-                (theme.bold_font(size), format!("{} {words}", controls::verdict_badge(theme, verdict(meaning)).0))
-            }
+            Some(meaning) => (
+                theme.bold_font(size),
+                format!("{} {words}", controls::verdict_badge(theme, meaning_verdict(meaning)).0),
+            ),
             None => (FontId::proportional(size), words),
         };
         let mut job = LayoutJob::simple_singleline(words, font, theme.palette.muted.into());
-        job.wrap = TextWrapping::truncate_at_width(WIDEST);
+        job.wrap = TextWrapping::truncate_at_width(MAX_NAME_WIDTH);
         ui.painter().layout_job(job)
     };
     let mut tags: Vec<NameTag> = Vec::new();
     let mut narrow = Vec::new();
     for (index, own) in strip.fields().iter().enumerate() {
         let (run, line) = widest_run(rows, own);
-        let words = [theme.format_text(&name(strip, own)), theme.format_text(&short(strip, own)), bare(strip, own)];
+        let words =
+            [theme.format_text(&name(strip, own)), theme.format_text(&short_label(strip, own)), field_name(strip, own)];
         let fits = words.into_iter().map(|words| galley(own, words)).find(|own| own.size().x <= run.width() + 2.0);
         match fits {
             Some(galley) => {
@@ -146,10 +148,10 @@ pub(super) fn name_tags(
             None => narrow.push((index, own, run, line)),
         }
     }
-    let room = rows.width(strip.layout().clocks());
+    let room = rows.width(strip.layout().clock_count());
     let narrow = narrow.into_iter().map(|(index, own, run, line)| {
-        let galley = galley(own, bare(strip, own));
-        let begins = run.center().x + APART / 2.0 < galley.size().x;
+        let galley = galley(own, field_name(strip, own));
+        let begins = run.center().x + NAME_SPACING / 2.0 < galley.size().x;
         OverflowingName { index, line, x: run.center().x, alone: true, begins, room, galley }
     });
     let mut narrow: Vec<OverflowingName> = narrow.collect();
@@ -163,9 +165,9 @@ pub(super) fn name_tags(
     }
     let (begin, end): (Vec<OverflowingName>, Vec<OverflowingName>) = narrow.into_iter().partition(|own| own.begins);
     for narrow in end.into_iter().chain(begin.into_iter().rev()) {
-        tags.push(narrow.placed(&tags));
+        tags.push(narrow.place_beside(&tags));
     }
-    let levels = (0..rows.count(strip.layout().clocks())).map(|line| {
+    let levels = (0..rows.count(strip.layout().clock_count())).map(|line| {
         let own = tags.iter().filter(|tag| tag.line == line);
         own.map(|tag| tag.level + 1).max().unwrap_or(1)
     });
@@ -174,17 +176,17 @@ pub(super) fn name_tags(
 }
 
 /// Returns the verdict for the effect of a bit on the position.
-pub(super) const fn verdict(meaning: Meaning) -> Verdict {
+pub(super) const fn meaning_verdict(meaning: BitMeaning) -> Verdict {
     match meaning {
-        Meaning::Invalid => Verdict::Fault,
-        Meaning::Warning => Verdict::Warn,
+        BitMeaning::Invalid => Verdict::Fault,
+        BitMeaning::Warning => Verdict::Warn,
     }
 }
 
 /// Returns the widest run of a field and the line that contains it.
 pub(super) fn widest_run(rows: &Rows, field: &Field) -> (Rect, usize) {
-    let runs = rows.runs(field.first, field.last);
-    let line = rows.line(field.first);
+    let runs = rows.range_rects(field.first, field.last);
+    let line = rows.line_of(field.first);
     let widest = runs.into_iter().enumerate().rev().max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width()));
-    widest.map_or((rows.cell(field.first), line), |(number, run)| (run, line + number))
+    widest.map_or((rows.cell_rect(field.first), line), |(number, run)| (run, line + number))
 }

@@ -2,11 +2,11 @@
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 
-use super::grips::{edge, tab};
-use super::names::{NameTag, verdict, widest_run};
+use super::grips::{edge_rect, tab_offset};
+use super::names::{NameTag, meaning_verdict, widest_run};
 use super::rows::Rows;
-use super::{Drag, StripContext, tells};
-use crate::devices::ssi::protocol::Meaning;
+use super::{Drag, StripContext, common_meaning};
+use crate::devices::ssi::protocol::BitMeaning;
 use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
 use crate::ui::widgets::{BitCell, focus_ring, series_colour};
 use crate::ui::{Theme, controls};
@@ -23,8 +23,8 @@ pub(crate) fn display_colour(theme: &Theme, kind: Kind) -> Color32 {
     }
 }
 
-fn colour(theme: &Theme, meaning: Meaning) -> Color32 {
-    controls::verdict_badge(theme, verdict(meaning)).1.into()
+fn meaning_colour(theme: &Theme, meaning: BitMeaning) -> Color32 {
+    controls::verdict_badge(theme, meaning_verdict(meaning)).1.into()
 }
 
 impl StripContext<'_> {
@@ -33,45 +33,46 @@ impl StripContext<'_> {
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
             for clock in field.first..=field.last {
-                self.cell(field, clock);
+                self.paint_cell(field, clock);
             }
-            for run in self.rows.runs(field.first, field.last) {
-                self.bracket(field, Rows::lane(run));
+            for run in self.rows.range_rects(field.first, field.last) {
+                self.paint_bracket(field, Rows::lane_rect(run));
             }
             let (run, _) = widest_run(self.rows, field);
-            let worst = tells(self.cells, field.first..=field.last).filter(|_| field.is_single_bit());
-            let colour = worst.map_or(self.theme.palette.muted.into(), |meaning| colour(self.theme, meaning));
-            tag.paint(painter, self.theme, (self.rows, Rows::lane(run)), colour);
+            let worst = common_meaning(self.cells, field.first..=field.last).filter(|_| field.is_single_bit());
+            let colour = worst.map_or(self.theme.palette.muted.into(), |meaning| meaning_colour(self.theme, meaning));
+            tag.paint(painter, self.theme, (self.rows, Rows::lane_rect(run)), colour);
         }
         let is_focused = self.ui.memory(|memory| memory.has_focus(self.base.with("cells")));
-        let selected = self.model.selected.filter(|clock| *clock <= self.shown.layout().clocks());
+        let selected = self.model.selected.filter(|clock| *clock <= self.shown.layout().clock_count());
         if let Some(clock) = selected {
-            let cell = self.rows.cell(clock);
+            let cell = self.rows.cell_rect(clock);
             let stroke = Stroke::new(2.0, self.theme.palette.accent);
             painter.rect_stroke(cell, CornerRadius::same(2), stroke, StrokeKind::Inside);
         }
         if is_focused {
-            focus_ring(painter, self.theme, self.rows.cell(selected.unwrap_or(1)), CornerRadius::same(2));
+            focus_ring(painter, self.theme, self.rows.cell_rect(selected.unwrap_or(1)), CornerRadius::same(2));
         }
     }
 
-    fn cell(&self, field: &Field, clock: u8) {
+    fn paint_cell(&self, field: &Field, clock: u8) {
         let (theme, painter) = (self.theme, self.ui.painter());
-        let cell = self.rows.cell(clock);
+        let cell = self.rows.cell_rect(clock);
         let shown = self.cell_state_at(clock);
         let cell_meaning = shown.and_then(|cell| cell.tells);
-        let blank = self.number(clock).map_or_else(String::new, |bit| bit.to_string());
-        let ink = cell_meaning.map_or_else(|| display_colour(theme, field.kind), |meaning| colour(theme, meaning));
+        let blank = self.bit_number(clock).map_or_else(String::new, |bit| bit.to_string());
+        let ink =
+            cell_meaning.map_or_else(|| display_colour(theme, field.kind), |meaning| meaning_colour(theme, meaning));
         let bit = shown.map(|cell| cell.bit);
         BitCell { ink, bit, blank: &blank, alarm: cell_meaning.is_some() }.paint(painter, theme, cell);
         let is_selected = self.model.selected == Some(clock);
         let colour = if is_selected { theme.palette.text } else { theme.palette.muted };
         let font = FontId::monospace(theme.sizes.caption);
-        painter.text(self.rows.number(clock), Align2::CENTER_CENTER, clock.to_string(), font, colour.into());
+        painter.text(self.rows.number_position(clock), Align2::CENTER_CENTER, clock.to_string(), font, colour.into());
     }
 
     /// Draws the bracket below the cells of a field. It is thick if the field can be moved as a whole.
-    fn bracket(&self, field: &Field, lane: Rect) {
+    fn paint_bracket(&self, field: &Field, lane: Rect) {
         let ink = display_colour(self.theme, field.kind);
         let is_moved = self.model.movable
             && (field.is_single_bit() || matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position));
@@ -91,20 +92,20 @@ pub(super) struct GripState {
     pub(super) focused: bool,
 }
 
-pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: GripState, drag: Option<Drag>) {
+pub(super) fn paint_grip(view: &StripContext<'_>, handle: Handle, state: GripState, drag: Option<Drag>) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let accent = Color32::from(theme.palette.accent);
     let lit = state.active || state.focused;
     if handle.is_on_clock() {
         let runs = match (handle, view.shown.clock(handle)) {
             (Handle::Position, _) => {
-                view.shown.position().map(|(first, last)| view.rows.runs(first, last)).unwrap_or_default()
+                view.shown.position().map(|(first, last)| view.rows.range_rects(first, last)).unwrap_or_default()
             }
-            (_, Some(clock)) => vec![view.rows.cell(clock)],
+            (_, Some(clock)) => vec![view.rows.cell_rect(clock)],
             (_, None) => Vec::new(),
         };
         for run in runs {
-            let lane = Rows::lane(run);
+            let lane = Rows::lane_rect(run);
             if lit {
                 painter.hline(lane.x_range(), lane.center().y, Stroke::new(3.0, accent));
             }
@@ -116,8 +117,8 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: GripState, dr
                 painter.rect_stroke(run, CornerRadius::same(2), Stroke::new(2.0, accent), StrokeKind::Inside);
             }
         }
-    } else if let Some(edge) = edge(view.rows, view.shown, handle) {
-        let x = edge.center().x + tab(view.shown, handle);
+    } else if let Some(edge) = edge_rect(view.rows, view.shown, handle) {
+        let x = edge.center().x + tab_offset(view.shown, handle);
         let lane = edge.bottom() - 8.0;
         let y = if handle == Handle::AreaEnd { edge.top() - 7.0 } else { lane };
         let size = if lit { Vec2::new(5.0, 13.0) } else { Vec2::new(4.0, 11.0) };
@@ -139,9 +140,9 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: GripState, dr
 fn draw_drag_ghost(view: &StripContext<'_>, handle: Handle) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };
-    let middle = match edge(view.rows, view.shown, handle).filter(|_| !handle.is_on_clock()) {
+    let middle = match edge_rect(view.rows, view.shown, handle).filter(|_| !handle.is_on_clock()) {
         Some(edge) => pos2(edge.center().x, edge.top() - 8.0),
-        None => view.rows.number(clock),
+        None => view.rows.number_position(clock),
     };
     let words = theme.format_text(&strip::value(view.shown, handle));
     let font = FontId::proportional(theme.sizes.caption);

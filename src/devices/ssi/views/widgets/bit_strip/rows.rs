@@ -3,16 +3,16 @@
 use egui::{Pos2, Rect, Vec2, pos2};
 
 /// Minimum width of a cell, below which the strip wraps.
-const LEAST: f32 = 17.0;
-const MOST: f32 = 28.0;
+const MIN_CELL_WIDTH: f32 = 17.0;
+const MAX_CELL_WIDTH: f32 = 28.0;
 /// Height of the clock numbers.
-const NUMBERS: f32 = 15.0;
-const CELL: f32 = 26.0;
-const LANE: f32 = 16.0;
-pub(super) const NAME: f32 = 15.0;
+const NUMBER_HEIGHT: f32 = 15.0;
+const CELL_HEIGHT: f32 = 26.0;
+const LANE_HEIGHT: f32 = 16.0;
+pub(super) const NAME_HEIGHT: f32 = 15.0;
 /// Space on either side of the cells for the first and the last handle.
-const MARGIN: f32 = 10.0;
-const GAP: f32 = 10.0;
+const SIDE_MARGIN: f32 = 10.0;
+const LINE_GAP: f32 = 10.0;
 
 /// Cells on one or more lines.
 #[derive(Clone, Debug)]
@@ -27,22 +27,22 @@ pub(super) struct Rows {
 
 impl Rows {
     pub(super) fn new(room: f32, clocks: u8) -> Self {
-        let room = (room - 2.0 * MARGIN).max(0.0);
+        let room = (room - 2.0 * SIDE_MARGIN).max(0.0);
         let count = f32::from(clocks.max(1));
-        if count * LEAST <= room {
-            let cell = (room / count).floor().min(MOST);
+        if count * MIN_CELL_WIDTH <= room {
+            let cell = (room / count).floor().min(MAX_CELL_WIDTH);
             // The line has room for more clocks, which appear while the end of the frame is dragged.
             let columns = (room / cell).floor().min(64.0) as u8;
             return Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() };
         }
         // As few lines as possible, each of whole bytes.
         let columns = |lines: u8| clocks.div_ceil(lines).next_multiple_of(8);
-        let columns = (2..=8).map(columns).find(|columns| f32::from(*columns) * LEAST <= room).unwrap_or(8);
-        let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
+        let columns = (2..=8).map(columns).find(|columns| f32::from(*columns) * MIN_CELL_WIDTH <= room).unwrap_or(8);
+        let cell = (room / f32::from(columns)).floor().clamp(MIN_CELL_WIDTH, MAX_CELL_WIDTH);
         Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() }
     }
 
-    pub(super) fn left(&self) -> f32 {
+    pub(super) fn left_edge(&self) -> f32 {
         self.origin.x
     }
 
@@ -51,12 +51,12 @@ impl Rows {
     }
 
     /// Places the rows at a top left corner. Below each line there is space for `names[line]` rows of names.
-    pub(super) fn at(mut self, origin: Pos2, names: &[usize]) -> Self {
-        self.origin = origin + Vec2::new(MARGIN, 0.0);
+    pub(super) fn at_origin(mut self, origin: Pos2, names: &[usize]) -> Self {
+        self.origin = origin + Vec2::new(SIDE_MARGIN, 0.0);
         let mut top = 0.0;
         self.tops = vec![top];
         for names in names {
-            top += NUMBERS + CELL + LANE + *names as f32 * NAME + GAP;
+            top += NUMBER_HEIGHT + CELL_HEIGHT + LANE_HEIGHT + *names as f32 * NAME_HEIGHT + LINE_GAP;
             self.tops.push(top);
         }
         self
@@ -67,10 +67,10 @@ impl Rows {
     }
 
     pub(super) fn size(&self, clocks: u8) -> Vec2 {
-        Vec2::new(self.width(clocks) + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
+        Vec2::new(self.width(clocks) + 2.0 * SIDE_MARGIN, self.tops.last().copied().unwrap_or(LINE_GAP) - LINE_GAP)
     }
 
-    pub(super) fn line(&self, clock: u8) -> usize {
+    pub(super) fn line_of(&self, clock: u8) -> usize {
         usize::from(clock.saturating_sub(1) / self.columns)
     }
 
@@ -78,23 +78,23 @@ impl Rows {
         self.origin.y + self.tops.get(line).or(self.tops.last()).copied().unwrap_or(0.0)
     }
 
-    pub(super) fn cell(&self, clock: u8) -> Rect {
+    pub(super) fn cell_rect(&self, clock: u8) -> Rect {
         let column = f32::from(clock.saturating_sub(1) % self.columns);
-        let at = pos2(self.origin.x + column * self.cell, self.line_top(self.line(clock)) + NUMBERS);
-        Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL))
+        let at = pos2(self.origin.x + column * self.cell, self.line_top(self.line_of(clock)) + NUMBER_HEIGHT);
+        Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL_HEIGHT))
     }
 
-    pub(super) fn number(&self, clock: u8) -> Pos2 {
-        let cell = self.cell(clock);
-        pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
+    pub(super) fn number_position(&self, clock: u8) -> Pos2 {
+        let cell = self.cell_rect(clock);
+        pos2(cell.center().x, cell.top() - NUMBER_HEIGHT / 2.0)
     }
 
     /// Returns the rectangles that cover a range of clocks, one for each line.
-    pub(super) fn runs(&self, first: u8, last: u8) -> Vec<Rect> {
+    pub(super) fn range_rects(&self, first: u8, last: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for clock in first..=last {
-            let cell = self.cell(clock);
-            match runs.last_mut().filter(|_| clock > first && self.line(clock) == self.line(clock - 1)) {
+            let cell = self.cell_rect(clock);
+            match runs.last_mut().filter(|_| clock > first && self.line_of(clock) == self.line_of(clock - 1)) {
                 Some(run) => *run = run.union(cell),
                 None => runs.push(cell),
             }
@@ -102,21 +102,21 @@ impl Rows {
         runs
     }
 
-    pub(super) fn lane(run: Rect) -> Rect {
-        Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
+    pub(super) fn lane_rect(run: Rect) -> Rect {
+        Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE_HEIGHT))
     }
 
     /// Returns the edge after a clock. If a part begins there, the edge is at the cell of the next clock, which may be
     /// on the next line.
-    pub(super) fn edge(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
+    pub(super) fn edge_rect(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
         let begins = clock == 0 || begins && clock < clocks;
-        let cell = self.cell(if begins { clock + 1 } else { clock });
+        let cell = self.cell_rect(if begins { clock + 1 } else { clock });
         let x = if begins { cell.left() - 0.5 } else { cell.right() + 0.5 };
-        Rect::from_min_max(pos2(x, cell.top()), pos2(x, cell.bottom() + LANE))
+        Rect::from_min_max(pos2(x, cell.top()), pos2(x, cell.bottom() + LANE_HEIGHT))
     }
 
     /// Returns the clock whose edge is nearest to the pointer.
-    pub(super) fn boundary(&self, pos: Pos2, clocks: u8) -> u8 {
+    pub(super) fn nearest_boundary(&self, pos: Pos2, clocks: u8) -> u8 {
         let column = ((pos.x - self.origin.x) / self.cell).round().clamp(0.0, f32::from(self.columns));
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8)
     }
@@ -129,7 +129,7 @@ impl Rows {
 
     fn line_at(&self, pos: Pos2, clocks: u8) -> u8 {
         let lines = self.count(clocks);
-        (1..lines).rev().find(|line| pos.y >= self.line_top(*line) - GAP / 2.0).map_or(0, |line| line as u8)
+        (1..lines).rev().find(|line| pos.y >= self.line_top(*line) - LINE_GAP / 2.0).map_or(0, |line| line as u8)
     }
 }
 
@@ -155,22 +155,22 @@ mod tests {
         {
             let rows = Rows::new(room, 64);
             assert_eq!(rows.columns, columns, "{room}");
-            let rows = rows.at(Pos2::ZERO, &vec![1; 64_usize.div_ceil(columns.into())]);
+            let rows = rows.at_origin(Pos2::ZERO, &vec![1; 64_usize.div_ceil(columns.into())]);
             assert!(rows.size(64).x <= room);
         }
     }
 
     #[test]
     fn pointer_positions_map_to_cells() {
-        let rows = Rows::new(600.0, 64).at(pos2(30.0, 40.0), &[1, 3]);
+        let rows = Rows::new(600.0, 64).at_origin(pos2(30.0, 40.0), &[1, 3]);
         for clock in 1..=64 {
-            let cell = rows.cell(clock);
+            let cell = rows.cell_rect(clock);
             assert_eq!(rows.clock(cell.center(), 64), clock);
-            assert_eq!(rows.boundary(rows.edge(clock, false, 64).center(), 64), clock);
-            assert_eq!(rows.boundary(rows.edge(clock - 1, true, 64).center(), 64), clock - 1);
+            assert_eq!(rows.nearest_boundary(rows.edge_rect(clock, false, 64).center(), 64), clock);
+            assert_eq!(rows.nearest_boundary(rows.edge_rect(clock - 1, true, 64).center(), 64), clock - 1);
         }
-        assert_eq!(rows.runs(30, 35).len(), 2);
+        assert_eq!(rows.range_rects(30, 35).len(), 2);
         assert_eq!(rows.clock(pos2(-500.0, -500.0), 64), 1);
-        assert_eq!(rows.boundary(pos2(5000.0, 5000.0), 64), 64);
+        assert_eq!(rows.nearest_boundary(pos2(5000.0, 5000.0), 64), 64);
     }
 }

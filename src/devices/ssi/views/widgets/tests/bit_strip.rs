@@ -4,7 +4,7 @@ use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::devices::ssi::protocol::{ErrorBit, Families, Layout, Meaning, Settings};
+use crate::devices::ssi::protocol::{BitMeaning, ErrorBit, Families, Layout, Settings};
 use crate::devices::ssi::state::strip::{Handle, Strip};
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::widgets::tests::{NONE, focus, press, theme, window};
@@ -17,12 +17,12 @@ struct Design {
 }
 
 fn layout(family: &str, settings: &Settings) -> Layout {
-    settings.resolve(Families::built_in().named(family).unwrap()).unwrap().layout
+    settings.resolve(Families::built_in().find_by_key(family).unwrap()).unwrap().layout
 }
 
 /// Draws a frame that takes the user's changes.
 fn strip(layout: &Layout, width: f32) -> Harness<'static, Design> {
-    let state = Design { strip: Strip::of(layout), frame: Some(0), selected: None, events: Vec::new() };
+    let state = Design { strip: Strip::from_layout(layout), frame: Some(0), selected: None, events: Vec::new() };
     window(state, move |ui, state: &mut Design| {
         ui.set_max_width(width);
         let model = BitStrip {
@@ -36,10 +36,10 @@ fn strip(layout: &Layout, width: f32) -> Harness<'static, Design> {
         };
         let event = bit_strip(ui, &theme(), &model);
         match event {
-            Some(StripEvent::Moved(handle, clock)) => state.strip = state.strip.moved(handle, clock, true),
+            Some(StripEvent::Moved(handle, clock)) => state.strip = state.strip.with_part_moved(handle, clock, true),
             Some(StripEvent::Selected(clock)) => state.selected = Some(clock),
             Some(StripEvent::Toggled(clock)) => {
-                let behind = state.strip.layout().clocks() - clock;
+                let behind = state.strip.layout().clock_count() - clock;
                 state.frame = state.frame.map(|frame| frame ^ 1 << behind);
             }
             Some(StripEvent::Preview(..)) | None => {}
@@ -179,7 +179,7 @@ fn cells_can_be_selected_and_bits_toggled() {
 #[test]
 fn every_frame_stays_within_its_width() {
     for (bits, width) in [((1, 1), 200.0), ((32, 32), 300.0), ((32, 32), 600.0), ((32, 32), 880.0), ((12, 13), 470.0)] {
-        let plain = crate::devices::ssi::protocol::FrameDescriptor::plain(bits.0, bits.1);
+        let plain = crate::devices::ssi::protocol::FrameDescriptor::binary(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
         let left = harness.get_by_label("before").rect().left();
         let labels = ["Frame", "End of the frame", "Start of the position bits", "Entire position"];
@@ -213,14 +213,14 @@ fn a_handle_describes_its_purpose_and_range() {
 #[test]
 fn names_do_not_overlap() {
     for (first, width) in [(1_u8, 860.0), (20, 860.0), (40, 600.0), (56, 300.0)] {
-        let mut descriptor = crate::devices::ssi::protocol::FrameDescriptor::plain(0, 4);
+        let mut descriptor = crate::devices::ssi::protocol::FrameDescriptor::binary(0, 4);
         descriptor.clocks = 64;
         descriptor.lead = if first == 1 { 10 } else { 0 };
         descriptor.area = 64;
         let error = |index: u8| ErrorBit {
             name: format!("A_LONG_NAME_OF_AN_ERROR_BIT_{index}"),
             clock: first + index,
-            meaning: Meaning::Warning,
+            meaning: BitMeaning::Warning,
             active_low: false,
             cleared_by_transfer: false,
         };

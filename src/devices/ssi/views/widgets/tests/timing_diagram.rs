@@ -11,17 +11,17 @@ use crate::ui::widgets::tests::{theme, window};
 
 fn diagram(clock_hz: f64, pause_us: u64) -> BurstDiagram {
     let families = Families::built_in();
-    let family = families.named("ahm36").unwrap();
+    let family = families.find_by_key("ahm36").unwrap();
     let layout = Settings::default().resolve(family).unwrap().layout;
     let reads = ReadConditions {
-        clocks: layout.clocks(),
+        clocks: layout.clock_count(),
         clock_hz,
         pause: Duration::from_micros(pause_us),
         cable_metres: None,
         synchronous: true,
         any_steps: false,
     };
-    BurstDiagram::of(&layout, &family.times, &reads)
+    BurstDiagram::new(&layout, &family.times, &reads)
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn the_accessible_value_lists_the_times() {
             let picture = harness.get_by_label("Burst");
             let value = picture.value().unwrap();
             let words: Vec<String> =
-                diagram.spans().iter().map(|span| theme().format_text(&diagram.words(span))).collect();
+                diagram.spans().iter().map(|span| theme().format_text(&diagram.span_text(span))).collect();
             assert_eq!(value, words.join(", "));
             assert!(picture.rect().width() <= width, "{}", picture.rect());
         }
