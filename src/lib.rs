@@ -1,7 +1,7 @@
 //! encoder-studio: configures position encoders and small drives.
 //!
-//! ARCHITECTURE.md describes the layers. A module uses only its own layer and the ones below, and the core knows no
-//! device.
+//! ARCHITECTURE.md describes the layers. A module uses only its own layer and the ones below, and the core is
+//! independent of the devices.
 
 // all device kinds
 pub mod kinds;

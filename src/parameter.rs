@@ -14,13 +14,13 @@ pub use values::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RejectedParameter {
     pub key: String,
-    /// The refused value as typed.
+    /// The rejected value as entered.
     pub value: String,
     pub allowed: AllowedValues,
 }
 
 impl RejectedParameter {
-    /// Creates the error for a refused value. `allowed` describes the accepted values.
+    /// Creates the error for a rejected value. `allowed` describes the accepted values.
     pub fn new(key: &str, value: impl ToString, allowed: AllowedValues) -> Self {
         RejectedParameter { key: key.to_owned(), value: value.to_string(), allowed }
     }
@@ -51,7 +51,7 @@ pub fn select_entries(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
 
 /// A group of parameters, declared with `parameters!`. Parameters without a value have their defaults.
 pub trait ParameterGroup: Default {
-    /// The error returned when a value is refused.
+    /// The error returned when a value is rejected.
     type Error;
 
     const KEYS: &'static [&'static str];

@@ -116,7 +116,7 @@ pub enum TaskResult {
     OpenedConnection(ConnectAttempt),
     /// A search in the connection form of a tab has a result. See [`TaskResult::from_finder`].
     Finder(Tab, Payload),
-    /// A task that belongs to no session has ended. Contains the function that handles its result.
+    /// A task without a session has ended. Contains the function that handles its result.
     Shared(SharedResultHandler),
     Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
@@ -227,7 +227,7 @@ pub enum OpenFailure {
     Held,
 }
 
-/// Function that handles a result that belongs to no session.
+/// Function that handles a result without a session.
 pub(crate) type SharedResultHandler = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
 #[derive(Debug)]

@@ -1,5 +1,5 @@
-//! Values for a kind of device that come from outside: start options, or substitutes in a test. The studio does not
-//! know their types.
+//! Values for a kind of device that come from outside: start options, or substitutes in a test. Their types are not
+//! visible to the studio.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;

@@ -55,7 +55,7 @@ pub enum HoldInput {
     Finger,
 }
 
-/// The effect of the input in a frame on a hold.
+/// How the input of a frame affects a held button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
     Press,

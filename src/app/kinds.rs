@@ -42,8 +42,8 @@ impl KindRegistry {
         self.devices.iter().copied().find(|kind| kind.keyword() == word)
     }
 
-    /// Returns the reason why a kind of device refuses a profile. If no kind knows the cause, its English message is
-    /// returned.
+    /// Returns the reason why a kind of device rejects a profile. If no kind recognises the cause, its English message
+    /// is returned.
     pub(super) fn explain_rejection(self, cause: &Cause) -> Text {
         self.devices
             .iter()

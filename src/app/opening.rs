@@ -22,7 +22,7 @@ const FRAMES: usize = 20_000;
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
-    /// Returns the tab of the device to which a link leads.
+    /// Returns the tab of the device to which a link refers.
     ///
     /// If several kinds of devices are possible, the kind last used with the link is chosen, or else the open tab.
     /// Without a link, the open tab is returned.

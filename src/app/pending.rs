@@ -35,7 +35,7 @@ pub(crate) trait SnapshotEdits {
 
     fn history(&self) -> &History<Self::Values>;
 
-    /// Returns the original values, the edited values and the undo steps, or `None` if nothing has been read.
+    /// Returns the original values, the edited values and the undo steps, or `None` if no data has been read.
     fn history_parts(&mut self) -> Option<EditHistoryParts<'_, Self::Values>>;
 }
 

@@ -1,8 +1,9 @@
 //! Detection of fresh key presses. A press is fresh if the user has made it, rather than a held key that repeats
 //! itself.
 //!
-//! A press alone proves nothing. Toolkits forget which keys are down when the window loses the keyboard focus. The next
-//! repetition of a held key then looks like a first press, and the release reported at that moment is artificial.
+//! A press alone does not prove anything. Toolkits forget which keys are down when the window loses the keyboard focus.
+//! The next repetition of a held key then looks like a first press, and the release reported at that moment is
+//! artificial.
 //!
 //! A release is a proof if the window has the focus when it arrives, and a later frame still sees the key up. A release
 //! and a press made at the same time may arrive in two frames, however far apart.

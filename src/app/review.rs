@@ -153,7 +153,7 @@ pub enum ExecutionMode {
     Writes,
     /// The plan is executed step by step, and the user takes part at the device.
     Leads,
-    /// The plan is executed step by step and writes nothing.
+    /// The plan is executed step by step and does not write anything.
     Tests,
 }
 

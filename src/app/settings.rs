@@ -73,7 +73,7 @@ impl Settings {
         ron::from_str(text).ok()
     }
 
-    /// Returns the readable part of a file that [`parse`](Self::parse) refuses. Entries are read one by one, so an
+    /// Returns the readable part of a file that [`parse`](Self::parse) rejects. Entries are read one by one, so an
     /// unknown tab, for example, does not affect the links.
     pub(super) fn parse_partial(text: &str) -> Self {
         macro_rules! entry {

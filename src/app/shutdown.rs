@@ -22,7 +22,7 @@ use crate::worker::{EndingWorker, JobId, Worker};
 pub struct GracePeriods {
     pub drives: Duration,
     pub disk: Duration,
-    /// Maximum waiting time for a job that writes nothing.
+    /// Maximum waiting time for a job that does not write anything.
     pub job: Duration,
     /// Maximum waiting time for a write. In this time it must reach a point at which it can end, and lock what it has
     /// unlocked.
@@ -106,7 +106,7 @@ impl Services {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
 
-    /// Releases a stream that belongs to no session.
+    /// Releases a stream without a session.
     pub(crate) fn close_stream(&mut self, end: StreamEnd, url: LinkUrl) {
         let info = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
         self.close_session_thread(Arc::new(end), info, None);
@@ -130,7 +130,7 @@ impl Services {
     pub(super) fn poll_closing_sessions(&mut self) {
         let mut endings = Vec::new();
         self.closing_sessions.retain_mut(|closing| {
-            // The order matters: a thread that has ended reports nothing more.
+            // The order matters: a thread that has ended does not report anything more.
             let ended = closing.ending.is_finished();
             for end in closing.ending.job_completions() {
                 if closing.info.write == Some(end.job) {

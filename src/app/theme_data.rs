@@ -1,5 +1,5 @@
 //! Theme data from `assets/theme.ron`: colours by meaning, sizes and spacing. Drawing code reads them; this module
-//! draws nothing.
+//! does not draw anything.
 
 use std::sync::LazyLock;
 

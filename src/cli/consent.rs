@@ -11,7 +11,7 @@ use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, PlannedWrite};
 use crate::worker::{self, NotStarted};
 
-/// Requires that consent is possible. Without a terminal the user cannot be asked, and the command is refused before
+/// Requires that consent is possible. Without a terminal the user cannot be asked, and the command is rejected before
 /// anything is opened.
 pub fn require_consent(consent: &ConsentArgs) -> Result<()> {
     if consent.yes || can_prompt() {
@@ -43,7 +43,7 @@ pub fn confirm_plan<P: PlannedWrite>(
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
-/// Refuses a write if the device has reached its limit of write cycles, or if its write cycles are unknown. This
+/// Rejects a write if the device has reached its limit of write cycles, or if its write cycles are unknown. This
 /// happens before consent is requested.
 pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl PlannedWrite) -> Result<()>
 where

@@ -92,7 +92,7 @@ pub(super) fn restore(common: &CommonArgs, output: &Output, restore: &Restore) -
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
-/// Returns the profile to restore. If consent cannot be given, refuses the restore before anything is opened.
+/// Returns the profile to restore. If consent cannot be given, rejects the restore before anything is opened.
 pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;

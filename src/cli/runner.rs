@@ -266,7 +266,7 @@ pub fn unexpected_output(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line. Does nothing without a terminal or if the user has already confirmed.
+/// Asks whether a drive is on the line. Has no effect without a terminal or if the user has already confirmed.
 fn ask_for_other_master(common: &CommonArgs) -> Result<()> {
     if common.only_master || !can_prompt() {
         return Ok(());

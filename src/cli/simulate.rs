@@ -296,7 +296,7 @@ mod terminal {
 
     impl SymbolicLink {
         /// Creates the link. A dangling link is left over from an earlier run and is replaced. Anything else belongs to
-        /// another program, and the link is refused.
+        /// another program, and the link is rejected.
         fn create(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;

@@ -50,7 +50,7 @@ impl SlowReplyNotice {
 }
 
 impl ReplyTiming {
-    /// Returns the message. It tells how to allow more time if that may help.
+    /// Returns the message. It explains how to allow more time if that may help.
     fn message(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {

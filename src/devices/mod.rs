@@ -1,4 +1,4 @@
-//! The devices: one folder each, with everything that the program knows about it.
+//! The devices: one folder each, with all of its code.
 
 pub mod biss;
 pub mod hiperdrive;

@@ -150,7 +150,7 @@ impl<'a> SerialLine<'a> {
         self.ctx.wire.receive(until, into)
     }
 
-    /// Starts recording the bytes that belong to no reply.
+    /// Starts recording the bytes that are not part of a reply.
     pub(crate) fn record_late_bytes(&mut self) {
         self.passed = Some(Vec::new());
     }
@@ -160,7 +160,7 @@ impl<'a> SerialLine<'a> {
         self.passed.take().unwrap_or_default()
     }
 
-    /// Skips bytes that belong to no reply. During recording, the first [`MAX_KEPT_BYTES`] bytes are kept.
+    /// Skips bytes that are not part of a reply. During recording, the first [`MAX_KEPT_BYTES`] bytes are kept.
     pub(crate) fn skip_bytes(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
             passed.extend(bytes.iter().take(MAX_KEPT_BYTES.saturating_sub(passed.len())));

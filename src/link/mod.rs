@@ -63,7 +63,7 @@ pub trait ByteLink: Send {
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
     /// Returns whether [`set_format`](Self::set_format) has an effect. It has none on a device server, whose own
-    /// settings apply. A reply through such a server proves nothing about baud rate and parity.
+    /// settings apply. A reply through such a server does not prove anything about baud rate and parity.
     fn can_set_format(&self) -> bool {
         true
     }

@@ -71,7 +71,7 @@ impl DatagramPort for UdpPort {
 /// Returns the local address from which packets to the target are sent.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
-    // Connecting a UDP socket sends nothing, but selects the network interface.
+    // Connecting a UDP socket does not send anything, but selects the network interface.
     socket.connect(target)?;
     match socket.local_addr()? {
         SocketAddr::V4(address) => Ok(*address.ip()),

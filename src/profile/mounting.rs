@@ -48,7 +48,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile with a comment. Writes nothing if the list is empty.
+    /// Writes all marks of a profile with a comment. Does not write anything if the list is empty.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;

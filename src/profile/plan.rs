@@ -2,7 +2,7 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A planned write for review by the user. Only the operations in the plan are carried out.
+/// A planned write for review by the user. Only the operations in the plan are executed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
     /// The values on which the plan is based. They are read again before the first operation and must be unchanged.

@@ -1,5 +1,5 @@
 //! Execution of a plan, the same for every kind of device. The base of the plan is read again, the operations are
-//! carried out in order, and the mode of the device is restored. A kind of device implements [`Write`].
+//! executed in order, and the mode of the device is restored. A kind of device implements [`Write`].
 //!
 //! Only `worker::commit` uses this module, because it saves the backup in between.
 
@@ -39,7 +39,7 @@ pub trait Write {
         Ok(())
     }
 
-    /// Carries out an operation, counts it, and reads back the result if possible.
+    /// Executes an operation, counts it, and reads back the result if possible.
     ///
     /// # Errors
     /// Returns an error if the operation failed. No further operation begins in this case.

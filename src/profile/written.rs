@@ -3,7 +3,7 @@
 /// The changes that were written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WrittenChanges {
-    /// Number of operations of the plan that were carried out.
+    /// Number of operations of the plan that were executed.
     pub ops: usize,
     /// Number of changed values, counted as in a comparison. Some operations count as one value.
     pub written: u64,
@@ -15,7 +15,7 @@ pub struct WrittenChanges {
 
 /// A record of the progress of a write.
 pub trait WriteRecord: Default {
-    /// Returns the number of operations of the plan that were carried out.
+    /// Returns the number of operations of the plan that were executed.
     fn operation_count(&self) -> usize;
     /// Returns the number of persistent writes, including those that may not have taken place.
     fn write_cycles(&self) -> u64;

@@ -53,19 +53,19 @@ pub enum FaultError {
          die-in-store:N, separated by commas"
     )]
     Unknown {
-        /// Fault as typed.
+        /// Fault as entered.
         item: String,
     },
     /// The value of drop, flip or garbage is not a probability.
     #[error("fault `{item}`: the probability must be a number from 0 to 1")]
     Probability {
-        /// Fault as typed.
+        /// Fault as entered.
         item: String,
     },
     /// The value of delay, silent-after or die-in-store is out of range.
     #[error("fault `{item}`: the value must be a whole number from {min} to {max}")]
     Number {
-        /// Fault as typed.
+        /// Fault as entered.
         item: String,
         /// Minimum value.
         min: u32,

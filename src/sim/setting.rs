@@ -13,7 +13,7 @@ pub enum ConfigError {
     Key {
         /// Device to which the settings belong.
         device: VirtualDevice,
-        /// Key as typed.
+        /// Key as entered.
         key: String,
         /// Known keys.
         known: String,
@@ -23,7 +23,7 @@ pub enum ConfigError {
     Value {
         /// Name of the key.
         key: String,
-        /// Value as typed.
+        /// Value as entered.
         value: String,
         /// Allowed values.
         allowed: AllowedValues,

@@ -69,7 +69,7 @@ pub fn read_capture(
     }
 }
 
-/// Returns the first [`HEAD`] bytes of a file, or all bytes of a shorter file. A pipe yields no bytes, because its data
+/// Returns the first [`HEAD_BYTES`] bytes of a file, or all bytes of a shorter file. A pipe yields no bytes, because its data
 /// can be read only once.
 ///
 /// # Errors

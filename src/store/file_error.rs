@@ -45,7 +45,7 @@ pub enum FileErrorKind {
     NotFolder,
     #[error("it is a folder")]
     IsFolder,
-    /// The path leads to a pipe or a device.
+    /// The path refers to a pipe or a device.
     #[error("it is no file but a pipe or a device")]
     NotAFile,
     /// The file exists and must not be replaced.

@@ -122,8 +122,8 @@ pub trait TypedDeviceView: Sync + 'static {
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
 
-/// View of a kind of device, object-safe for the window. For a device of another kind, it draws nothing and reports no
-/// edits.
+/// View of a kind of device, object-safe for the window. For a device of another kind, it does not draw anything and
+/// reports no edits.
 pub trait DeviceView: Sync {
     /// Returns the kind of device.
     fn kind(&self) -> &'static dyn DeviceKind;

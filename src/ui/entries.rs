@@ -70,7 +70,7 @@ pub(crate) fn labelled_entry(
 }
 
 /// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then.
-/// If `take` refuses the text, it stays in the entry, with the reason below.
+/// If `take` rejects the text, it stays in the entry, with the reason below.
 pub fn committed_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,

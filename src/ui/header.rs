@@ -253,7 +253,7 @@ fn shows_stop_overlay(studio: &Studio) -> bool {
     studio.is_moving() && studio.can_stop_motion()
 }
 
-/// Draws the STOP button in its usual place while a drive moves. It is on top of anything that covers the window.
+/// Draws the STOP button in its usual position while a drive moves. It is on top of anything that covers the window.
 pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !shows_stop_overlay(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;

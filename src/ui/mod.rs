@@ -1,4 +1,4 @@
-//! The window, which only draws. A view reads the state and pushes actions. It stores nothing but its text buffers and
+//! The window, which only draws. A view reads the state and pushes actions. It stores only its text buffers and
 //! selection, and never does I/O, decodes, sorts or blocks.
 
 pub mod backups;

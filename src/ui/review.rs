@@ -67,7 +67,7 @@ fn content_ui(
             buttons_ui(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon =
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
-                // Without the permission, the write would be refused.
+                // Without the permission, the write would be rejected.
                 let may_wear = sheet.force_wear != Some(false);
                 if primary_button(
                     ui,

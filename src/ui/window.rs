@@ -266,7 +266,7 @@ impl Window {
         }
     }
 
-    /// Carries out a command chosen by its shortcut or in the command palette.
+    /// Executes a command chosen by its shortcut or in the command palette.
     fn execute_effect(&mut self, effect: CommandEffect, actions: &mut Vec<Action>) {
         let Window { studio, views, docks, .. } = self;
         match effect {

@@ -1,7 +1,7 @@
 //! The only way to write, in the same order for every kind of device. The plan needs consent and must match its base. A
 //! backup is saved on disk, and the logbook records the intention. Each operation is written and read back, and the
 //! logbook records the result. A device supplies its own parts as a [`Write`] and cannot omit a step: its operations
-//! require a [`Confirmed`], which only [`write_plan`] creates.
+//! require a [`ConfirmedPlan`], which only [`write_plan`] creates.
 
 #[cfg(test)]
 mod tests;

@@ -10,7 +10,7 @@ pub trait JobInterruption {
     /// Returns whether the user cancelled the job.
     fn is_cancelled(&self) -> bool;
 
-    /// Returns the number of operations carried out before the job ended. Returns `None` if no write had begun.
+    /// Returns the number of operations executed before the job ended. Returns `None` if no write had begun.
     fn operations_done(&self) -> Option<usize> {
         None
     }
@@ -21,7 +21,7 @@ pub trait JobInterruption {
     }
 }
 
-/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`Interrupted`]
+/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`InterruptedWrite`]
 /// write, and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {

@@ -115,7 +115,7 @@ struct WatchEntries<W> {
 struct WatchEntry<W> {
     value: W,
     interval: Duration,
-    /// Whether the device lacks the value. A refused value stays in the list but is not requested again.
+    /// Whether the device lacks the value. A rejected value stays in the list but is not requested again.
     refused: bool,
 }
 
@@ -151,7 +151,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         changed.then(|| list.active_entries())
     }
 
-    /// Returns the watched values and their intervals, except those that the device has refused.
+    /// Returns the watched values and their intervals, except those that the device has rejected.
     pub(super) fn active_entries(&self) -> Vec<(W, Duration)> {
         self.lock().active_entries()
     }

@@ -1,8 +1,8 @@
 //! The background I/O worker. Each session has one thread, which runs one job at a time. Sampling and watching happen
 //! between jobs, and a stop takes precedence over everything else.
 //!
-//! This module knows no protocol. A [`Device`] has its own types of jobs, results and errors, so a session with one
-//! kind of device cannot receive the jobs of another.
+//! This module is independent of any protocol. A [`Device`] has its own types of jobs, results and errors, so a session
+//! with one kind of device cannot receive the jobs of another.
 //!
 //! Events about jobs are never lost. While events are not read, only the latest progress is kept. Neither side waits
 //! for the other: a full channel is a state of the worker and does not stop the line.
@@ -52,14 +52,14 @@ pub trait Device: Send + 'static {
     type Error: JobInterruption + Send + fmt::Debug;
     /// Message that the device sends outside its replies.
     type DeviceMessage: Send + fmt::Debug;
-    /// A polled sample. A sample of a watched value tells which value it is.
+    /// A polled sample. A sample of a watched value identifies which value it is.
     type Sample: Send + fmt::Debug + 'static;
     /// Value that can be watched. It is requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
     /// Steps reported by jobs.
     type JobStep: Clone + Send + fmt::Debug;
 
-    /// Carries out a job.
+    /// Executes a job.
     ///
     /// # Errors
     /// Returns the reason why the job ended early.
@@ -84,7 +84,7 @@ pub trait Device: Send + 'static {
     /// Requests a watched value. Messages from the device during this time are part of the sample.
     ///
     /// # Errors
-    /// Returns an error if the device does not answer, which ends polling. A refusal counts as an answer.
+    /// Returns an error if the device does not answer, which ends polling. A rejection counts as an answer.
     fn read_watched(
         &mut self,
         context: &mut SessionContext,
@@ -127,9 +127,9 @@ pub(crate) const IDLE: Duration = Duration::from_millis(500);
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WatchReply<S> {
-    /// The sample with the value. It tells the reason if there is no value at the moment.
+    /// The sample with the value. It contains the reason if there is no value at the moment.
     Sample(S),
-    /// The device does not have the value, and it is not requested again. The sample reports the refusal.
+    /// The device does not have the value, and it is not requested again. The sample reports the rejection.
     Refused(S),
 }
 
@@ -297,7 +297,7 @@ impl<D: Device> Worker<D> {
         self.watches.set_entries(watched);
     }
 
-    /// Returns the watched values in the requested order. Values that the device has refused are left out.
+    /// Returns the watched values in the requested order. Values that the device has rejected are left out.
     pub fn watched_values(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.active_entries()
     }

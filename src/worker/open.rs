@@ -76,7 +76,7 @@ pub fn connect_simulated(device: impl ByteDevice + 'static, clock: &Arc<dyn Cloc
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Creates the error for a link whose scheme does not lead to a device. `known` lists the schemes that do.
+/// Creates the error for a link whose scheme does not refer to a device. `known` lists the schemes that do.
 pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.keyword(), known }.into()
 }
@@ -93,7 +93,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 /// Checks that `query` contains only parameters listed in `known`.
 ///
 /// # Errors
-/// Returns [`UrlError::UnknownValues`] for any other parameter.
+/// Returns [`UrlError::Unknown`] for any other parameter.
 pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) -> Result<(), UrlError> {
     match query.pairs().iter().find(|(name, _)| !known.contains(&name.as_str())) {
         None => Ok(()),
@@ -107,7 +107,7 @@ pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) ->
 /// device has none.
 ///
 /// # Errors
-/// Returns [`UrlError::UnknownValues`] for a parameter that the line to a real device does not have.
+/// Returns [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
 pub(crate) fn simulator_settings(
     url: &LinkUrl,
     line: &[&str],

@@ -1,7 +1,7 @@
 //! Streams of unrequested data. A separate thread passes batches of samples through a bounded ring, which drops and
 //! counts the oldest. The thread never waits for the reader. It wakes the window at intervals and not for each batch.
 //!
-//! This module does not know the source of the samples. A [`Producer`] supplies them.
+//! This module is independent of the source of the samples. A [`Producer`] supplies them.
 
 mod analogue;
 #[cfg(test)]
@@ -43,7 +43,7 @@ pub struct Batch<S> {
     pub samples: S,
 }
 
-/// A collection that tells its number of samples.
+/// A collection that knows its number of samples.
 pub trait SampleCount: Send + 'static {
     /// Returns the number of samples.
     fn count(&self) -> usize;

@@ -200,7 +200,7 @@ fn only_the_window_and_the_command_line_give_consent() {
     assert_eq!(found, ["src/app/session/memory.rs", "src/cli/consent.rs"]);
 }
 
-/// No operation is carried out without a confirmed plan; the one function that confirms it keeps the before-image as
+/// No operation is executed without a confirmed plan; the one function that confirms it keeps the before-image as
 /// well.
 #[test]
 fn only_write_plan_confirms_a_plan() {

@@ -156,7 +156,7 @@ fn the_virtual_encoder_passes_the_guided_procedures() {
     assert_eq!((&result["ok"], &result["lowest_cw_v"], &result["saved"]), (&json!(false), &json!(5.2), &json!(true)));
 }
 
-/// The first question is about the motor; a motor that needs this encoder is refused.
+/// The first question is about the motor; a motor that needs this encoder is rejected.
 #[test]
 fn on_a_terminal_the_user_names_the_motor_source() {
     let bench = Bench::new();

@@ -134,7 +134,7 @@ fn the_mounting_of_another_encoder_is_not_changed() {
     assert_eq!(value["value"], json!(PRESET));
 }
 
-/// Issue 22.9: another type is named, and refused without explicit permission.
+/// Issue 22.9: another type is named, and rejected without explicit permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -235,7 +235,7 @@ fn filter_and_preset_are_actions() {
             let told = ask(&bench, encoder, &[&["do", "biss", "preset"], words, &["--yes"]].concat()).json();
             told["write_cycles"].as_u64().unwrap()
         };
-        // 270° and turn 5: stored, then carried out.
+        // 270° and turn 5: stored, then executed.
         assert_eq!(preset(&["98304", "5"]), 2);
         assert_eq!(place(encoder), (5, 98_304));
         // Already stored, and the shaft has moved since: nothing to store.

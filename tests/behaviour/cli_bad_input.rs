@@ -133,7 +133,7 @@ fn ready_made(kind: &str, name: &str) -> String {
     format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Issue 22.8: options about data fields are refused for devices without them, before anything is opened.
+/// Issue 22.8: options about data fields are rejected for devices without them, before anything is opened.
 #[test]
 fn data_field_options_are_refused_for_other_devices() {
     let bench = Bench::new();
@@ -150,7 +150,7 @@ fn data_field_options_are_refused_for_other_devices() {
     }
 }
 
-/// Issue 22.9: another kind of BiSS encoder is named, and refused without explicit permission.
+/// Issue 22.9: another kind of BiSS encoder is named, and rejected without explicit permission.
 #[test]
 fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -164,7 +164,7 @@ fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     assert!(allowed.status == Some(0) && allowed.err.contains("may have a different meaning"), "{allowed:?}");
 }
 
-/// Issue 22.9: another type is named, and refused without explicit permission.
+/// Issue 22.9: another type is named, and rejected without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();

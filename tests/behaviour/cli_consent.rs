@@ -145,7 +145,7 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     assert_eq!(bench.read("layout.ron"), written);
 }
 
-/// Issue 22.4: if the logbook cannot be read for the write cycles, a write is refused before the question for consent,
+/// Issue 22.4: if the logbook cannot be read for the write cycles, a write is rejected before the question for consent,
 /// for every kind of device.
 #[test]
 fn a_write_refused_for_unknown_wear_needs_no_confirmation() {

@@ -236,7 +236,8 @@ fn an_echoing_converter_is_detected_or_configured() {
         let told = bench.run(&["read", "hiperface", "field:0@0+2", "--link", &url, "--json"]).json();
         assert_eq!(told["value"], json!("0815"), "{echo}");
     }
-    // The reply to 47h equals its request, which proves nothing about an echo, so another request is made first.
+    // The reply to 47h equals its request, which does not prove anything about an echo, so another request is made
+    // first.
     for action in [&["increment-counter", "--yes"][..], &["configure-for-now", "0xE4"][..]] {
         encoder.requests();
         let ran = bench.run(&[&["do", "hiperface", "--link", &encoder.url], action].concat());

@@ -7,7 +7,7 @@ use super::support::Bench;
 fn unwritable_values_are_refused_with_a_reason() {
     let bench = Bench::new();
     let cases: [(&[&str], i32, &[&str]); 32] = [
-        // Both limits, in the program's and in the drive's refusal.
+        // Both limits, in the program's and in the drive's rejection.
         (&["166", "351"], 1, &["166", "351", "5 to 350"]),
         (&["166", "4"], 1, &["5 to 350"]),
         // Issue 21.10: 512 turns of 65536 steps either way; for the steps of the keys 1024.

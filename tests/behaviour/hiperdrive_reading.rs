@@ -50,7 +50,7 @@ fn a_healthy_device_reports_no_errors() {
     assert!(text.out.contains("errors") && text.out.contains("Not ready (0x2A30)"), "{text:?}");
 }
 
-/// A limit above the other is refused by the device, which keeps 8501 for it (reference 4) and answers 09.
+/// A limit above the other is rejected by the device, which keeps 8501 for it (reference 4) and answers 09.
 #[test]
 fn current_errors_are_errors_and_past_ones_are_notes() {
     let bench = Bench::new();
@@ -95,7 +95,7 @@ fn writing_0_to_197_acknowledges_and_status_is_of_one_drive() {
 }
 
 /// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive:
-/// named, and refused without explicit permission.
+/// named, and rejected without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();

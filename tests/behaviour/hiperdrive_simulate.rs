@@ -19,7 +19,7 @@ fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     assert_eq!(said, expected, "{pairs:?}");
 }
 
-/// Reference 4 and 7: limits are 511 turns of 65536 steps, 33488896; the category; refusals and their codes.
+/// Reference 4 and 7: limits are 511 turns of 65536 steps, 33488896; the category; rejections and their codes.
 #[test]
 fn parameters_are_read_and_written() {
     let bench = Bench::new();

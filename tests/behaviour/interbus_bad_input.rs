@@ -40,7 +40,7 @@ fn invalid_arguments_are_usage_errors() {
     bench.run(&["identify", "biss", "--link", "modbus:127.0.0.1:1"]).fails(2, &["modbus"]);
 }
 
-/// Refused before anything is sent if nothing has to be read, otherwise before anything is set; the message has both
+/// Rejected before anything is sent if nothing must be read, otherwise before anything is set; the message has both
 /// limits.
 #[test]
 fn out_of_range_values_name_both_limits() {
@@ -75,7 +75,7 @@ fn out_of_range_values_name_both_limits() {
     assert!(told.iter().all(|line| !line.starts_with("STORE") && !line.starts_with("W 4")), "{told:?}");
 }
 
-/// The encoder's own refusal (reference 2), and the return to its mode.
+/// The encoder's own rejection (reference 2), and the return to its mode.
 #[test]
 fn a_refusal_is_reported_with_its_word_and_led_back() {
     let bench = Bench::new();

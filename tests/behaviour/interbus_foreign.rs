@@ -189,7 +189,7 @@ fn a_parameter_takes_four_times_the_lag() {
     // 00000000 after 80000000 needs no wait.
     let own: Vec<&str> = words[set..].iter().map(String::as_str).filter(|line| line.starts_with('W')).collect();
     assert_eq!(own, ["W 0A000063", "W 80000000", "W 00000000", "W 20210005", "W 00000000"]);
-    // Identity and base are read for the plan, and again before it is carried out.
+    // Identity and base are read for the plan, and again before it is executed.
     let questions = words[..set].iter().filter(|line| line.starts_with("W 2021")).count();
     assert_eq!(questions, (1 + 6 + 2) + (1 + 1 + 5));
 }

@@ -1,4 +1,4 @@
-//! Reading a foreign K3 encoder at a foreign gateway; reading changes nothing.
+//! Reading a foreign K3 encoder at a foreign gateway; reading does not change anything.
 
 use serde_json::{Value, json};
 

@@ -195,7 +195,7 @@ fn leading_back_fails_if_the_encoder_sends_an_error() {
     assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
 }
 
-/// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and refused without
+/// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and rejected without
 /// explicit permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
@@ -253,7 +253,7 @@ fn nothing_is_written_without_consent_or_to_another_encoder() {
     assert_eq!(ask(&bench, &encoder, &["identify", "interbus"]).json()["mode"], json!("K3"));
 }
 
-/// The issue: warn from 150 stores, ask again beyond 200, refuse from 450 unless forced.
+/// The issue: warn from 150 stores, ask again beyond 200, reject from 450 unless forced.
 #[test]
 fn the_stores_of_an_eeprom_are_counted() {
     let bench = Bench::new();

@@ -393,7 +393,7 @@ pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -
     ended(child, Instant::now())
 }
 
-/// Prints that a test is skipped. If everything has to be available (`ENCODER_STUDIO_NO_SKIP`), it fails instead.
+/// Prints that a test is skipped. If everything must be available (`ENCODER_STUDIO_NO_SKIP`), it fails instead.
 pub(crate) fn skip(why: &str) {
     assert!(std::env::var_os("ENCODER_STUDIO_NO_SKIP").is_none(), "may not be skipped: {why}");
     println!("skipped: {why}");

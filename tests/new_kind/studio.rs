@@ -57,7 +57,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
     let Stage::Ready(plan) = desk.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };
     desk.review(ReviewAction::Write(plan));
     desk.until_stage(|stage| matches!(stage, Stage::Failed { .. }));
-    // A value that is refused, in the dialog; and one in a link that no kind takes.
+    // A value that is rejected, in the dialog; and one in a link that no kind takes.
     for action in [Connect::Open, Connect::Device(Encoder::TAB), Connect::Use("sim:?pin=47110".to_owned())] {
         desk.studio.handle_action(StudioAction::Connect(action));
     }

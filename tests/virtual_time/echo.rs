@@ -31,7 +31,7 @@ fn echo_is_detected_and_stripped() {
     }
 }
 
-/// With a wrong setting, every answer is refused; no byte of it is shown as a value.
+/// With a wrong setting, every answer is rejected; no byte of it is shown as a value.
 #[test]
 fn a_wrong_echo_setting_yields_errors_and_no_values() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {

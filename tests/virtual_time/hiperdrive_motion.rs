@@ -148,7 +148,7 @@ fn a_job_can_be_paused_and_resumed() {
     assert_eq!(bench.man.phase(), Phase::Idle);
 }
 
-/// A request that is refused here never reaches the drive.
+/// A request that is rejected here never reaches the drive.
 #[test]
 fn invalid_requests_are_refused() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };

@@ -99,7 +99,7 @@ struct Ending<'a> {
 }
 
 impl Ending<'_> {
-    /// Checks after a cancellation: exactly the counted operations were carried out, and the protected fields are
+    /// Checks after a cancellation: exactly the counted operations were executed, and the protected fields are
     /// locked.
     fn assert_cancelled_cleanly(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
@@ -110,7 +110,7 @@ impl Ending<'_> {
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
-    /// Checks after a lost connection: the counted operations were carried out, the one in progress was or was not, and
+    /// Checks after a lost connection: the counted operations were executed, the one in progress was or was not, and
     /// a field that remains unlocked is named.
     fn assert_cut_off_and_reported(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;

@@ -1,4 +1,4 @@
-//! Files of a write, and disks that refuse them.
+//! Files of a write, and disks that reject them.
 
 use std::fs;
 

@@ -1,5 +1,5 @@
 //! Requests and replies that are lost, one after the other: requests that read are repeated, and those that change the
-//! encoder are never carried out twice.
+//! encoder are never executed twice.
 
 use std::time::Duration;
 

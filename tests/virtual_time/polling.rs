@@ -132,7 +132,7 @@ fn a_job_interrupts_the_retries_of_a_sample() {
     assert!(matches!(told, Event::PollFailed(_)), "the sample that was due is tried again: {told:?}");
 }
 
-/// The report that there is no position is a sample too; another refusal is not.
+/// The report that there is no position is a sample too; another rejection is not.
 #[test]
 fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");

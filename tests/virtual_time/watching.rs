@@ -1,5 +1,5 @@
-//! Watched values between the positions of a polled encoder: their order, refusals, jobs and ends in between. The times
-//! are tested with the scheduler itself (`worker/poll_scheduler.rs`).
+//! Watched values between the positions of a polled encoder: their order, rejections, jobs and ends in between. The
+//! times are tested with the scheduler itself (`worker/poll_scheduler.rs`).
 
 use std::time::{Duration, Instant};
 

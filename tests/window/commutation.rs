@@ -402,7 +402,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     desk.edit(|form| form.address = "128".to_owned());
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("entry.whole"));
-    // The field has 32 bytes: the memory itself refuses, in the log.
+    // The field has 32 bytes: the memory itself rejects, in the log.
     desk.edit(|form| form.address = "112".to_owned());
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());

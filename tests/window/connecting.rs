@@ -1,4 +1,4 @@
-//! The connection dialog: a form that refuses invalid values, and the search for an encoder with unknown settings.
+//! The connection dialog: a form that rejects invalid values, and the search for an encoder with unknown settings.
 
 use encoder_studio::app::DeviceCommand;
 use std::sync::Arc;

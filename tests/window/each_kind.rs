@@ -464,8 +464,8 @@ fn every_kind_of_link_opens_its_device_typed_or_from_the_form() {
     }
 }
 
-/// Issue 22.9: a profile of another type with the same serial number is refused; an explicit permission is offered, and
-/// with it the review shows the types.
+/// Issue 22.9: a profile of another type with the same serial number is rejected; an explicit permission is offered,
+/// and with it the review shows the types.
 #[test]
 fn another_type_of_device_needs_a_separate_permission() {
     for case in CASES {

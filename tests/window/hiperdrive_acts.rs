@@ -27,7 +27,7 @@ pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64
 /// Number of repetitions of a lapsed act.
 pub(crate) const ATTEMPTS: usize = 20;
 
-/// Waits until a drive may move: its rules are read repeatedly on threads, and a press before that is refused.
+/// Waits until a drive may move: its rules are read repeatedly on threads, and a press before that is rejected.
 #[track_caller]
 pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();

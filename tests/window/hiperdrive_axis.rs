@@ -134,7 +134,7 @@ fn a_recall_does_not_change_the_drive() {
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
     let told = words::differences(&seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(told.contains("parameter 154 is 400 instead of 256") && !told.contains("152"), "{told}");
-    // The request is lost: the shown step remains, and names the one that has to be repeated.
+    // The request is lost: the shown step remains, and names the one that must be repeated.
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
@@ -310,7 +310,7 @@ fn the_result_is_saved_as_a_report() {
     assert_eq!(desk.notice_ids(Severity::Good).last(), Some(&"report.saved"));
 }
 
-/// Issue 21.6: the complete run on a drive of a hub; in each write a refusal first, then a connection lost in the
+/// Issue 21.6: the complete run on a drive of a hub; in each write a rejection first, then a connection lost in the
 /// middle.
 #[test]
 fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
@@ -322,7 +322,7 @@ fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     assert_eq!([152, 154, 156, 160].map(|own| read(&desk, own)), [0, 256, 1, 33_488_896]);
 }
 
-/// Issue 21.6: the last step on a drive of a hub: its write is refused, then cut off; the supply is lost; the end is
+/// Issue 21.6: the last step on a drive of a hub: its write is rejected, then cut off; the supply is lost; the end is
 /// reported correctly.
 #[test]
 fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {

@@ -59,7 +59,7 @@ fn settings_of_one_drive_do_not_apply_to_another() {
     assert_eq!((unit(&desk).moves.move_speed_torque(ONE), unit(&desk).moves.jog_speed_torque(ONE)), (slow, slow));
 }
 
-/// Issue 21.7: a second motion is refused with a message, and ends no running one, for any drive.
+/// Issue 21.7: a second motion is rejected with a message, and ends no running one, for any drive.
 #[test]
 fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);

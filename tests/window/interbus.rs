@@ -125,7 +125,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
     // Read for the window, the plan, the write and after it: 8 + 1 + 1 + 1; written: 2.
     desk.until("stores are counted", |studio| studio.interbus().unwrap().store_count() == Some(13));
-    // Refused in its entry, and nothing changes.
+    // Rejected in its entry, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
 }

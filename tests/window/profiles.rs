@@ -90,7 +90,7 @@ fn saving_suggests_a_file_named_after_the_encoder() {
     assert_eq!(desk.studio.take_path_question(), Some(FileQuestion::Open));
 }
 
-/// Two saves at once: the second is refused, and the first goes to its own file.
+/// Two saves at once: the second is rejected, and the first goes to its own file.
 #[test]
 fn a_refused_save_does_not_redirect_another() {
     let mut desk = Desk::new_form("");
@@ -158,7 +158,7 @@ fn a_reloaded_profile_keeps_its_edits() {
     desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.device_byte(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
-    // A file that is invalid by now changes nothing.
+    // A file that is invalid by now does not change anything.
     fs::write(&path, "(").unwrap();
     desk.command(DeviceCommand::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
@@ -210,7 +210,7 @@ fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.selected_device().unwrap().review_sheet().unwrap()
 }
 
-/// A profile with these edits, refused by another encoder because that is of another serial number.
+/// A profile with these edits, rejected by another encoder because that is of another serial number.
 fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();

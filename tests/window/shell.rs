@@ -153,7 +153,7 @@ fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     desk.until("it starts again", is_live);
 }
 
-/// Reading the position by itself changes nothing: nothing but reading passes over the line.
+/// Reading the position by itself does not change anything: nothing but reading passes over the line.
 #[test]
 fn live_values_that_start_by_themselves_only_read() {
     let mut desk = usual("", None);

@@ -1,4 +1,4 @@
-//! The Signals tab without drawing: captures are read, corrected, refused and cancelled, and the shown one remains.
+//! The Signals tab without drawing: captures are read, corrected, rejected and cancelled, and the shown one remains.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;

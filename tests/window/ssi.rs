@@ -312,7 +312,7 @@ fn a_layout_of_a_profile_is_used_for_an_encoder() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ttk70");
     wish(&mut desk, DeviceCommand::Undo);
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
-    // Nothing is written, with a message.
+    // No data is written, with a message.
     wish(&mut desk, DeviceCommand::Review);
     assert!(!desk.studio.selected_device().unwrap().is_reviewing());
 }

@@ -97,7 +97,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     assert!(!screen.has_button("lead_back_card.button"));
 }
 
-/// An encoder that refuses its position causes a message in the panel Live, which remains within a small window.
+/// An encoder that rejects its position causes a message in the panel Live, which remains within a small window.
 #[test]
 fn a_refused_position_keeps_the_panel_within_the_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);

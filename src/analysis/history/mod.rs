@@ -56,12 +56,12 @@ enum Values<'a> {
 }
 
 impl<'a> ColumnPart<'a> {
-    /// Creates values for a [`PositionKind::Real`] column. An infinite or NaN value is kept and counts as [bad](Flags::BAD).
+    /// Creates values for a [`Kind::Real`] column. An infinite or NaN value is kept and counts as [bad](Flags::BAD).
     pub fn from_reals(values: &'a [f64]) -> Self {
         ColumnPart { values: Values::Real(values), flags: &[] }
     }
 
-    /// Creates values for a [`PositionKind::Whole`] column.
+    /// Creates values for a [`Kind::Whole`] column.
     pub fn from_integers(values: &'a [i64]) -> Self {
         ColumnPart { values: Values::Whole(values), flags: &[] }
     }
@@ -88,7 +88,7 @@ impl<'a> ColumnPart<'a> {
     }
 }
 
-/// Reason why a batch was refused as a whole.
+/// Reason why a batch was rejected as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BatchError {
     /// The number of columns, values or flags does not match, or a column has values of the wrong kind.

@@ -21,11 +21,11 @@ impl Value {
 pub(super) trait Number: Copy + PartialOrd {
     fn is_number(self) -> bool;
 
-    /// Returns a distance from `base` that is rounded down. [`at_most`](CellNumber::at_most) turns it into a value at or
+    /// Returns a distance from `base` that is rounded down. [`at_most`](Number::at_most) turns it into a value at or
     /// slightly below the number. Returns −∞ if the distance exceeds the range of `f32`.
     fn distance_down(self, base: Self) -> f32;
 
-    /// Returns a distance from `base` that is rounded up. [`at_least`](CellNumber::at_least) turns it into a value not
+    /// Returns a distance from `base` that is rounded up. [`at_least`](Number::at_least) turns it into a value not
     /// below the number. Returns +∞ if the distance exceeds the range of `f32`.
     fn distance_up(self, base: Self) -> f32;
 

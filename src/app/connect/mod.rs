@@ -56,7 +56,7 @@ pub struct ConnectDialog {
     pub device: Tab,
     kinds: KindRegistry,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The link as typed, or `None` after the form has been edited. The form then defines the link.
+    /// The link as entered, or `None` after the form has been edited. The form then defines the link.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<PortEntry>, Text>>,
@@ -86,7 +86,7 @@ impl ConnectDialog {
         self.forms.iter_mut().map(|(_, form)| form)
     }
 
-    /// Returns the link as typed, or else the link of the form.
+    /// Returns the link as entered, or else the link of the form.
     ///
     /// # Errors
     /// Returns a message that names the invalid part and the allowed values.
@@ -119,7 +119,7 @@ impl ConnectDialog {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// Returns the link as typed, or else the link of the form. The string is empty if the form does not have a valid
+    /// Returns the link as entered, or else the link of the form. The string is empty if the form does not have a valid
     /// link.
     pub fn typed_link(&self) -> String {
         match &self.typed {

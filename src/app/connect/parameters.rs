@@ -74,7 +74,7 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Adds the parameters that have no entry in the form. Those of a virtual device are added only if the link leads
+    /// Adds the parameters that have no entry in the form. Those of a virtual device are added only if the link refers
     /// to one.
     pub(crate) fn add_remaining(
         &mut self,

@@ -37,7 +37,7 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Tables that are needed in addition to the file to read profiles of this kind.
     type Tables: Send + 'static;
 
-    /// Checks whether a link can lead to a device of this kind. The link is not opened.
+    /// Checks whether a link can refer to a device of this kind. The link is not opened.
     ///
     /// # Errors
     /// Returns the reason why it cannot.
@@ -81,7 +81,7 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
-    /// Returns the reason why a profile was refused, or `None` if the cause belongs to another kind of device.
+    /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(_cause: &Cause) -> Option<Text> {
         None
     }
@@ -108,7 +108,7 @@ pub trait DeviceKind: Sync {
     fn keyword(&self) -> &'static str;
     /// Returns the format of profiles of this kind.
     fn profile_format(&self) -> &'static dyn ProfileFormat;
-    /// Checks whether a link can lead to a device of this kind.
+    /// Checks whether a link can refer to a device of this kind.
     ///
     /// # Errors
     /// Returns the reason why it cannot.
@@ -119,7 +119,7 @@ pub trait DeviceKind: Sync {
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be connected to the line of a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
-    /// Returns the reason why a profile was refused, or `None` if the cause belongs to another kind of device.
+    /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
     /// Returns the form for the connection dialog, filled in from a link.
     fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;

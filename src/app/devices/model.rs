@@ -161,7 +161,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.memory()?.edited_body()
     }
 
-    /// Returns the profile for comparisons, or `None` if nothing has been read. This is the edited profile, or else the
+    /// Returns the profile for comparisons, or `None` if no data has been read. This is the edited profile, or else the
     /// one read last.
     ///
     /// # Errors
@@ -290,7 +290,7 @@ pub trait DeviceMemory {
     /// Returns the edited profile, or `None` for a device.
     fn edited_body(&self) -> Option<Body>;
 
-    /// Returns the profile of the last reading, or `None` if nothing has been read.
+    /// Returns the profile of the last reading, or `None` if no data has been read.
     ///
     /// # Errors
     /// Returns a message for each value that a profile requires but that has not been read.

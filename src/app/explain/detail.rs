@@ -61,7 +61,7 @@ pub fn setting(error: &ConfigError) -> Text {
     }
 }
 
-/// Returns the reason why a file is not a valid profile. `kinds` explains values that a device refuses.
+/// Returns the reason why a file is not a valid profile. `kinds` explains values that a device rejects.
 pub fn profile_error_text(error: &ProfileError, kinds: KindRegistry) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax_error_text(*line, *column, syntax_problem(what)),

@@ -97,7 +97,7 @@ pub fn store_error_text(error: &StoreError) -> Text {
     }
 }
 
-/// Returns the reason why a profile cannot be read. `kinds` explains values that a device refuses.
+/// Returns the reason why a profile cannot be read. `kinds` explains values that a device rejects.
 pub fn profile(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
     let path = path.display();
     match error {

@@ -8,7 +8,7 @@ const SESSIONS: u64 = 60;
 const FRAMES: u64 = 3_000;
 const READY: HoldContext = HoldContext { enabled: true, window: true, keyboard: true, moving: false };
 const KEYS: [PressKey; 2] = [PressKey::Space, PressKey::Enter];
-/// Index of a key that holds nothing, and of the pointer, behind those of [`KEYS`].
+/// Index of a key that does not hold anything, and of the pointer, behind those of [`KEYS`].
 const OTHER: usize = 2;
 const POINTER: usize = 3;
 

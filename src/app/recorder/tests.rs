@@ -360,7 +360,7 @@ fn a_long_export_is_complete_and_can_be_cancelled() {
     assert!(recorder.export().is_some());
 }
 
-/// A cancelled table leaves nothing, and the old file stays unchanged.
+/// A cancelled table leaves no file, and the old file stays unchanged.
 #[test]
 fn an_export_is_cancelled_when_its_samples_are_evicted() {
     for clear in [true, false] {

@@ -20,7 +20,7 @@ pub trait HasDraft: HasSession {
     /// that has no identity.
     fn device_key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and serial number that name the draft of the device, or `None` if nothing has been read.
+    /// Returns the type and serial number that name the draft of the device, or `None` if no data has been read.
     ///
     /// The type is included because another type may use the same number. The serial number is empty for a device that
     /// has no identity.

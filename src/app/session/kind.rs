@@ -34,7 +34,7 @@ pub trait Kind: Device + Sized {
     /// Opens a link to a device of this kind.
     ///
     /// # Errors
-    /// Returns an error if the link cannot be opened or leads to another kind of device.
+    /// Returns an error if the link cannot be opened or refers to another kind of device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
     /// Returns the reason why a link cannot be opened, and what to do.

@@ -1,4 +1,4 @@
-//! Writing to the memory of a device with a review: a change leads to a plan, and the approved plan is executed by a
+//! Writing to the memory of a device with a review: a change results in a plan, and the approved plan is executed by a
 //! job that has a result. Each kind of device defines its changes, plans and jobs, and their further effects.
 
 #![warn(missing_docs)]
@@ -242,7 +242,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         self.submit(Self::Device::survey_job(), services);
     }
 
-    /// Handles the early end of planning or writing. Returns whether the review reports it. A plan that is cancelled
+    /// Handles an interruption of planning or writing. Returns whether the review reports it. A plan that is cancelled
     /// while it is prepared leaves no review.
     fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.open_review() else { return false };

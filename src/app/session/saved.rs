@@ -27,7 +27,7 @@ pub trait HasProfile: HasMemory {
     /// Returns the edited profile, or `None` if the session is a device.
     fn edited_body(&self) -> Option<Body>;
 
-    /// Returns a profile of earlier readings with remarks, or `None` if nothing was read.
+    /// Returns a profile of earlier readings with remarks, or `None` if no data was read.
     ///
     /// # Errors
     /// Returns a message for each part of a profile that was not read.

@@ -1,5 +1,5 @@
-//! Events of a line: samples, results of jobs, early ends, and loss of the connection. Each kind of device handles its
-//! results. The end of a job is reported in the same way for all kinds.
+//! Events of a line: samples, results of jobs, interruptions, and loss of the connection. Each kind of device handles
+//! its results. The end of a job is reported in the same way for all kinds.
 
 #![warn(missing_docs)]
 
@@ -62,7 +62,7 @@ pub trait SessionEvents: HasSession {
         true
     }
 
-    /// Handles the early end of a request. Returns whether the review reports it.
+    /// Handles an interruption of a request. Returns whether the review reports it.
     fn handle_early_end(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the first text, for places with room for only one.
+/// Returns the first text, where there is room for only one.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

@@ -93,7 +93,7 @@ impl SessionState {
         services.log_only(Severity::Note, texts, Some(&self.name()));
     }
 
-    /// Marks the device as replying, even if it only refuses requests.
+    /// Marks the device as replying, even if it only rejects requests.
     pub(crate) fn mark_replying(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;

@@ -10,11 +10,11 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
     pub periods: String,
-    /// Speed in revolutions per minute, as typed.
+    /// Speed in revolutions per minute, as entered.
     pub speed: String,
-    /// Resistance of the filter, as typed, such as `10k`.
+    /// Resistance of the filter, as entered, such as `10k`.
     pub resistance: String,
-    /// Capacitance of the filter, as typed, such as `22p`.
+    /// Capacitance of the filter, as entered, such as `22p`.
     pub capacitance: String,
 }
 
@@ -52,7 +52,7 @@ impl Form {
     /// Calculates the result from the entries.
     ///
     /// # Errors
-    /// Returns the reason why the first invalid entry was refused.
+    /// Returns the reason why the first invalid entry was rejected.
     pub fn calculate_circuit(&self) -> Result<InputCircuitResult, Text> {
         let periods = parse_integer(TEXTS.text("input.periods"), &self.periods, 1, MAX_PERIODS)?;
         let speed_rpm = parse_in_range(TEXTS.text("input.speed"), &self.speed, 0.0, MAX_RPM)?;

@@ -35,7 +35,7 @@ pub enum SourceAction {
     Stop,
     /// Freezes the display or resumes it. The source continues to run.
     Hold(bool),
-    /// Sets a value of the virtual encoder. A value out of range is refused.
+    /// Sets a value of the virtual encoder. A value out of range is rejected.
     Set(Quantity, f64),
     SetOpenWire(Option<Wire>),
     /// Sets whether each pair of wires is terminated by a resistor.
@@ -56,7 +56,7 @@ pub enum SourceKind {
 pub struct Source {
     settings: Settings,
     problem: Option<Text>,
-    /// Link to the adapter, as typed.
+    /// Link to the adapter, as entered.
     link: String,
     sample_hz: u32,
     /// Family of the encoder that the adapter supplies. It is never stored in the settings, since another encoder may
@@ -115,7 +115,7 @@ impl Source {
         &self.settings
     }
 
-    /// Returns the reason why the last setting was refused.
+    /// Returns the reason why the last setting was rejected.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }

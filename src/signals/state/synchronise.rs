@@ -22,22 +22,22 @@ pub enum SynchroniseAction {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Absolute position in steps, as typed. It is decimal, or hexadecimal with `0x` or `h`.
+    /// Absolute position in steps, as entered. It is decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
     pub phase_input: PhaseInput,
-    /// Phase of the analogue position in periods or degrees, as typed.
+    /// Phase of the analogue position in periods or degrees, as entered.
     pub phase: String,
     pub sine_v: String,
     pub cosine_v: String,
     pub periods: String,
     pub turns: String,
-    /// Lead of the absolute position that is expected, in 1/32 of a period, as typed.
+    /// Lead of the absolute position that is expected, in 1/32 of a period, as entered.
     pub offset: String,
     /// Whether the absolute position refers to the middle of its step.
     pub half_step: bool,
-    /// Value of the quadrature counter in quarters of a period, as typed, or empty without a counter.
+    /// Value of the quadrature counter in quarters of a period, as entered, or empty without a counter.
     pub quarters: String,
-    /// Timing uncertainty in milliseconds of a check without a latch, as typed.
+    /// Timing uncertainty in milliseconds of a check without a latch, as entered.
     pub jitter_ms: String,
 }
 
@@ -103,7 +103,7 @@ impl Form {
     /// Combines the entered absolute and analogue positions.
     ///
     /// # Errors
-    /// Returns the reason why the first invalid entry was refused.
+    /// Returns the reason why the first invalid entry was rejected.
     pub fn compute_result(&self) -> Result<SynchronisationResult, Text> {
         let (periods, synchroniser) = self.create_synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
@@ -124,7 +124,7 @@ impl Form {
     /// Returns the fine position in periods from the quadrature counter, or `None` without a counter.
     ///
     /// # Errors
-    /// Returns the reason why the first invalid entry was refused.
+    /// Returns the reason why the first invalid entry was rejected.
     pub fn quadrature_position(&self) -> Result<Option<f64>, Text> {
         if self.quarters.trim().is_empty() {
             return Ok(None);
@@ -140,7 +140,7 @@ impl Form {
     /// shaft moves at most half a period within the timing uncertainty.
     ///
     /// # Errors
-    /// Returns the reason why the first invalid entry was refused.
+    /// Returns the reason why the first invalid entry was rejected.
     pub fn max_unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.create_synchroniser()?;
         let jitter_ms = parse_in_range(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;

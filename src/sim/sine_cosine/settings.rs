@@ -202,7 +202,7 @@ impl Settings {
     ///
     /// # Errors
     /// Returns a [`SettingError`] with the first setting outside its range, and the range. A number of periods that is
-    /// not whole is also refused.
+    /// not whole is also rejected.
     pub fn validate(self) -> Result<CheckedSettings, SettingError> {
         for quantity in Quantity::ALL {
             let (value, (least, most)) = (self.get(quantity), quantity.value_range());

@@ -47,7 +47,7 @@ pub enum EntryKind {
     Restore,
     /// The position was set, or a preset was stored or fired.
     Preset,
-    /// A procedure or a service of the device was carried out, such as a calibration.
+    /// A procedure or a service of the device was executed, such as a calibration.
     Procedure,
 }
 

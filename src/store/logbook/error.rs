@@ -36,7 +36,7 @@ pub enum LogbookErrorKind {
     #[error("the file uses schema {found} of a newer version; this version supports schemas up to {known}")]
     Newer {
         found: i64,
-        /// Latest schema that this version of the program knows.
+        /// Latest schema that this version of the program supports.
         known: i64,
     },
     /// The entry does not exist or has already been concluded.
@@ -44,7 +44,7 @@ pub enum LogbookErrorKind {
     NotOpen { entry: EntryId },
     #[error("{what}")]
     Database {
-        /// Extended result code of SQLite, or `None` if the value was refused before it reached SQLite.
+        /// Extended result code of SQLite, or `None` if the value was rejected before it reached SQLite.
         code: Option<i32>,
         what: String,
     },

@@ -4,7 +4,7 @@
 //! is SQLite: two windows can share the logbook, and any tool can read it.
 //!
 //! The logbook never contains access codes, because descriptions and failure messages are made from the plan instead of
-//! frames. It does not decide whether a device may be written to. If it fails, the caller refuses writes that are not
+//! frames. It does not decide whether a device may be written to. If it fails, the caller rejects writes that are not
 //! forced.
 
 mod entry;

@@ -1,5 +1,5 @@
 //! The trace panel of the selected session: time, gap, direction, bytes, meaning. The newest frame is at the bottom and
-//! stays visible until the user scrolls up or pauses the list. After that, the visible frames keep their place while
+//! stays visible until the user scrolls up or pauses the list. After that, the visible frames keep their position while
 //! others arrive. A selected frame is shown with all of its bytes beside the list.
 
 mod detail;

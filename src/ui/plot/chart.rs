@@ -82,7 +82,7 @@ const EDGE_DISTANCE: f32 = 2.0;
 const HALF_LABEL_HEIGHT: f32 = 5.5;
 
 /// Returns the labelled ticks with the heights of their labels. A label is normally beside its tick line, because the
-/// space between two lanes holds half a label. In a low lane with fewer than two such ticks, the labels of the
+/// space between two lanes holds half a label. In a small lane with fewer than two such ticks, the labels of the
 /// outermost ticks are on the inside.
 fn labelled_ticks(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =

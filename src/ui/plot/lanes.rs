@@ -17,7 +17,7 @@ const MIN_LABEL_WIDTH: f32 = 44.0;
 const MAX_LABEL_WIDTH: f32 = 110.0;
 /// Height of the time labels at the bottom, in points.
 const TIME_LABEL_HEIGHT: f32 = 18.0;
-/// Minimum distance between two ticks in points, normally and in a low lane.
+/// Minimum distance between two ticks in points, normally and in a small lane.
 const TICK_SPACING: f32 = 28.0;
 const LOW_LANE_TICK_SPACING: f32 = 13.0;
 /// Width in points of a character of an axis label, whose font is monospaced.
@@ -162,7 +162,7 @@ fn lay_out_lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced:
     groups.iter().enumerate().map(lane).collect()
 }
 
-/// Returns the step between two ticks of a lane. Ticks are closer in a low lane, where at least two must be visible.
+/// Returns the step between two ticks of a lane. Ticks are closer in a small lane, where at least two must be visible.
 fn value_step((low, high): (f64, f64), height: f32) -> f64 {
     let of_distance = |distance: f32| axes::step_1_2_5(high - low, f64::from((height / distance).max(2.0)));
     let step = of_distance(TICK_SPACING);

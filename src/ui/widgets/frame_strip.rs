@@ -30,7 +30,7 @@ pub struct StripField {
     pub bits: usize,
     /// Colour index, one of eight colours. `None` if the field only encloses other fields.
     pub colour: Option<usize>,
-    /// Verdict that the field reports. `None` if it reports nothing.
+    /// Verdict that the field reports. `None` if it does not report anything.
     pub lit: Option<Verdict>,
     pub tooltip: String,
 }

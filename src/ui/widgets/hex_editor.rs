@@ -1,7 +1,7 @@
 //! Bytes to view and to overwrite: sixteen per line, as hex and as text.
 //!
 //! * **Size**: the width of its columns, the height of its lines, at most [`HexModel::lines`] of them before it scrolls;
-//!   below it one line with the place of the cursor, or why something was not done.
+//!   below it one line with the cursor position, or why something was not done.
 //! * **Keyboard**: arrows, Home, End, Page, with Ctrl to the ends, with Shift selecting; digits overwrite nibble by nibble,
 //!   in the text column characters; Tab goes from hex to text and on; Delete writes 00, Backspace restores the device's
 //!   bytes; Ctrl+A, C, V, Z, Shift+Z, Y.
@@ -222,7 +222,7 @@ fn set_widget_info(ui: &Ui, response: &Response, label: &str, model: &HexModel<'
     });
 }
 
-/// Draws the cursor location, or the reason why an action was refused.
+/// Draws the cursor location, or the reason why an action was rejected.
 fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);

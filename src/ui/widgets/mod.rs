@@ -1,5 +1,6 @@
 //! Widgets that egui does not provide. Each draws its input, stores only its own selection, and returns the request of
-//! the user. None knows a device. They share the appearance of keyboard focus, hatching and series colours.
+//! the user. They are independent of the devices. They share the appearance of keyboard focus, hatching and series
+//! colours.
 
 mod bit_cell;
 mod chart;

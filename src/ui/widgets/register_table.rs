@@ -3,7 +3,7 @@
 //! a register is requested only while it is visible.
 //!
 //! * **Size**: the available width and the given height; the least important columns are hidden, and shown in the
-//!   tooltip. [`RegisterView::problem`] contains the reason for refusing a value, to be shown by the caller.
+//!   tooltip. [`RegisterView::problem`] contains the reason for rejecting a value, to be shown by the caller.
 //! * **Keyboard**: arrows, Page, Home and End move from line to line; right and left unfold and fold bit fields and
 //!   groups; Enter, F2 or a character edits the value, Enter accepts it, as does an arrow up or down, which moves on to
 //!   that line; Escape cancels the entry; Backspace restores the value of the device; Ctrl+C copies.
@@ -152,7 +152,7 @@ impl RegisterRow {
 }
 
 /// Draws the table at the given height and returns the user's actions. `take` receives the text entered for a register.
-/// If it refuses the text, it returns the reason.
+/// If it rejects the text, it returns the reason.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,
@@ -252,7 +252,7 @@ fn body_ui(
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
             editor::editor_ui(&mut ui.new_child(builder), theme, id, cell, table, view, take);
         }
-        // A value that was just refused stays visible. The next press discards it.
+        // A value that was just rejected stays visible. The next press discards it.
         let refused_now = view.is_refused() && !was_refused;
         if let Some(place) = view.wanted.take()
             && !refused_now

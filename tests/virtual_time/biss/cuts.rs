@@ -1,6 +1,6 @@
 //! Every procedure with its link cut, its encoder without power, or cancelled at every single exchange: the reported
 //! state of the encoder is the real one, the return leads to operation with the password cleared, and the procedure can
-//! then be carried out.
+//! then be executed.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;

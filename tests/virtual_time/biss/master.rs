@@ -1,4 +1,4 @@
-//! Registers and position over the configuration pin: echo, byte order, noise, silence, refusals, and writes whose
+//! Registers and position over the configuration pin: echo, byte order, noise, silence, rejections, and writes whose
 //! answer is lost.
 
 use std::time::Duration;

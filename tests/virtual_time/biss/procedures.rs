@@ -1,4 +1,4 @@
-//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, refusals and failures,
+//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, rejections and failures,
 //! and the return to operation with the password cleared at every end.
 
 use std::time::Duration;
@@ -418,7 +418,7 @@ fn a_run_that_never_ends_times_out() {
     assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
 }
 
-/// Obstacles known before a procedure begins are refused before anything is written.
+/// Obstacles known before a procedure begins are rejected before anything is written.
 #[test]
 fn impossible_procedures_are_refused_beforehand() {
     let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };

@@ -135,7 +135,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     assert_eq!(bench.prepare(restore(true)).unwrap().plan.write_cycles(), 2);
 }
 
-/// The values read for the plan have changed before it is carried out: nothing is written.
+/// The values read for the plan have changed before it is executed: nothing is written.
 #[test]
 fn a_plan_with_a_changed_base_is_not_executed() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);
@@ -199,7 +199,7 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 1);
 }
 
-/// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is refused, and carried out if
+/// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is rejected, and executed if
 /// forced.
 #[test]
 fn a_worn_encoder_is_written_only_by_force() {
@@ -346,7 +346,7 @@ fn a_single_register_is_written_and_read_back() {
     assert_eq!(prepared.plan.write_cycles(), 0);
     let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
     assert_eq!((written.verified, written.write_cycles, bench.encoder_reads(at("0x40"))), (1, 0, Some(5)));
-    // The kit encoder has no register there and refuses.
+    // The kit encoder has no register there and rejects.
     let prepared = bench.prepare(write("0x50", 1)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
     assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");

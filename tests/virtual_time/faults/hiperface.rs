@@ -112,7 +112,7 @@ impl Rig {
         State::of(&self.bus.lock().unwrap(), &self.clock)
     }
 
-    /// Returns the state after the encoder has carried out everything that was sent.
+    /// Returns the state after the encoder has executed everything that was sent.
     fn settled_state(&self) -> State {
         self.clock.sleep_until(self.clock.now() + Duration::from_secs(2));
         self.bus.lock().unwrap().poll(self.clock.now());

@@ -26,7 +26,7 @@ const RUNS: u64 = 4_000;
 /// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The operation was carried out in spite of the faults.
+    /// The operation was executed in spite of the faults.
     Done,
     /// It was interrupted, described, and completed by a second run.
     Interrupted,
@@ -34,7 +34,7 @@ pub(crate) enum End {
     NotStarted,
 }
 
-/// Carries out seeded runs in all threads and prints how they ended; `share` is the part of all runs in thousandths. A
+/// Executes seeded runs in all threads and prints how they ended; `share` is the part of all runs in thousandths. A
 /// panic names the seed that repeats it.
 pub(crate) fn campaign(kind: &str, share: u64, run: impl Fn(&mut Rng) -> End + Sync) {
     let setting = |name| std::env::var(name).ok().map(|text: String| text.parse::<u64>().expect(name));

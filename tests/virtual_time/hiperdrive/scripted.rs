@@ -219,7 +219,7 @@ fn values_have_their_type_and_sign() {
     }
 }
 
-/// Issue 21.9: a number with another length than that of its type is refused with both lengths, for every request.
+/// Issue 21.9: a number with another length than that of its type is rejected with both lengths, for every request.
 #[test]
 fn a_number_of_another_length_is_refused_with_both_lengths() {
     const REPLIES: [&str; 5] =
@@ -250,7 +250,7 @@ fn a_number_of_another_length_is_refused_with_both_lengths() {
     let replies = ["8E 00 00 00 01", "8E 00 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 00 FF"].map(Act::Reply);
     let error = Desk::with(replies).ask(|master| read_rules(master, drive(1))).unwrap_err();
     assert_eq!(error.to_string(), "parameter 158 (lower limit) has the wrong length (bytes received: 2, expected: 4)");
-    // Nor is it used as the reason of a refusal: 120 with one byte does not prove an empty slot.
+    // Nor is it used as the reason of a rejection: 120 with one byte does not prove an empty slot.
     let refused =
         Desk::with(["8E 00 0C 00", "8E 00 00 00 00", "8E 00 00 00 01"].map(Act::Reply)).read(258).unwrap_err();
     assert!(matches!(refused, Error::Refused { .. }), "{refused}");

@@ -1,4 +1,4 @@
-//! Writing: exactly the planned values, each read back, then one save; and refusals with their reasons.
+//! Writing: exactly the planned values, each read back, then one save; and rejections with their reasons.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
@@ -46,7 +46,7 @@ fn differences_are_written_read_back_and_saved_once() {
     );
 }
 
-/// Issue 22.4: no limit of saves is known, but they are counted: if they cannot be, only a forced write is carried out.
+/// Issue 22.4: no limit of saves is known, but they are counted: if they cannot be, only a forced write is executed.
 #[test]
 fn a_device_with_uncountable_saves_is_written_only_by_force() {
     let mut stand = Stand::new("serial=42");
@@ -99,7 +99,7 @@ fn a_profile_is_restored_after_a_factory_reset() {
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 400, -131_072), "the hub's own alone");
     stand.change(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 256, -33_488_896));
-    // In the factory settings a hub requests no drive: the request has to be restored, too.
+    // In the factory settings a hub requests no drive: the request must be restored, too.
     let change = || Change::Restore { profile: profile.clone(), options: RestoreOptions::default() };
     let done = stand.change(change()).unwrap();
     assert_eq!(done.written.write_cycles, 1);
@@ -128,7 +128,7 @@ fn out_of_range_values_name_both_limits_of_host_and_device() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
     assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400: it may be 5 to 350");
-    // The drive has turned meanwhile: the plan does not include it, and the device refuses.
+    // The drive has turned meanwhile: the plan does not include it, and the device rejects the request.
     let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
     let now = stand.clock.now();
     stand.target.with_station(|station| station.write(now, number(198), &Value::Number(640))).unwrap();

@@ -156,7 +156,7 @@ impl Bench {
         self.station.write(self.now, number, &Value::Number(value)).unwrap();
     }
 
-    /// Restarts the drives, while the connection stays: 47 = −4. Refused while they restart.
+    /// Restarts the drives, while the connection stays: 47 = −4. Rejected while they restart.
     pub(super) fn reset(&mut self) {
         let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
     }

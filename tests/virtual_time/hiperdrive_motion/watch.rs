@@ -123,7 +123,7 @@ fn a_run_ends_when_its_limits_become_unknown() {
     assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Locked(_)))), "{:?}", bench.man.last_end());
 }
 
-/// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is refused before anything is
+/// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is rejected before anything is
 /// sent.
 #[test]
 fn from_outside_only_inward_motion_is_allowed() {

@@ -107,7 +107,7 @@ fn an_edge_beyond_the_range_is_refused_by_the_encoder() {
     assert!(sent.ends_with(&[0x2080_0000, RUN, 0, 0x2021_0009, 0]), "{sent:08X?}");
 }
 
-/// Reference 5: the start of cam 0 at 0 has the busy word as its echo. It has to be stable for longer.
+/// Reference 5: the start of cam 0 at 0 has the busy word as its echo. It must be stable for longer.
 #[test]
 fn an_echo_equal_to_the_busy_word_must_last_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
@@ -120,7 +120,7 @@ fn an_echo_equal_to_the_busy_word_must_last_longer() {
     let stop = steps.iter().position(|step| step.out == 0x6000_0000).unwrap();
     // Half of the patience.
     assert!(steps[stop].at.duration_since(steps[start].at).as_millis() >= 1000);
-    // It was really busy, for 600 ms, and refuses then.
+    // It was really busy, for 600 ms, and rejects then.
     let busy: Vec<u32> = std::iter::repeat_n(0xC000_0000, 120).chain([0x9800_0004]).collect();
     let interrupted = carry_out(Script::new().on(0x4000_0000, &busy), cams(0, 0, 0, 1)).0.unwrap_err();
     assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == 0x4000_0000), "{interrupted}");
@@ -167,7 +167,7 @@ fn a_persistent_echo_is_named_after_the_timeout() {
 }
 
 /// Issue 22.1, reference 6.11a: the processing word may carry the sent data (manual 10.4, X). An encoder that is busy
-/// for `busy` milliseconds and then refuses had not accepted the word.
+/// for `busy` milliseconds and then rejects had not accepted the word.
 #[test]
 fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     for (word, echo) in

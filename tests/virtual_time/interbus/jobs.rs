@@ -272,7 +272,7 @@ fn the_device_check_reports_faults() {
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Attention), "{lines:?}");
     assert_eq!((verdict(&lines, CheckStep::Handshake), stand.sent()), (None, vec![]), "whoever reads is not disturbed");
-    // No K3: OUT changes nothing.
+    // No K3: OUT does not change anything.
     let mut stand = Stand::new("class=K2&position=77");
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::Handshake), Some(Verdict::Bad), "{lines:?}");

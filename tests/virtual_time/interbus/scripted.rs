@@ -45,7 +45,7 @@ pub(crate) struct Script {
     pub(crate) now: Duration,
     /// Interval between two reads of IN.
     pub(crate) pace: Duration,
-    /// A word that the gateway refuses with this exception, the first time that it is written; and whether it wrote it.
+    /// A word that the gateway rejects with this exception, the first time that it is written; and whether it wrote it.
     pub(crate) refuses: Option<(u32, u8, bool)>,
 }
 

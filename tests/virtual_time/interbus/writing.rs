@@ -1,4 +1,4 @@
-//! Writing: only differences, each read back, one store per operation; and refusals before any write.
+//! Writing: only differences, each read back, one store per operation; and rejections before any write.
 
 use std::path::Path;
 use std::time::Duration;

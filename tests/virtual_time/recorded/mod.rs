@@ -47,7 +47,7 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
 /// Ends a write early, at the frame with this number.
 type EarlyEnd = fn(&mut Tap, &CancelToken, usize);
 
-/// The early ends of a write, at one of the sent frames.
+/// The interruptions of a write, at one of the sent frames.
 const EARLY: [(&str, EarlyEnd); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
@@ -62,8 +62,8 @@ impl Ready {
     }
 }
 
-/// Compares a write and its early ends with its recording. `points` are the sent frames at which it ends early, from 0;
-/// all of them if there are none.
+/// Compares a write and its interruptions with its recording. `points` are the sent frames at which it ends early, from
+/// 0; all of them if there are none.
 fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
     let undisturbed = ready();
     let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());

@@ -68,7 +68,7 @@ fn a_word_is_read_with_the_requested_clocks() {
     assert_eq!(configured, [25, 27, 13]);
 }
 
-/// A setting that the adapter refuses leaves everything as it was.
+/// A setting that the adapter rejects leaves everything as it was.
 #[test]
 fn a_refused_setting_keeps_the_previous_one() {
     let mut stand = Stand::quick("rpm=60");

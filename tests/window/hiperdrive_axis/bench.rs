@@ -95,7 +95,7 @@ pub(super) fn consent(desk: &mut Desk) {
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
 
-/// Consents to it, and closes its review once it is carried out.
+/// Consents to it, and closes its review once it is executed.
 #[track_caller]
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
@@ -161,7 +161,7 @@ pub(super) fn until_stopped(desk: &mut Desk) {
     });
 }
 
-/// Runs a write of this step, by the number of drive 1; if `rough`, it is refused first, then cut off in the middle.
+/// Runs a write of this step, by the number of drive 1; if `rough`, it is rejected first, then cut off in the middle.
 #[track_caller]
 pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
@@ -193,7 +193,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         });
         let own = axis(desk);
         assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
-        // The last step writes nothing that is saved.
+        // The last step does not write anything that is saved.
         assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
         assert_eq!(own.invalidated_step(), None, "{hindrance:?} of {number}");
         if hindrance == WriteFault::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {

@@ -1,4 +1,4 @@
-//! Opening of an adapter that streams. A `bridge:` link leads to a real one and a `sim:` link to a virtual one.
+//! Opening of an adapter that streams. A `bridge:` link refers to a real one and a `sim:` link to a virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -29,7 +29,7 @@ parameters! {
 /// virtual adapter can have the given devices.
 ///
 /// # Errors
-/// Returns an error if the link does not lead to an adapter or a parameter is invalid. Nothing has been opened in this
+/// Returns an error if the link does not refer to an adapter or a parameter is invalid. Nothing has been opened in this
 /// case.
 pub fn open_adapter(
     url: &LinkUrl,

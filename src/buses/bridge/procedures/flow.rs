@@ -85,7 +85,7 @@ impl SampleStream {
     /// Starts a stream. All of its samples are later than `after`.
     ///
     /// # Errors
-    /// Returns a [`Failure`]. If the adapter refuses the request as busy, the stream is already running.
+    /// Returns a [`Failure`]. If the adapter rejects the request as busy, the stream is already running.
     pub(crate) fn start(
         adapter: &mut Adapter<'_, '_>,
         streamed: StreamKind,
@@ -95,7 +95,7 @@ impl SampleStream {
         let begun_at = SampleTime::from(adapter.line.now());
         let answered = match adapter.request_once(&request)? {
             Some(answered) => answered,
-            // The stream may be running although the reply is lost. A second request would then be refused as busy.
+            // The stream may be running although the reply is lost. A second request would then be rejected as busy.
             None => {
                 adapter.send_request(&streamed.stop())?;
                 adapter.send_request(&request)?
@@ -172,8 +172,8 @@ impl SampleStream {
         adapter.send_request(&self.streamed.stop()).map(drop)
     }
 
-    /// Evaluates the result of [`stop`](Self::stop). Returns `false` if the adapter has refused, which means that it was
-    /// reset and must be configured again. Other errors are returned, and the caller must retry.
+    /// Evaluates the result of [`stop`](Self::stop). Returns `false` if the adapter rejects the request, which means
+    /// that it was reset and must be configured again. Other errors are returned, and the caller must retry.
     pub(crate) fn is_stopped(ended: Result<(), Failure>) -> Result<bool, Failure> {
         match ended {
             Ok(()) => Ok(true),

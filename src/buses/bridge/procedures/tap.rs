@@ -81,8 +81,8 @@ impl StreamTap {
     ///
     /// # Errors
     /// Returns [`AdapterError::Version`], [`NoBiss`](AdapterError::NoBiss), [`NoAnalog`](AdapterError::NoAnalog) or
-    /// [`NoSupply`](AdapterError::NoSupply) if the adapter is not suitable. Other errors are a refusal or come from the
-    /// connection.
+    /// [`NoSupply`](AdapterError::NoSupply) if the adapter is not suitable. Other errors are a rejection or come from
+    /// the connection.
     pub fn start(
         &mut self,
         ctx: Ctx<'_>,

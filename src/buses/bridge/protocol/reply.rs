@@ -11,7 +11,7 @@ use super::request::Operation;
 pub enum Message {
     /// The reply to the request with the same sequence number.
     Reply(Reply),
-    /// The refusal of the request with the same sequence number.
+    /// The rejection of the request with the same sequence number.
     Error {
         /// Operation code of the request.
         op: u8,
@@ -137,7 +137,7 @@ pub struct Capabilities(u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
-/// The reason for a refusal as a code. Unknown codes are preserved.
+/// The reason for a rejection as a code. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u8);
 
@@ -227,7 +227,7 @@ impl ErrorCode {
 }
 
 impl Message {
-    /// Operation code of a refusal.
+    /// Operation code of a rejection.
     const ERROR: u8 = 0xFF;
 
     /// Parses a packet from an adapter.

@@ -179,7 +179,7 @@ fn every_flipped_bit_is_detected() {
     }
 }
 
-/// A body that lost its end, or got another byte, is refused, unless the rest is data of any length.
+/// A body that lost its end, or got another byte, is rejected, unless the rest is data of any length.
 #[test]
 fn every_truncated_body_is_refused() {
     for (seq, request, _) in request_vectors() {

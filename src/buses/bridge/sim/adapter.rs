@@ -46,7 +46,7 @@ pub struct Adapter {
     inbox: Vec<u8>,
 }
 
-/// Error code and message of a refused request.
+/// Error code and message of a rejected request.
 type ErrorReply = (ErrorCode, &'static str);
 
 const NOT_CONFIGURED: ErrorReply = (ErrorCode::BAD_ARGUMENT, "not configured yet");

@@ -39,10 +39,10 @@ pub trait BissDevice: Any + Send {
     /// Returns whether the device has a register with this address.
     fn has_address(&self, address: u8) -> bool;
 
-    /// Reads a register at `now`, or returns `None` if the device refuses.
+    /// Reads a register at `now`, or returns `None` if the device rejects the request.
     fn read_register(&mut self, now: Moment, address: u8) -> Option<u8>;
 
-    /// Writes a register at `now`. Returns `false` if the device refuses.
+    /// Writes a register at `now`. Returns `false` if the device rejects the request.
     fn write_register(&mut self, now: Moment, address: u8, value: u8) -> bool;
 }
 

@@ -11,7 +11,7 @@ pub fn parse_packet(bytes: &[u8]) -> Option<Packet> {
     Packet::parse(stuffed).ok()
 }
 
-/// Explains a received packet if it is damaged or a refusal. For other packets, the result is `None`.
+/// Explains a received packet if it is damaged or a rejection. For other packets, the result is `None`.
 pub fn explain_received(bytes: &[u8]) -> Option<FrameExplanation> {
     let Some(packet) = parse_packet(bytes) else {
         return Some(FrameExplanation::from_error(TEXTS.text("trace.no_packet")));

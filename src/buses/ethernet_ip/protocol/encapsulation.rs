@@ -28,7 +28,7 @@ pub struct Frame {
 /// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// No data. List requests, the end of a session and refusals have none.
+    /// No data. List requests, the end of a session and rejections have none.
     Empty,
     /// Data of a RegisterSession request or reply.
     Register {
@@ -139,7 +139,7 @@ impl Frame {
         Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
     }
 
-    /// Creates a reply that refuses this request.
+    /// Creates a reply that rejects this request.
     pub fn error_reply(&self, status: EncapsulationStatus) -> Self {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }

@@ -63,7 +63,7 @@ pub struct ForwardOpenSuccess {
     pub application: Vec<u16>,
 }
 
-/// A refusal to open or close a connection. The status of the reply gives the reason.
+/// An error reply to a request that opens or closes a connection. The status of the reply gives the reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForwardErrorReply {
     /// Owner of the connection.
@@ -201,7 +201,7 @@ impl ForwardOpenSuccess {
 }
 
 impl ForwardErrorReply {
-    /// Parses the data of a refusal. Many devices send none.
+    /// Parses the data of a rejection. Many devices send none.
     ///
     /// # Errors
     /// Returns a [`PacketError`] if the data are incomplete or too long.

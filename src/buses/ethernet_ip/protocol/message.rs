@@ -151,7 +151,7 @@ impl Request {
         Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
     }
 
-    /// Creates a reply that refuses this request.
+    /// Creates a reply that rejects this request.
     pub fn error_reply(&self, status: GeneralStatus) -> Reply {
         Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
     }

@@ -59,7 +59,7 @@ pub enum RequestError {
 pub enum WriteReply {
     /// The write was acknowledged (90h).
     Acknowledged,
-    /// The write was refused (A0h).
+    /// The write was rejected (A0h).
     Refused,
     /// A value that the manual does not define.
     Unknown(u8),

@@ -43,7 +43,7 @@ pub enum BissJob {
     ReadArea(Area),
     /// Reads everything that can be restored, at standstill. Values that were never saved in the encoder are marked.
     Save,
-    /// Reads the encoder for a comparison. The job is refused if some values may never have been saved.
+    /// Reads the encoder for a comparison. The job is rejected if some values may never have been saved.
     SaveToCompare,
     /// Prepares a plan without writing.
     Prepare(Change),
@@ -78,11 +78,11 @@ pub enum ChangeKind {
     Restore,
     /// A write of edited bytes. Bytes that were not written remain as edits.
     Bytes,
-    /// Guided procedures. An incomplete procedure has to be started again.
+    /// Guided procedures. An incomplete procedure must be started again.
     Guided,
     /// Guided procedures that include a calibration, whose table is not part of any backup.
     Calibration,
-    /// The Wiegand test alone, which stores nothing but its result.
+    /// The Wiegand test alone, which stores only its result.
     WiegandTest,
     Filter,
     /// Storing a preset value, setting the position to it, or both.
@@ -149,7 +149,7 @@ pub struct Commit {
     pub attendance: OperatorPresence,
 }
 
-/// Whether an operator is at the motor while a plan is carried out.
+/// Whether an operator is at the motor while a plan is executed.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
     Attended(OperatorChannel),
@@ -185,7 +185,7 @@ pub struct RegisterValues {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
-    /// Number of frames with a wrong checksum that belong to no reading.
+    /// Number of frames with a wrong checksum that are not part of a reading.
     CrcErrors(u32),
     /// User-defined descriptions that cannot be used.
     Descriptions(Vec<StoreError>),

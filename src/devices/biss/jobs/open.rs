@@ -81,7 +81,7 @@ fn parse_transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     }
 }
 
-/// Refuses parameters that neither the line nor the virtual device has, and names those that require an adapter.
+/// Rejects parameters that neither the line nor the virtual device has, and names those that require an adapter.
 fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));

@@ -39,7 +39,7 @@ pub(super) fn prepare_plan(
             restore_from_plan(plan_preset(&description, &state(&mut master, &identity, &[], tell)?, *value, *parts)?)
         }
         Change::Guided { run, motor } => {
-            // A refusal is reported before anything else is read.
+            // A rejection is reported before anything else is read.
             run.check_motor(*motor)?;
             let areas: Vec<Area> = description.areas().to_vec();
             let banks = run.data.as_ref().map(|profile| required_banks(profile, &areas)).unwrap_or_default();

@@ -1,5 +1,5 @@
 //! Device check. The values of an encoder are compared with its description, its data sheet and the line, and each item
-//! receives a verdict. Nothing is written except the bank selection.
+//! receives a verdict. No data is written except the bank selection.
 
 use super::survey::{EncoderStatus, FlagRegister, read_all_registers};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};

@@ -78,7 +78,8 @@ pub enum Error {
         /// Actual value of the register, if the connection reveals it.
         reads: Option<u8>,
     },
-    /// It is unknown whether the value was accepted. The register cannot be read back, or its value proves nothing.
+    /// It is unknown whether the value was accepted. The register cannot be read back, or its value does not prove
+    /// anything.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         address: RegisterAddress,

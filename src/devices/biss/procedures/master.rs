@@ -48,7 +48,7 @@ type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
-    /// The encoder refused the value. Contains the actual register value, if the connection reveals it.
+    /// The encoder rejected the value. Contains the actual register value, if the connection reveals it.
     No(Option<u8>),
 }
 
@@ -151,7 +151,7 @@ impl<'a> Master<'a> {
     /// value. The write is repeated only if the value was not accepted.
     ///
     /// # Errors
-    /// Returns [`Error::Refused`] if the encoder refuses the value. Returns [`Error::Unclear`] if it remains unknown
+    /// Returns [`Error::Refused`] if the encoder rejects the value. Returns [`Error::Unclear`] if it remains unknown
     /// whether the value was accepted, for example in a command register. Returns other errors if the value was not
     /// accepted after five attempts. After [`Error::Cancelled`], nothing was written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
@@ -249,7 +249,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Sends a request that changes nothing in the encoder, with retries if the line fails.
+    /// Sends a request that does not change anything in the encoder, with retries if the line fails.
     fn request_with_retries<T>(
         &mut self,
         requested: RequestedItem,

@@ -27,7 +27,7 @@ const REST_JITTER_DIVISOR: u64 = 8192;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedValues {
     Marked,
-    /// Refuses the values, because a comparison would treat them as stored.
+    /// Rejects the values, because a comparison would treat them as stored.
     Refused,
 }
 
@@ -124,7 +124,7 @@ pub fn read_area_at_standstill(
 /// operation would discard entered values.
 ///
 /// # Errors
-/// Returns [`Error::NotInOperation`] if unsaved values are refused, and [`Error::Moving`] if the shaft moves. Returns
+/// Returns [`Error::NotInOperation`] if unsaved values are rejected, and [`Error::Moving`] if the shaft moves. Returns
 /// other errors if the exchange fails.
 pub fn save(
     master: &mut Master<'_>,

@@ -250,8 +250,8 @@ impl Station {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that a write succeeded. It proves nothing for a command register,
-    /// which may still hold the same value from an earlier command.
+    /// Returns whether reading a register back proves that a write succeeded. It does not prove anything for a command
+    /// register, which may still hold the same value from an earlier command.
     pub(super) fn is_readback_conclusive(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;

@@ -45,7 +45,7 @@ pub struct EndState {
 
 impl InterruptedWrite {
     /// Returns the register whose individual write has an unknown result, if any. The result is known if the value was
-    /// refused or not sent.
+    /// rejected or not sent.
     pub fn uncertain_write(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -199,7 +199,7 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Refuses an encoder in a device mode. Its registers could show values that were entered but not saved.
+/// Rejects an encoder in a device mode. Its registers could show values that were entered but not saved.
 ///
 /// # Errors
 /// Returns [`Error::NotInOperation`] in a device mode. Returns other errors if the exchange fails.

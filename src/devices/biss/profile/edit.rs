@@ -56,7 +56,7 @@ impl MountingSteps {
     }
 }
 
-/// The way in which a register has to be written.
+/// The way in which a register must be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind<'d> {
     /// The register is part of a data area, which is opened and saved as a whole.
@@ -65,7 +65,7 @@ pub enum RegisterKind<'d> {
     Register,
 }
 
-/// Returns the way in which a register has to be written.
+/// Returns the way in which a register must be written.
 ///
 /// # Errors
 /// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that only the procedures write.
@@ -220,7 +220,7 @@ pub fn plan_preset(
 /// Plans the guided procedures after an encoder was mounted.
 ///
 /// # Errors
-/// See [`PlanError`]. A motor that depends on this encoder is refused if a step needs a motor.
+/// See [`PlanError`]. A motor that depends on this encoder is rejected if a step needs a motor.
 pub fn plan_mounting(
     description: &Description,
     device: &DeviceState,

@@ -136,7 +136,7 @@ pub fn plan_restore(
 }
 
 /// Plans to write only the data areas of a profile to an encoder that is being mounted. The plan includes the values
-/// that are only valid on this motor. Nothing is written yet.
+/// that are only valid on this motor. No data is written yet.
 ///
 /// # Errors
 /// See [`PlanError`].

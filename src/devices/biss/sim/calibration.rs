@@ -1,7 +1,7 @@
 //! Singleturn calibration. It has a counterclockwise and a clockwise run of about five seconds each. See manual 6.4.
 //!
 //! The manual leaves some rules open (`U`). In this model, an unmet condition ends a run after one second, and a change
-//! of speed ends it at once. The second run is refused if the first was not completed. If the status is kept, it is
+//! of speed ends it at once. The second run is rejected if the first was not completed. If the status is kept, it is
 //! shown until the next run has begun, even after a change of the device mode.
 
 use std::time::Duration;
@@ -62,7 +62,7 @@ impl Calibration {
         self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
-    /// Handles a command. Returns `false` if it is refused.
+    /// Handles a command. Returns `false` if it is rejected.
     pub(super) fn write(&mut self, now: Moment, value: u8, conditions: CalibrationConditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,

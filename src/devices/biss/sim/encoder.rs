@@ -225,7 +225,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`. Returns `false` and changes nothing if the encoder refuses.
+    /// Writes a register at `now`. Returns `false` and does not change anything if the encoder rejects the request.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.update(now);
         let offset = address.address();

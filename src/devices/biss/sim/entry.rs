@@ -1,5 +1,5 @@
 //! Procedures in which values are entered and then saved: data, filter and preset. They hold the entered values, and
-//! the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`). See manual 6.5 to 6.7.
+//! the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected (`U`). See manual 6.5 to 6.7.
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, FilterCommand, FilterStatus, Layout, PositionFilter, PresetCommand, PresetStatus,

@@ -45,7 +45,7 @@ impl WiegandState {
         }
     }
 
-    /// Handles a command. Returns `false` if it is refused. The [`Encoder`](super::Encoder) saves the result.
+    /// Handles a command. Returns `false` if it is rejected. The [`Encoder`](super::Encoder) saves the result.
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,

@@ -17,7 +17,7 @@ pub enum BissAction {
     Watch(Box<Register>, bool),
     /// Reads a bank, or the direct registers if it is `None`.
     ReadBank(Option<u8>),
-    /// Reads a bank that has become visible and was never read. Does nothing while another job is running.
+    /// Reads a bank that has become visible and was never read. Has no effect while another job is running.
     SeeBank(Option<u8>),
     /// Reads the data area that starts at the given bank.
     ReadArea(u8),

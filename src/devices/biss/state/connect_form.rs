@@ -229,7 +229,7 @@ impl BissForm {
     }
 
     /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped. Unknown
-    /// parameters are kept, because they are refused later with an error that names them.
+    /// parameters are kept, because they are rejected later with an error that names them.
     fn has_parameter(&self, name: &str) -> bool {
         let kind = if self.uses_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);

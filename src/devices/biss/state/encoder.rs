@@ -30,7 +30,7 @@ pub struct Encoder {
     pub record: Record,
     /// The running procedure, or the last one with its result.
     pub guide: Option<ProcedureRun>,
-    /// Reason why the last data request was refused, if any.
+    /// Reason why the last data request was rejected, if any.
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
     pub(super) meaning: FrameDecoder,
@@ -115,7 +115,7 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number, or `None` if nothing was read. The string is empty if the encoder has none.
+    /// Returns the serial number, or `None` if no data was read. The string is empty if the encoder has none.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)

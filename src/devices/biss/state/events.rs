@@ -160,13 +160,13 @@ impl SessionEvents for Encoder {
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }
-        // The refusal is shown on the data pages.
+        // The rejection is shown on the data pages.
         self.refusal = Some(first(texts));
         true
     }
 
     fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
-        // The next request sets the refusal again if needed.
+        // The next request sets the rejection again if needed.
         self.refusal = None;
         self.session.submit(job, services)
     }

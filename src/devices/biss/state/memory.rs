@@ -1,5 +1,5 @@
 //! The registers read from an encoder, and the edited values. A plan is later made from the difference. This module
-//! writes nothing to an encoder.
+//! does not write anything to an encoder.
 //!
 //! Only bytes of a data area that the description marks as writable can be edited. Other writes, such as a filter, a
 //! preset or a command, are reviewed separately and are not edits.
@@ -114,7 +114,7 @@ impl Memory {
     /// Edits bytes from `start` onward as a single undo step.
     ///
     /// # Errors
-    /// Returns a [`MemoryError`] and changes nothing if the edit is refused.
+    /// Returns a [`MemoryError`] and does not change anything if the edit is rejected.
     pub fn edit_bytes(
         &mut self,
         description: &Description,

@@ -55,7 +55,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     let drive = drive(&wanted.of);
     let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
     let (permit, scale) = read_permit(&mut runner, &identity, drive)?;
-    // An impossible target is refused before the cyclic connection is opened.
+    // An impossible target is rejected before the cyclic connection is opened.
     let target = check_target(&permit, target)?;
     permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(refusal_failure)?;
     if let Some((low, high)) = permit.limits {

@@ -1,4 +1,4 @@
-//! Shows, confirms and carries out plans for an adapter or a hub.
+//! Shows, confirms and executes plans for an adapter or a hub.
 
 use serde_json::{Value as Json, json};
 
@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Prepares a plan for a change and prints its warnings. Nothing is written.
+/// Prepares a plan for a change and prints its warnings. No data is written.
 pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let asked = match &change {
         Change::SetPosition { position, .. } => Some(i64::from(*position)),
@@ -37,7 +37,7 @@ pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change)
     Ok(prepared)
 }
 
-/// Asks for consent if required and carries out the plan. An empty plan sends nothing.
+/// Asks for consent if required and executes the plan. An empty plan does not send anything.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,

@@ -44,7 +44,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     Ok(done)
 }
 
-/// Parses a new parameter value. Values that no device accepts are refused before a connection is opened.
+/// Parses a new parameter value. Values that no device accepts are rejected before a connection is opened.
 fn parse_change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
     let refused = |error: PlanError| to_failure(&words::plan(&error));

@@ -202,7 +202,7 @@ impl Hiperdrive {
         }
     }
 
-    /// Carries out a plan and reads the limits of the drives again. No drive may move until its limits are known.
+    /// Executes a plan and reads the limits of the drives again. No drive may move until its limits are known.
     pub(super) fn commit_plan(
         &mut self,
         context: &mut SessionContext,

@@ -57,7 +57,7 @@ impl Cyclic {
     /// Starts the thread for an open connection; `port` must be directed at the target.
     ///
     /// # Errors
-    /// Fails if the system cannot create a thread; nothing has been sent in that case.
+    /// Fails if the system cannot create a thread; no data has been sent in that case.
     pub fn start(
         port: Box<dyn DatagramChannel>,
         opened: &OpenedConnection,

@@ -16,8 +16,8 @@ use crate::worker::commit::total_cycles_to_report;
 /// limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
-/// A job in a session with an adapter or a hub. Reading changes nothing; drives move only between [`TestCandidateFn`](Self::TestCandidateFn)
-/// and [`Give`](Self::Give), through the session's `Motion`.
+/// A job in a session with an adapter or a hub. Reading does not change anything; drives move only between
+/// [`Take`](Self::Take) and [`Give`](Self::Give), through the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {
     Hello,

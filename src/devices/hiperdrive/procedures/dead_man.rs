@@ -1,5 +1,5 @@
 //! The dead-man control. It alone generates the control word of a drive in every interval, from the drive's report, the
-//! user's request and the drive's permit (reference 3). Time is an argument, and nothing blocks.
+//! user's request and the drive's permit (reference 3). Time is an argument, and no call blocks.
 //!
 //! Invariants for any input:
 //! - A word that could start a motion is sent only while a fresh action of the user requests that motion. All other
@@ -11,7 +11,7 @@
 //! - A drive that has run in speed mode receives 0400h before anything else. This discards the job that clearing bit 12
 //!   would start. While no job is running, the target is the present position.
 //!
-//! A motion leads the drive up to *enabled* without further requests, but never out of a fault or the switch-on lock.
+//! A motion brings the drive up to *enabled* without further requests, but never out of a fault or the switch-on lock.
 
 mod act;
 mod cause;
@@ -83,7 +83,7 @@ pub const LEVEL_TIME: Duration = Duration::from_millis(200);
 const STEP: Duration = Duration::from_secs(2);
 /// Time for a drive to begin a motion.
 const START: Duration = Duration::from_secs(1);
-/// Time without a report after which nothing may move, more than three times the longest interval.
+/// Time without a report after which no drive may move, more than three times the longest interval.
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 /// Maximum delay of a report between a hub and its drives (`U`).
 pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);

@@ -158,25 +158,25 @@ pub enum Error {
     /// The drive is not requested: parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
-    /// The value is out of range; nothing was sent.
+    /// The value is out of range; no data was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The device refused the value. The error contains the present range.
+    /// The device rejected the value. The error contains the present range.
     #[error("{0}")]
     Refuses(OutOfRange),
     /// The length of a number differs from the type of its parameter.
     #[error(transparent)]
     Length(#[from] WrongLength),
-    /// The value does not match the type of its parameter; nothing was sent.
+    /// The value does not match the type of its parameter; no data was sent.
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
-    /// The parameter is read-only; nothing was sent.
+    /// The parameter is read-only; no data was sent.
     #[error("parameter {number} ({name}) can only be read")]
     ReadOnly { number: ParameterNumber, name: &'static str },
     /// The parameter is write-only.
     #[error("parameter {number} ({name}) can only be written")]
     WriteOnly { number: ParameterNumber, name: &'static str },
-    /// The parameter moves the drive and may be written only over the cyclic connection; nothing was sent.
+    /// The parameter moves the drive and may be written only over the cyclic connection; no data was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
     Motion { number: ParameterNumber, name: &'static str },
     #[error("drive {} moves", drive.get())]
@@ -237,7 +237,7 @@ impl Error {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }
 
-    /// Returns the refusal if the device has replied but refused the request.
+    /// Returns the rejection if the device has replied but rejected the request.
     pub const fn as_refusal(&self) -> Option<&ErrorReply> {
         match self {
             Error::Refused { refusal, .. } => Some(refusal),

@@ -52,7 +52,7 @@ pub struct DriveIdentity {
 pub struct Survey {
     pub identity: Identity,
     pub network: Network,
-    /// All parameters of the device and its drives, except those that the device refuses.
+    /// All parameters of the device and its drives, except those that the device rejects.
     pub values: BTreeMap<ParameterNumber, Value>,
     /// Numbers whose length does not match the type of their parameter; they are missing in `values`.
     pub wrong_lengths: Vec<WrongLength>,
@@ -134,7 +134,7 @@ impl Identity {
 /// Reads the identity of a device.
 ///
 /// # Errors
-/// Returns [`Error::NotHiperdrive`] for another device, or an error if the device refuses a request or the exchange
+/// Returns [`Error::NotHiperdrive`] for another device, or an error if the device rejects a request or the exchange
 /// fails.
 pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Identity, Error> {
     // Number of parameters of a drive, and of the device.

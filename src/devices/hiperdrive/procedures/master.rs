@@ -93,7 +93,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Runs `work` to its end and ignores cancellation meanwhile. `work` must lead to a safe state.
+    /// Runs `work` to its end and ignores cancellation meanwhile. `work` must result in a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -104,9 +104,9 @@ impl<'a> Master<'a> {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// Returns [`Error::UnknownValues`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::Refused`]
-    /// if the parameter cannot be read. Returns [`Error::Length`] for a number of the wrong length, or an error if the
-    /// exchange fails.
+    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or
+    /// [`Error::Refused`] if the parameter cannot be read. Returns [`Error::Length`] for a number of the wrong length,
+    /// or an error if the exchange fails.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
         if row.access == ParameterAccess::Write {
@@ -150,8 +150,8 @@ impl<'a> Master<'a> {
     /// value yet. A parameter that triggers an action is never sent twice.
     ///
     /// # Errors
-    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::ShaftMotion`] without sending anything. Returns
-    /// [`Error::Refuses`] or [`Error::Refused`] if the device refuses the value, or an error if the exchange fails.
+    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything. Returns
+    /// [`Error::Refuses`] or [`Error::Refused`] if the device rejects the value, or an error if the exchange fails.
     pub(super) fn set_parameter(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
         // The plan has already checked the travel.
@@ -305,11 +305,11 @@ impl<'a> Master<'a> {
                 ExchangeError::Status(_) => {}
             }
             let longest = within + self.station.line.margin;
-            // The device refuses a session at once.
+            // The device rejects a session at once.
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_retry(&mut self.station.line, tries, took);
             match trouble {
-                // The device has forgotten the session, so the request was not carried out.
+                // The device has forgotten the session, so the request was not executed.
                 ExchangeError::Status(EncapsulationStatus::NO_SESSION)
                     if may && requested != RequestedItem::Session =>
                 {
@@ -387,8 +387,8 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether a refusal contains the session number. A stream has a single session: if the reply to the first
-/// RegisterSession was lost, the next one is refused with its number.
+/// Returns whether a rejection contains the session number. A stream has a single session: if the reply to the first
+/// RegisterSession was lost, the next one is rejected with its number.
 fn has_session(answer: &Frame) -> bool {
     answer.command == Command::REGISTER_SESSION
         && answer.status == EncapsulationStatus::UNSUPPORTED
@@ -405,8 +405,8 @@ fn parse_reply(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), Ex
     }
 }
 
-/// Returns whether a refusal contains the session number. A stream has a single session. If the reply to the first
-/// RegisterSession was lost, the device refuses the next one and returns the number of the existing session.
+/// Returns whether a rejection contains the session number. A stream has a single session. If the reply to the first
+/// RegisterSession was lost, the device rejects the next one and returns the number of the existing session.
 fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
@@ -416,7 +416,7 @@ fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, 
     }
 }
 
-/// Returns whether setting the parameter triggers an action, so that reading it back proves nothing.
+/// Returns whether setting the parameter triggers an action, so that reading it back does not prove anything.
 const fn triggers_action(row: &ParameterRow) -> bool {
     matches!(row.number, SERVICE | ACKNOWLEDGE | REFERENCE | RESET)
 }

@@ -1,5 +1,6 @@
 //! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub. Explicit messages do all reading and writing,
-//! and the cyclic connection does all motion. Reading changes nothing. "Reference" is the project's "hiperdrive".
+//! and the cyclic connection does all motion. Reading does not change anything. "Reference" is the project's
+//! "hiperdrive".
 //!
 //! ```text
 //! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)

@@ -7,7 +7,7 @@ use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfigu
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// IP address and its source. Values that the device refuses to report are missing.
+/// IP address and its source. Values that the device does not report are missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Network {
     /// Positions of S1 and S2 at power-up, parameter 12.
@@ -66,7 +66,7 @@ fn read_attribute<T>(
     parse(&data).map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })
 }
 
-/// Returns the value, or `None` if the request was refused.
+/// Returns the value, or `None` if the request was rejected.
 fn optional_if_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(value) => Ok(Some(value)),

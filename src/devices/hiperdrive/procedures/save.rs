@@ -42,7 +42,7 @@ impl Identity {
     }
 }
 
-/// Reads everything that can be restored. Parameters that the device refuses to report are left out.
+/// Reads everything that can be restored. Parameters that the device does not report are left out.
 ///
 /// # Errors
 /// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.

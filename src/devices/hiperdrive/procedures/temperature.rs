@@ -41,7 +41,7 @@ impl Temperature {
 }
 
 /// Reads a temperature with a single explicit message, which does not delay the cyclic connection. A device that
-/// refuses the request does not provide the temperature.
+/// rejects the request does not provide the temperature.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

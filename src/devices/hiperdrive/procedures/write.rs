@@ -1,4 +1,4 @@
-//! Execution of a plan. The values on which the plan is based are read again. Each operation is then carried out and
+//! Execution of a plan. The values on which the plan is based are read again. Each operation is then executed and
 //! read back (reference 4).
 
 use std::time::Duration;
@@ -23,7 +23,7 @@ use crate::profile::{ConfirmedPlan, Write};
 pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, ()>;
 
 impl InterruptedWrite {
-    /// Returns the change made by the unfinished operation if it may have been carried out in part. Returns `None` if
+    /// Returns the change made by the unfinished operation if it may have been executed in part. Returns `None` if
     /// the operation did not start, for example after a cancellation.
     pub fn uncertain_write(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item_name)
@@ -194,7 +194,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
     loop {
         let waited = master.now().duration_since(begun);
-        // During a reset the device may refuse reads.
+        // During a reset the device may reject reads.
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
             Ok(reads) => reads,

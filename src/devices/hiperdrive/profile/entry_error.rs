@@ -1,9 +1,9 @@
-//! Reasons why a HIPERDRIVE profile is refused.
+//! Reasons why a HIPERDRIVE profile is rejected.
 
 use super::item::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
 
-/// Reason why an entry of a profile is refused.
+/// Reason why an entry of a profile is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// The drive occurs twice.

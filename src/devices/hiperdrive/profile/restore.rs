@@ -65,11 +65,12 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses an adapter, hub or drive that differs in type or identity from the profile. A profile without an identity
+/// Rejects an adapter, hub or drive that differs in type or identity from the profile. A profile without an identity
 /// fits any device. An empty port is accepted.
 ///
 /// # Errors
-/// Returns [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first difference.
+/// Returns [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first
+/// difference.
 pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
@@ -84,7 +85,7 @@ pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> 
     whole.into_iter().map(|(profile, device)| TypeMismatch::Device { profile, device }).chain(drives).collect()
 }
 
-/// Refuses a device other than the one in the profile, unless the options allow it.
+/// Rejects a device other than the one in the profile, unless the options allow it.
 fn check_allowed(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,

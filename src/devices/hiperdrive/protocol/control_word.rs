@@ -143,7 +143,7 @@ impl ControlWord {
     /// Parses a received control word.
     ///
     /// # Errors
-    /// Returns [`RejectedParameter`] if a reserved bit is set.
+    /// Returns [`ReservedBitsError`] if a reserved bit is set.
     pub const fn parse(word: u16) -> Result<Self, ReservedBitsError> {
         if word & RESERVED == 0 { Ok(ControlWord(word)) } else { Err(ReservedBitsError { word }) }
     }

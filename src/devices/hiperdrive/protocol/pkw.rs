@@ -48,13 +48,13 @@ pub enum Answer {
     Double(u32),
     /// Answer 6: the number of array elements.
     Elements(u32),
-    /// Answer 7: the request was refused.
+    /// Answer 7: the request was rejected.
     Refused(PkwError),
     /// Any other number.
     Unknown,
 }
 
-/// Reason why a request was refused. Unknown codes are preserved.
+/// Reason why a request was rejected. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PkwError(u32);
 
@@ -150,7 +150,7 @@ impl Pkw {
     }
 
     /// Returns the answer if this reply belongs to `request`. The request must be repeated until then. Before the same
-    /// request is sent again, [`OperatorTask::None`] must be sent and answered.
+    /// request is sent again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();

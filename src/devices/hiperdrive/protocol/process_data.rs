@@ -244,7 +244,7 @@ impl OutputData {
     /// Returns the control word.
     ///
     /// # Errors
-    /// Returns [`Refused`] if a reserved bit is set.
+    /// Returns [`ReservedBitsError`] if a reserved bit is set.
     pub const fn control_word(&self) -> Result<ControlWord, ReservedBitsError> {
         ControlWord::parse(self.control)
     }

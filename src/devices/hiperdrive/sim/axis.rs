@@ -131,7 +131,7 @@ impl Axis {
     }
 }
 
-/// Returns the obstacle beyond which a position lies. The flag tells whether it is the upper obstacle.
+/// Returns the obstacle beyond which a position lies. The flag specifies whether it is the upper obstacle.
 fn blocking_obstacle(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))

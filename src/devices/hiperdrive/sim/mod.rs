@@ -8,7 +8,7 @@
 //! | `memory` | writable parameters, and which of them survive a power cycle |
 //! | `drive` | a drive: its state, motion and faults |
 //! | `parameters` | reading and writing the parameters of a drive |
-//! | `write_fault` | writes that are refused or interrupted |
+//! | `write_fault` | writes that are rejected or interrupted |
 //! | `station` | the drives together: process data, save and reset, loss of the master |
 //! | `words` | answers to parameter words |
 //! | `config` | the settings of a `sim:` link |

@@ -1,6 +1,6 @@
 //! Reading and writing of the parameters of a drive.
 //!
-//! Assumptions (`U`): a refused value is stored as error 8501, as in the manual, and is a fault if the drive is
+//! Assumptions (`U`): a rejected value is stored as error 8501, as in the manual, and is a fault if the drive is
 //! operational; 198 is accepted only at standstill.
 
 use super::axis::TURN;

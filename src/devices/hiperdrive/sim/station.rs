@@ -238,7 +238,7 @@ impl Station {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// Returns [`Refused`] for an unknown parameter or a parameter of a missing drive.
+    /// Returns [`ParameterError`] for an unknown parameter or a parameter of a missing drive.
     pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, ParameterError> {
         self.advance_to(now);
         self.answers_at = None;
@@ -264,7 +264,7 @@ impl Station {
     /// Writes a parameter.
     ///
     /// # Errors
-    /// Returns [`Refused`] if the write is refused. Nothing was written then.
+    /// Returns [`ParameterError`] if the write is rejected. Nothing was written then.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), ParameterError> {
         self.advance_to(now);
         self.answers_at = None;

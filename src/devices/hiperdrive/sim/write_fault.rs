@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteFault {
-    /// The write is refused as not possible in this state.
+    /// The write is rejected as not possible in this state.
     Refused,
     /// The line is lost after a write that has taken effect.
     CutOff,

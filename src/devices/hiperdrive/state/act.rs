@@ -81,7 +81,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Moves a drive, or refuses with a reason if the drive may not move.
+    /// Moves a drive, or returns a reason if the drive may not move.
     fn apply_motor_action(&mut self, motor: MotorCommand, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {

@@ -47,7 +47,7 @@ pub enum MotorCommand {
         /// Whether the press is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Allows the next jog in this direction to lead further outside the limits.
+    /// Allows the next jog in this direction to move the drive further outside the limits.
     FreeOutward(Direction),
     /// Confirms that the jog is still held. It is sent in every frame.
     JogHold,

@@ -1,5 +1,5 @@
 //! Motion of the drives requested in the window: the held button, the running action, and the outcome of the last one.
-//! The dead-man control behind [`ShaftMotion`] alone decides what is sent to a drive. This module refreshes its requests and
+//! The dead-man control behind [`Motion`] alone decides what is sent to a drive. This module refreshes its requests and
 //! ends them at once when required.
 //!
 //! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. A
@@ -28,7 +28,7 @@ pub struct DriveMotion {
     experts: BTreeSet<DriveNumber>,
     /// Latest endless run, with its number. When it ends or is replaced, the next one must be allowed again.
     endless_run: Option<(DriveNumber, u64)>,
-    /// Direction enabled to lead further outside the limits, for the next press and the press in progress.
+    /// Direction enabled to move the drive further outside the limits, for the next press and the press in progress.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
     /// Limits of the drives at the last update. Unconfirmed limits outlive a session.
@@ -229,7 +229,7 @@ impl DriveMotion {
         self.freed = Some((drive, direction));
     }
 
-    /// Returns whether the next or current jog in this direction may lead further outside the limits.
+    /// Returns whether the next or current jog in this direction may move the drive further outside the limits.
     pub fn is_outward_jog_enabled(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()

@@ -53,7 +53,7 @@ impl HiperdriveDevice {
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward })
     }
 
-    /// Returns whether this direction may lead further outside the limits and has not been enabled.
+    /// Returns whether this direction may move the drive further outside the limits and has not been enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.out_of_range_position(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_outward_jog_enabled(drive, direction)

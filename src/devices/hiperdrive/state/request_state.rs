@@ -225,14 +225,14 @@ impl HiperdriveDevice {
         reachable
     }
 
-    /// Describes the control word that leads a drive to a state, and whether the manual documents it.
+    /// Describes the control word that brings a drive to a state, and whether the manual documents it.
     pub fn transition_hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.to_u16())))
     }
 
-    /// Returns the request that leads a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
+    /// Returns the request that brings a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
     /// no request does. A fault is left by acknowledging it, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<MotorCommand> {
         match to {

@@ -243,8 +243,8 @@ impl HiperdriveDevice {
         if self.axes.is_empty() {
             return;
         }
-        // `None` means that the review is closed. After the review has ended, the value tells whether it was carried
-        // out.
+        // `None` means that the review is closed. After the review has ended, the value specifies whether it was
+        // executed.
         let write = self.open_review().map(|review| match &review.state {
             ReviewState::Done(..) => Some(Ok(())),
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),

@@ -1,4 +1,4 @@
-//! Values of an adapter or a hub (or a profile of one), and the edited ones. Nothing is written to a device here. A
+//! Values of an adapter or a hub (or a profile of one), and the edited ones. No data is written to a device here. A
 //! plan is made from the difference.
 //!
 //! Every edit creates a complete new state, to which undo can return. Edits survive a new reading: edited values stay,
@@ -125,17 +125,17 @@ impl StagedEdits {
         matches!(self.base_source, BaseSource::Device)
     }
 
-    /// Discards all values and edits, for another device.
+    /// Discards all values and edits before another device is used.
     pub fn clear(&mut self) {
         *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
 
-    /// Returns the values of the device or the profile, or `None` if nothing was read.
+    /// Returns the values of the device or the profile, or `None` if no data was read.
     pub fn base(&self) -> Option<&Image> {
         self.base.as_ref()
     }
 
-    /// Returns the edited values, or `None` if nothing was read.
+    /// Returns the edited values, or `None` if no data was read.
     pub fn edited_values(&self) -> Option<&Image> {
         self.wanted.as_ref()
     }

@@ -1,4 +1,5 @@
-//! Meaning of frames in the trace: which parameter is read or written with which value, and why a device refuses.
+//! Meaning of frames in the trace: which parameter is read or written with which value, and why a device rejects the
+//! request.
 
 use std::collections::VecDeque;
 
@@ -147,7 +148,7 @@ mod tests {
     const HEAD: &str = "6F 00 14 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
                         00 00 00 00 00 00 02 00 00 00 00 00 B2 00 04 00";
 
-    /// Issue 22.11: refusals and deliberately damaged explicit messages (reference 7) are explained and marked.
+    /// Issue 22.11: rejections and deliberately damaged explicit messages (reference 7) are explained and marked.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let cases = [

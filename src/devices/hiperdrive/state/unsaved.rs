@@ -44,7 +44,7 @@ impl UnsavedChanges {
         }
     }
 
-    /// Records that a plan ended early. `begun` tells whether part of it was or may have been written.
+    /// Records that a plan ended early. `begun` specifies whether part of it was or may have been written.
     pub(super) fn interrupt_plan(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);

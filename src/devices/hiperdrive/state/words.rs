@@ -1,4 +1,4 @@
-//! Parameter texts for the table: values, units, the meaning of a number, and why an edit was refused.
+//! Parameter texts for the table: values, units, the meaning of a number, and why an edit was rejected.
 
 use super::staged::{EditError, EditFinding};
 use crate::app::Text;

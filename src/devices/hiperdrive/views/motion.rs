@@ -19,7 +19,7 @@ use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 
 use crate::ui::{Theme, icons};
 
-/// A percentage as typed, with the value in effect when it was last drawn.
+/// A percentage as entered, with the value in effect when it was last drawn.
 pub(super) type Draft = Option<(String, Percent)>;
 
 #[derive(Default)]
@@ -132,7 +132,7 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut V
 }
 
 /// Draws the state diagram and the current activity of the drive. The activity is beside the heading or, in a narrow
-/// window, below it. The height is constant, since nothing may move under a pointer that holds a drive's button.
+/// window, below it. The height is constant, since no drive may move under a pointer that holds a drive's button.
 fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     let mut acts = Vec::new();

@@ -74,7 +74,7 @@ pub(super) fn page_ui(
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.add_space(theme.space.inside);
-        // Below the table, so that its rows keep their place.
+        // Below the table, so that its rows keep their position.
         if let Some(problem) = view.table.problem(theme) {
             let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
             paragraph(ui, RichText::new(words).color(theme.palette.bad));

@@ -78,7 +78,7 @@ fn parse_change(item: Item, value: &str) -> Result<Change> {
     }
 }
 
-/// Parses a settings byte. Reserved values are refused.
+/// Parses a settings byte. Reserved values are rejected.
 pub(super) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(parse_byte_in_range(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
@@ -103,7 +103,7 @@ fn parse_item_value(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// Executes the plan, after asking for consent if required. An empty plan sends nothing.
+/// Executes the plan, after asking for consent if required. An empty plan does not send anything.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,

@@ -17,7 +17,7 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::store::EntryKind;
 
-/// Number of persistent writes that an encoder endures. According to the manual, its counter, which is in the same
+/// Number of persistent writes that an encoder withstands. According to the manual, its counter, which is in the same
 /// EEPROM, can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
@@ -258,7 +258,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// Returns whether the encoder refused to report a position for a temporary reason.
+    /// Returns whether the encoder did not report a position for a temporary reason.
     pub fn is_without_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.is_without_position())
     }

@@ -267,7 +267,7 @@ fn read_item(master: &mut Master<'_>, item: Item) -> Result<Value, JobError> {
     if let (Item::Field(FieldRange { field, .. }) | Item::Status(field), Err(error)) = (item, &value)
         && error.is_rejection(StatusCode::NO_SUCH_FIELD)
     {
-        // The list of existing fields is more useful than the encoder's refusal.
+        // The list of existing fields is more useful than the encoder's rejection.
         let count = procedures::write::read_memory(master)?.fields;
         return Err(PlanError::NoSuchField { field, count }.into());
     }

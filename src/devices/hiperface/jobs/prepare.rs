@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. Nothing is written.
+//! Preparation of a plan from a change. No data is written.
 
 use std::collections::BTreeSet;
 

@@ -122,7 +122,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// Compares the analogue channels with their limits on the extended label. A channel that the encoder refuses is
+/// Compares the analogue channels with their limits on the extended label. A channel that the encoder rejects is
 /// omitted.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended_label() else { return Ok(None) };

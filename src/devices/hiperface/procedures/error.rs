@@ -25,7 +25,7 @@ pub enum Error {
     NeverSilent,
     #[error("{} was refused: {}", command.row().name, code_list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
-    /// The encoder can no longer be reached, so it is unknown whether a change was carried out.
+    /// The encoder can no longer be reached, so it is unknown whether a change was executed.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
         command: Command,
@@ -131,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder refused to report a position for a temporary reason.
+    /// Returns whether the encoder did not report a position for a temporary reason.
     pub fn is_without_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }

@@ -15,7 +15,7 @@ const MIN_TRANSFER: usize = 4;
 /// Reads the status byte of a field.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal because the field does not exist.
+/// Errors of the exchange, or a rejection because the field does not exist.
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
     match master.request_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
@@ -26,7 +26,7 @@ pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataField
 /// Reads a complete field. If the access code is wrong, the field is returned without bytes.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal for another reason.
+/// Errors of the exchange, or a rejection for another reason.
 pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Error> {
     let status = read_field_status(master, number)?;
     let code = master.station().codes.get(status.code());
@@ -103,7 +103,7 @@ pub(super) fn separate_value_error<T>(
 /// bits.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal.
+/// Errors of the exchange, or a rejection.
 pub fn read_range(
     master: &mut Master<'_>,
     field: u8,

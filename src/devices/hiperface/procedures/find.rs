@@ -61,7 +61,7 @@ pub enum SearchProgress<'a> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EncoderSearchResult {
-    /// Another device is sending on this line, so nothing was sent.
+    /// Another device is sending on this line, so no data was sent.
     ForeignTraffic {
         /// Bytes received while listening.
         bytes: usize,

@@ -62,7 +62,7 @@ pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Id
 /// Reads type label, serial number, memory and, for type code FFh, the extended label.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal. A refusal of 56h or 4Eh is not an error, because some types do not support
+/// Errors of the exchange, or a rejection. A rejection of 56h or 4Eh is not an error, because some types do not support
 /// them.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
@@ -100,7 +100,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
 /// Reads serial number and firmware, or returns empty strings if the encoder does not support the command.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal.
+/// Errors of the exchange, or a rejection.
 pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
     Ok(match optional_value(master.request_confirmed(&Request::ReadSerial))? {
         Some(Reply::Serial(serial)) => serial,
@@ -117,7 +117,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
 /// Reads the address of the encoder that replies to a request at the session's address. The latter may be broadcast.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal.
+/// Errors of the exchange, or a rejection.
 pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
     master.request_with_time(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
@@ -125,7 +125,7 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
 /// Reads the complete data field FFh, using 4Ch for its size and then 4Ah with code 0.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal if the encoder has no extended label.
+/// Errors of the exchange, or a rejection if the encoder has no extended label.
 pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     let status = super::read_field_status(master, EXTENDED_LABEL_FIELD)?;
     let code = master.station().codes.get(AccessCodeNumber::ZERO);
@@ -141,7 +141,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_undisplayed_codes())
 }
 
-/// Converts the refusal of an unsupported command to `None`. Any other error remains an error.
+/// Converts the rejection of an unsupported command to `None`. Any other error remains an error.
 fn optional_value<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

@@ -83,10 +83,10 @@ impl<'a> Master<'a> {
         self.line.ctx.wire.can_set_format()
     }
 
-    /// Sends a request that changes nothing in the encoder, and repeats it after line errors.
+    /// Sends a request that does not change anything in the encoder, and repeats it after line errors.
     ///
     /// # Errors
-    /// Every attempt failed, the encoder refused, or the user cancelled.
+    /// Every attempt failed, the encoder rejects the request, or the user cancelled.
     pub(super) fn request(&mut self, request: &Request) -> Result<Reply, Error> {
         self.request_with_time(request).map(|timed| timed.reply)
     }
@@ -135,8 +135,8 @@ impl<'a> Master<'a> {
     /// attempt is unclear, `is_done` reads it back. The request is then repeated only if it was not executed.
     ///
     /// # Errors
-    /// The encoder refused, `is_done` could not determine the result ([`Error::Unclear`]), or the request was not
-    /// executed in five attempts.
+    /// The encoder rejects the request, `is_done` could not determine the result ([`Error::Unclear`]), or the request
+    /// was not executed in five attempts.
     pub(super) fn send_verified(
         &mut self,
         request: &Request,
@@ -209,7 +209,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads the status codes that a reply announces, and returns a refusal as an error.
+    /// Reads the status codes that a reply announces, and returns a rejection as an error.
     pub(super) fn resolve_status(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<TimedReply, Error> {
         self.station.line.clear_error();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;

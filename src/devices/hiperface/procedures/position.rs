@@ -24,7 +24,7 @@ pub struct PositionReading {
 /// Reads the position (42h), and all status codes if the reply announces any.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal because the encoder has no position.
+/// Errors of the exchange, or a rejection because the encoder has no position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_met.len();
     let timed = master.request_with_time(&Request::ReadPosition)?;
@@ -68,7 +68,7 @@ impl WatchedQuantity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
     /// Time at which the encoder sampled an analogue value. It is the falling edge of the reply's first start bit. For
-    /// a counter or a refusal, it is the time at which the reply was parsed.
+    /// a counter or a rejection, it is the time at which the reply was parsed.
     pub at: Moment,
     pub watch: WatchedQuantity,
     pub value: Result<i64, Error>,
@@ -76,7 +76,7 @@ pub struct WatchedReading {
 }
 
 impl WatchedReading {
-    /// Returns whether the encoder does not support the command or the channel. Any other refusal is temporary.
+    /// Returns whether the encoder does not support the command or the channel. Any other rejection is temporary.
     pub fn is_refused(&self) -> bool {
         match &self.value {
             Err(Error::Rejected { codes, .. }) => {
@@ -87,7 +87,7 @@ impl WatchedReading {
     }
 }
 
-/// Reads a watched value once. A refusal is a valid result.
+/// Reads a watched value once. A rejection is a valid result.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -109,7 +109,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Res
 /// Reads the position like [`read_position`]. A temporary lack of a position is a valid result.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal for another reason.
+/// Errors of the exchange, or a rejection for another reason.
 pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PolledSample, Error> {
     let met_before = master.station().codes_met.len();
     match read_position(master, geometry) {
@@ -132,7 +132,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
 /// Reads an analogue channel (44h). It usually has 10 bits for 5 V, with a sign. Otherwise, see the data sheet.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal because the channel does not exist.
+/// Errors of the exchange, or a rejection because the channel does not exist.
 pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
     request_analogue(master, channel).map(|(_, value)| value)
 }
@@ -167,7 +167,7 @@ pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Optio
 /// Reads the counter (46h), 0…FFFFFFh.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal.
+/// Errors of the exchange, or a rejection.
 pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     match master.request_confirmed(&Request::ReadCounter)? {
         Reply::Counter(value) => Ok(value),

@@ -42,7 +42,7 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 /// settings.
 ///
 /// # Errors
-/// A refusal, or no reply at the new settings. Both sides then have the old settings, if the encoder still replies.
+/// A rejection, or no reply at the new settings. Both sides then have the old settings, if the encoder still replies.
 pub fn set_temporary_line_settings(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
     let format = settings.character_format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);

@@ -20,14 +20,14 @@ pub struct Survey {
     /// Quality of the line at the end of the survey.
     pub line: LineQuality,
     pub counter: Option<u32>,
-    /// Position. It is `None` if the encoder refused to report it for a reason that is not temporary.
+    /// Position. It is `None` if the encoder did not report it for a reason that is not temporary.
     pub position: Option<PolledSample>,
 }
 
 /// Reads the status queue first, then everything else. A feature that an encoder type does not support is not an error.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal of a command that every type supports.
+/// Errors of the exchange, or a rejection of a command that every type supports.
 pub fn read_all_values(
     master: &mut Master<'_>,
     types: &EncoderTypes,
@@ -67,7 +67,7 @@ pub(super) fn read_survey(
         ReadPolicy::Whole => read_all_fields(master, count, progress)?,
         ReadPolicy::AsFarAsPossible => read_accessible_fields(master, count, &mut unreadable, progress)?,
     };
-    // A restore needs neither value, so a refusal does not end the reading.
+    // A restore needs neither value, so a rejection does not end the reading.
     let position = read_sample(master, identity.geometry);
     let position = separate_value_error(master, position)?.ok();
     let counter = read_counter(master);

@@ -1,4 +1,4 @@
-//! Execution of a plan: reads the values on which it is based again, carries out each operation, and reads all changes
+//! Execution of a plan: reads the values on which it is based again, executes each operation, and reads all changes
 //! back.
 
 pub use crate::profile::WrittenChanges;
@@ -74,7 +74,7 @@ impl Write for EncoderWriter<'_, '_> {
 
     fn apply(&mut self, op: &Op, confirmed: &ConfirmedPlan<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
         let sent = execute(&mut self.master, op, confirmed, position_range(self.identity.geometry));
-        // A change that was refused or not sent has no effect. Any other change may have been carried out.
+        // A change that was rejected or not sent has no effect. Any other change may have been executed.
         done.write_cycles += match &sent {
             Ok(sent) => u64::from(*sent),
             Err(cause) => u64::from(may_have_been_executed(cause)),

@@ -1,4 +1,4 @@
-//! Reasons why a HIPERFACE profile is refused.
+//! Reasons why a HIPERFACE profile is rejected.
 
 /// Reason why a profile entry is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -151,7 +151,7 @@ impl Op {
     }
 
     /// Returns whether the operation makes a protected field writable. In that case, the operation that protects the
-    /// field again must be carried out even if an operation in between fails.
+    /// field again must be executed even if an operation in between fails.
     pub fn removes_protection(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))

@@ -19,7 +19,7 @@ pub enum FrameDetail {
     Request(Arguments),
     /// The frame is not a request, and it cannot be recognised as a reply without its request.
     NoRequest(RequestError),
-    /// The encoder refused the request with this status code.
+    /// The encoder rejected the request with this status code.
     Refused(StatusCode),
     /// A status code from the encoder's status queue.
     Code(StatusCode),

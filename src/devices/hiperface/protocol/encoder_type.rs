@@ -94,7 +94,7 @@ impl EncoderTypes {
     /// Parses an encoder type table.
     ///
     /// # Errors
-    /// [`TypeTableError::Syntax`] if the table is not valid RON or has unknown keys, and [`TypeTableError::ParameterRange`] if a
+    /// [`TypeTableError::Syntax`] if the table is not valid RON or has unknown keys, and [`TypeTableError::Range`] if a
     /// number is out of range.
     pub fn parse(text: &str) -> Result<Self, TypeTableError> {
         let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {

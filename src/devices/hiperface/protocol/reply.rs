@@ -44,7 +44,7 @@ pub enum Answer {
         /// Reply data.
         reply: Reply,
     },
-    /// The command was refused with at least one status code.
+    /// The command was rejected with at least one status code.
     Rejected {
         /// Whether more codes are waiting in the status queue.
         pending: bool,
@@ -99,7 +99,7 @@ pub struct ReplyLength {
 
 impl Request {
     /// Returns the possible lengths of the reply, or `None` for a request without a reply. The bytes `received` so far
-    /// decide between a reply and a refusal.
+    /// decide between a reply and a rejection.
     pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
         let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
         let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });

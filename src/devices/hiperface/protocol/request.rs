@@ -28,7 +28,7 @@ pub enum Request {
     },
     /// Reads the 24-bit counter (46h).
     ReadCounter,
-    /// Increments the counter (47h). This wears the EEPROM, which endures about a million writes.
+    /// Increments the counter (47h). This wears the EEPROM, which withstands about a million writes.
     IncrementCounter,
     /// Clears the counter (49h).
     ClearCounter {

@@ -14,7 +14,7 @@ pub enum StatusClass {
     Initialisation,
     /// A frame was not understood, or the encoder was restarted.
     Protocol,
-    /// Access to a data field was refused.
+    /// Access to a data field was rejected.
     Data,
     /// The position is unreliable.
     Position,

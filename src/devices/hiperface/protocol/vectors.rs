@@ -1,6 +1,6 @@
 //! The golden vectors of `tests/vectors/hiperface.txt` against frames, requests and replies; damage; and noise.
 //!
-//! [`table`] has the vectors as typed values.
+//! [`table`] has the vectors as entered values.
 
 use std::collections::BTreeSet;
 

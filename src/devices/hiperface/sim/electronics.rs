@@ -122,7 +122,7 @@ impl EncoderElectronics {
     /// Executes a request at time `at`, and returns the data of its reply. 53h has no effect and no data here.
     ///
     /// # Errors
-    /// The status code with which the encoder refuses the request. Nothing has changed.
+    /// The status code with which the encoder rejects the request. Nothing has changed.
     pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
         let data = self.execute_request(at, request)?;
         let command = request.command();

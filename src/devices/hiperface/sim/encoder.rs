@@ -36,7 +36,7 @@ impl ResponseTimes {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the processing time of a frame. If the frame is refused, this is the time of a status reply.
+    /// Returns the processing time of a frame. If the frame is rejected, this is the time of a status reply.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -253,7 +253,7 @@ impl Encoder {
         }
     }
 
-    /// Records the start of a received character. All actions due earlier must already have been [executed](Self::act).
+    /// Records the start of a received character. All actions due earlier must already have been [executed](Self::run_due_action).
     pub(super) fn handle_input(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.active_settings_at(heard.start) else { return };
         let Some(timing) = Timing::from_settings(settings) else { return };

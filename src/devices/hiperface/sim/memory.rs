@@ -1,5 +1,5 @@
 //! EEPROM of an encoder: consecutive data fields and four access codes (manual, "Datenspeicherung und Verwaltung").
-//! Requests are refused with the status codes of the reference. The order of the checks is field (12h), range (11h),
+//! Requests are rejected with the status codes of the reference. The order of the checks is field (12h), range (11h),
 //! access code (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
 //!
 //! Assumptions where the manual is silent (`U`): bytes that were never written are FFh. The bytes of a deleted field
@@ -115,7 +115,7 @@ impl Memory {
     /// Writes bytes of a field (4Bh).
     ///
     /// # Errors
-    /// See [`check_store_request`](Self::check_store_request). Nothing is written.
+    /// See [`check_store_request`](Self::check_store_request). No data is written.
     pub fn store_bytes(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
         self.check_store_request(field, address, data.len(), code)?;
         let start = self.field_range(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);

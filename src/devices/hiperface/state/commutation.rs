@@ -36,7 +36,7 @@ pub enum CommutationAction {
 #[derive(Debug, Default)]
 pub struct Commutation {
     pub form: Form,
-    /// Reason why the last action was not carried out.
+    /// Reason why the last action was not executed.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
     /// Slot of the last reading. The shaft is assumed to be still at this position.
@@ -50,7 +50,7 @@ pub struct Commutation {
 struct PendingReading {
     slot: VectorSlot,
     source: Source,
-    /// Phase as typed by the user.
+    /// Phase as entered by the user.
     phase: String,
 }
 

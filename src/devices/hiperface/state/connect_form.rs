@@ -43,7 +43,7 @@ pub struct LinkForm {
     /// Whether the encoder's time-out is 44 bits rather than 11 bits.
     pub long_timeout: bool,
     pub model: String,
-    /// Values of the remaining parameters, as typed.
+    /// Values of the remaining parameters, as entered.
     pub typed: EnteredValues,
     /// Link parameters that the form cannot show, with their values.
     pub rest: Vec<(String, String)>,

@@ -60,12 +60,12 @@ impl Record {
         self.track.watched_values()
     }
 
-    /// Returns the last position, or `None` while the encoder refuses to report one.
+    /// Returns the last position, or `None` while the encoder does not report one.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// Returns whether the encoder refuses to report a position at present.
+    /// Returns whether the encoder currently does not report a position.
     pub fn is_position_refused(&self) -> bool {
         self.refused
     }

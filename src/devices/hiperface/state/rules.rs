@@ -110,7 +110,7 @@ fn plan_permission(plan: Result<HiperfacePlan, PlanError>) -> ActionPermission {
 mod tests {
     use super::*;
 
-    /// A plan that deletes an edited field is refused, for example a restore that creates fields again.
+    /// A plan that deletes an edited field is rejected, for example a restore that creates fields again.
     #[test]
     fn a_plan_that_deletes_an_edited_field_is_refused() {
         let status = DataFieldStatus::from_byte(0xC8);

@@ -1,4 +1,4 @@
-//! Data fields of the encoder with the edited bytes. Nothing is written to the encoder here. The plan of a write is
+//! Data fields of the encoder with the edited bytes. No data is written to the encoder here. The plan of a write is
 //! made from the differences.
 //!
 //! Edits survive a new reading. An edited byte keeps its edited value, and all other bytes take the value from the

@@ -69,7 +69,7 @@ impl HasMemory for Encoder {
         self.apply_operations(&ops, services);
     }
 
-    /// Does nothing, because the list of jobs already shows the start.
+    /// Has no effect, because the list of jobs already shows the start.
     fn log_write_start(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {

@@ -45,7 +45,7 @@ pub(crate) struct HiperfaceUiState {
     values: values::ValuesUiState,
     setup: setup::SetupUiState,
     check_restart: bool,
-    /// Analogue channel to watch, as typed.
+    /// Analogue channel to watch, as entered.
     channel: String,
 }
 

@@ -18,7 +18,7 @@ use crate::devices::interbus::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Plans a change. Nothing is written.
+/// Plans a change. No data is written.
 pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
         Change::Restore { profile, .. } => programs_to_read(profile).len() == ProgramNumber::COUNT,
@@ -39,7 +39,7 @@ fn reduces_steps(op: &Op) -> bool {
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
-/// Executes a plan after consent, if consent is required. An empty plan sends nothing.
+/// Executes a plan after consent, if consent is required. An empty plan does not send anything.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,

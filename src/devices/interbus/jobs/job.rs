@@ -54,7 +54,7 @@ pub enum InterbusJob {
     Save {
         programs: bool,
     },
-    /// Plans a change. Nothing is written.
+    /// Plans a change. No data is written.
     Prepare(Change),
     Commit(Box<Commit>),
     /// Ends an earlier parameterisation, error or read-out. Values that were set but not stored are now stored, which
@@ -139,9 +139,9 @@ pub enum WearAfterPlan {
     Known(u64),
     /// Number of stores after the plan. It exceeds the specification of the manufacturer, so the user has to confirm.
     Ask(u64),
-    /// Number of stores after the plan. The plan is refused unless it is forced.
+    /// Number of stores after the plan. The plan is rejected unless it is forced.
     Worn(u64),
-    /// The number of earlier stores is unknown. The plan is refused unless it is forced.
+    /// The number of earlier stores is unknown. The plan is rejected unless it is forced.
     Unknown,
 }
 

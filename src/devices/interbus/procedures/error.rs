@@ -48,7 +48,7 @@ impl fmt::Display for RequestedItem {
     }
 }
 
-/// An exception code with which a gateway refuses a request. See *MODBUS application protocol* 1.1b3, chapter 7.
+/// An exception code with which a gateway rejects a request. See *MODBUS application protocol* 1.1b3, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exception(u8);
 
@@ -168,7 +168,7 @@ pub enum Error {
     /// The word was not sent. In its present mode, the encoder would interpret it as another command.
     #[error(transparent)]
     Illegal(#[from] ForbiddenCommandError),
-    /// The encoder refused the command with an error word.
+    /// The encoder rejected the command with an error word.
     #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), to_word(*error), error.meaning(), error.remedy())]
     Refused { sent: Command, error: ErrorWord },
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]

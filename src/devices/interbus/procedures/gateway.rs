@@ -23,7 +23,7 @@ use crate::units::Moment;
 /// Number of unanswered attempts after which a gateway counts as lost.
 const MAX_UNANSWERED: u32 = 3;
 const MAX_ATTEMPTS: u32 = 5;
-/// Pause after a refusal before the request is repeated.
+/// Pause after a rejection before the request is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
 /// Required silence after bytes that are not a frame. The next bytes start a new frame.
 const RESYNC_SILENCE: Duration = Duration::from_millis(50);
@@ -31,9 +31,9 @@ const RESYNC_SILENCE: Duration = Duration::from_millis(50);
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Number of bytes before the function code of a frame. They are its number, protocol, length and unit.
 const HEADER: usize = 7;
-/// Length of the shortest frame, which is a refusal, in bytes.
+/// Length of the shortest frame, which is a rejection, in bytes.
 const MIN_FRAME_LEN: usize = HEADER + 2;
-/// Bit that is set in the function code of a refusal.
+/// Bit that is set in the function code of a rejection.
 const EXCEPTION_BIT: u8 = 0x80;
 
 /// A gateway with one encoder, for the duration of one job.
@@ -258,8 +258,8 @@ fn parse_reply(
     if unit != request.unit_id {
         return Err(ExchangeError::Damage(ReplyDamage::Unit { requested: request.unit_id, got: unit }));
     }
-    // Refusals are parsed here, because the crate changes the codes 0Ah and 0Bh and takes every other function for a
-    // refusal.
+    // Rejections are parsed here, because the crate changes the codes 0Ah and 0Bh and takes every other function for a
+    // rejection.
     if function == requested.function_code() | EXCEPTION_BIT {
         return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }

@@ -1,5 +1,5 @@
 //! Host side of the handshake (reference 4). Each word is sent until it takes effect. A word that would have another
-//! meaning in the present mode of the encoder is refused.
+//! meaning in the present mode of the encoder is rejected.
 
 mod acknowledge;
 mod modes;
@@ -33,7 +33,7 @@ pub struct Master<'a> {
     tell: Option<StepListener<'a>>,
     /// Mode of the encoder, or `None` if it was not read in this job.
     is: Option<StartupMode>,
-    /// Whether a mode switch still has to be confirmed by the encoder.
+    /// Whether a mode switch still must be confirmed by the encoder.
     unsure: bool,
     /// Whether the encoder was switched to other modes in this job.
     switched: bool,
@@ -154,7 +154,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns [`Error::UnknownReadOut`] if the value does not exist, and otherwise the same errors as
-    /// [`set`](Self::set).
+    /// [`send_setting`](Self::send_setting).
     pub(super) fn request_value(&mut self, command: Command) -> Result<Value, Error> {
         self.wait_until_value_cleared()?;
         self.ensure_legal(command)?;
@@ -216,7 +216,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns [`Error::TimeOut`] if the position does not become the preset, and otherwise the same errors as
-    /// [`set`](Self::set).
+    /// [`send_setting`](Self::send_setting).
     pub(super) fn trigger_preset(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.return_to_operation()?;
         self.ensure_legal(Command::Preset)?;
@@ -342,7 +342,7 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether the gateway refused to write the word. After any other exception, the word may have been written.
+/// Returns whether the gateway did not write the word. After any other exception, the word may have been written.
 fn is_write_refused(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.is_temporary())
 }

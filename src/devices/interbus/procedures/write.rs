@@ -1,4 +1,4 @@
-//! Execution of a plan. The values on which it is based are read again. Each operation is carried out and verified, and
+//! Execution of a plan. The values on which it is based are read again. Each operation is executed and verified, and
 //! finally the encoder returns to its previous mode.
 
 use std::time::Duration;

@@ -3,7 +3,7 @@
 use super::item::{Item, ItemError};
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 
-/// The reason why a profile entry is refused.
+/// The reason why a profile entry is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// The program occurs twice.

@@ -20,7 +20,7 @@ pub struct InterbusProfile {
     pub mounting: Vec<MountingMark>,
     /// Values that change without a write or cannot be written. They are neither compared nor restored.
     pub recorded: RecordedValues,
-    /// Entries that this version does not know. They are preserved when the profile is saved.
+    /// Entries that this version does not recognise. They are preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
@@ -31,7 +31,7 @@ pub struct ProfileIdentity {
     pub serial_number: String,
     /// Flags, read-out Ah, or `None` if unknown. They state how steps are counted and whether turns are counted.
     pub flags: Option<Flags>,
-    /// Entries that this version does not know. They are preserved when the profile is saved.
+    /// Entries that this version does not recognise. They are preserved when the profile is saved.
     pub unknown: UnknownValues,
 }
 
@@ -48,7 +48,7 @@ pub struct RecordedValues {
     pub mode: Option<StartupMode>,
     /// Preset flag, read-out 6.
     pub preset_flag: Option<u32>,
-    /// Entries that this version does not know. They are preserved when the profile is saved.
+    /// Entries that this version does not recognise. They are preserved when the profile is saved.
     pub unknown: UnknownValues,
 }
 
@@ -62,7 +62,7 @@ pub struct CamNames {
     cams: BTreeMap<(ProgramNumber, CamNumber), String>,
 }
 
-/// Entries that this version does not know, by the structure that contains them.
+/// Entries that this version does not recognise, by the structure that contains them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) parameters: UnknownValues,

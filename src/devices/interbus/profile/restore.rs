@@ -30,7 +30,7 @@ pub fn programs_to_read(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     }
 }
 
-/// Plans a restore. Nothing is written.
+/// Plans a restore. No data is written.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if the encoder does not match the profile or a value is invalid.

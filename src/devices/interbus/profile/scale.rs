@@ -95,7 +95,7 @@ impl Scale {
     }
 
     /// Creates a scale. `steps` is the number of steps per turn or per millimetre, and is ignored if the unit is
-    /// [`HiperdriveDevice::ProgressSteps`].
+    /// [`Unit::Steps`].
     ///
     /// # Errors
     /// Returns [`ScaleError`] if `steps` is used and not above 0.

@@ -87,7 +87,7 @@ impl CamOutput {
         ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32
     }
 
-    /// Returns the position bits of the window, shifted to their original places. See [`WindowShift::mask`].
+    /// Returns the position bits of the window, shifted to their original positions. See [`WindowShift::mask`].
     pub const fn position_bits(self, shift: WindowShift) -> u32 {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }

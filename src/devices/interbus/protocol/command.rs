@@ -100,7 +100,7 @@ impl Command {
         }
     }
 
-    /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::UnknownValues`] if the manual
+    /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::Unknown`] if the manual
     /// does not define the word.
     pub fn all_meanings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =
@@ -116,7 +116,7 @@ impl Command {
     /// Parses a word as an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// Returns [`RejectedParameter`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
+    /// Returns [`ForbiddenCommandError`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
     /// any.
     pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, ForbiddenCommandError> {
         let readings = Command::all_meanings(word);
@@ -132,7 +132,7 @@ impl Command {
     /// Checks that an encoder in the given mode interprets the command as intended.
     ///
     /// # Errors
-    /// Returns [`RejectedParameter`] if the command must not be sent in this mode.
+    /// Returns [`ForbiddenCommandError`] if the command must not be sent in this mode.
     pub fn ensure_legal(self, mode: EncoderMode) -> Result<(), ForbiddenCommandError> {
         if self.is_legal_in(mode) { Ok(()) } else { Err(ForbiddenCommandError { command: self, mode }) }
     }

@@ -57,7 +57,7 @@ parameters! {
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
         pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
-        /// Share of requests that are refused with exception 0Bh.
+        /// Share of requests that are rejected with exception 0Bh.
         pub(super) exceptions: f64 = 0.0, "exception" => DecimalNumbers(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
         /// Shares of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced by random bytes

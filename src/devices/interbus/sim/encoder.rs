@@ -87,7 +87,7 @@ struct PreviousInWord {
     until: Moment,
 }
 
-/// Reason why a word is refused. See reference 2.
+/// Reason why a word is rejected. See reference 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum WordFault {
     WrongData,
@@ -118,8 +118,8 @@ impl Encoder {
     /// Value of read-out 7. It is chosen for the simulation.
     const SOFTWARE_VERSION: u32 = 204;
 
-    /// Creates an encoder from `config`. `number` is its place behind the gateway, counted from 0. Its power has been
-    /// on for a long time.
+    /// Creates an encoder from `config`. `number` is its position behind the gateway, counted from 0. Its power has
+    /// been on for a long time.
     pub(super) fn new(config: &Config, number: u8) -> Self {
         let memory = config.memory.clone();
         Encoder {

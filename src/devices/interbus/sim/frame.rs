@@ -5,7 +5,7 @@ use rmodbus::ModbusProto;
 use rmodbus::consts::ModbusFunction;
 use rmodbus::server::{ModbusFrame, Read};
 
-/// Modbus exception code of a refused request.
+/// Modbus exception code of a rejected request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exception {
     Function = 0x01,

@@ -41,7 +41,7 @@ pub struct Encoder {
     /// Cam table that was read but not applied yet.
     pub import: Option<Import>,
     pub scale: Scale,
-    /// Reason why the last edit was refused.
+    /// Reason why the last edit was rejected.
     pub refusal: Option<Text>,
     /// Whether the user has confirmed the standstill of the machine.
     stopped: bool,

@@ -60,7 +60,7 @@ impl Default for Reading {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodedWord {
-    /// Word as typed.
+    /// Word as entered.
     pub word: String,
     /// Meaning of the word, or a message if the entry is not a word.
     pub meaning: Result<Text, Text>,

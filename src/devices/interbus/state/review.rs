@@ -80,7 +80,7 @@ impl Reviewable for Interbus {
     }
 
     fn reaches_wear_limit(prepared: &Prepared) -> bool {
-        // Above the manufacturer's limit, the user has to confirm again. This also applies to a plan that is refused
+        // Above the manufacturer's limit, the user has to confirm again. This also applies to a plan that is rejected
         // unless forced.
         matches!(
             prepared.wear_to_report(),

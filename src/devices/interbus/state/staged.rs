@@ -1,4 +1,4 @@
-//! Edited values of a K3 encoder or a profile, and the values on which they are based. Nothing is written to an encoder
+//! Edited values of a K3 encoder or a profile, and the values on which they are based. No data is written to an encoder
 //! here. A plan is made from the differences.
 //!
 //! Every edit creates a complete new state, to which undo can return. Edits are kept if the encoder is read again. All
@@ -159,17 +159,17 @@ impl StagedEdits {
         *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
 
-    /// Returns the base values, or `None` if nothing was read.
+    /// Returns the base values, or `None` if no data was read.
     pub fn base(&self) -> Option<&EditedValues> {
         self.base.as_ref()
     }
 
-    /// Returns the base values without names, or `None` if nothing was read.
+    /// Returns the base values without names, or `None` if no data was read.
     pub fn device(&self) -> Option<&Image> {
         self.base.as_ref().map(|base| &base.image)
     }
 
-    /// Returns the edited values, or `None` if nothing was read.
+    /// Returns the edited values, or `None` if no data was read.
     pub fn edited_values(&self) -> Option<&EditedValues> {
         self.wanted.as_ref()
     }

@@ -8,7 +8,7 @@ use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::{paragraph, problem_ui};
 use crate::ui::{Theme, icons, page};
 
-/// Draws the marks and the reason why the last edit was refused. Marks of the program `shown` come first.
+/// Draws the marks and the reason why the last edit was rejected. Marks of the program `shown` come first.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.visible_marks(shown);
     if marks.is_empty() && encoder.refusal.is_none() {

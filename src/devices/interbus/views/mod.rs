@@ -47,7 +47,7 @@ impl Page {
     }
 }
 
-/// State of the tab that is kept between frames, such as typed text and selections.
+/// State of the tab that is kept between frames, such as entered text and selections.
 #[derive(Default)]
 pub(crate) struct InterbusUiState {
     parameters: parameters::EncoderParametersUiState,

@@ -1,9 +1,9 @@
 //! Host side of the adapter: its identity, its settings and the words. During a stream the adapter accepts no other
 //! request, so any other request ends the stream first.
 //!
-//! Reading a word changes nothing except error bits that a transfer clears, so it can be repeated. An adapter that has
-//! replied before is asked up to five times within eight seconds. An adapter that has never replied is asked twice. See
-//! the reference.
+//! Reading a word does not change anything except error bits that a transfer clears, so it can be repeated. An adapter
+//! that has replied before is asked up to five times within eight seconds. An adapter that has never replied is asked
+//! twice. See the reference.
 
 use std::time::Duration;
 
@@ -36,8 +36,8 @@ impl<'a> Master<'a> {
     /// Steps that are already done are skipped.
     ///
     /// # Errors
-    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal by the adapter, or an
-    /// error of the connection.
+    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a rejection by the adapter, or
+    /// an error of the connection.
     pub fn identify(&mut self) -> Result<Identity, Error> {
         self.stop_word_stream()?;
         self.with_retries(|master| master.adapter_host().read_identity())?;

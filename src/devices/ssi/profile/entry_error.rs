@@ -1,8 +1,8 @@
-//! Reasons why an SSI profile is refused.
+//! Reasons why an SSI profile is rejected.
 
 use crate::devices::ssi::protocol::LayoutError;
 
-/// The reason why an entry of a profile is refused.
+/// The reason why an entry of a profile is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// The frame is impossible.

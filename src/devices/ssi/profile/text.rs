@@ -1,5 +1,5 @@
 //! The text format of an SSI profile, which users read and edit. Default values are omitted. Errors name the entry, and
-//! an impossible frame is refused with the reason.
+//! an impossible frame is rejected with the reason.
 
 use std::collections::VecDeque;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! Design of a layout. Every change can be undone. An impossible change is refused with a message, so the frame is
+//! Design of a layout. Every change can be undone. An impossible change is rejected with a message, so the frame is
 //! always valid.
 
 mod reshape;
@@ -105,7 +105,7 @@ impl LayoutDesigner {
         LayoutDesigner::from_profile(profile, families)
     }
 
-    /// Creates a designer for a link. The layout is known only if the link leads to a virtual encoder.
+    /// Creates a designer for a link. The layout is known only if the link refers to a virtual encoder.
     pub(super) fn for_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == LinkScheme::Sim);
         let mut profile = parse_profile(sent.unwrap_or(DEFAULT_ENCODER), &families);

@@ -60,7 +60,7 @@ impl Encoder {
     /// Sends the reading settings to the adapter if they differ from those last sent.
     fn send_reading_settings(&mut self, services: &mut Services) {
         let asking = self.query_settings();
-        // The adapter must be identified and idle. Settings that it refused are not sent again.
+        // The adapter must be identified and idle. Settings that it rejected are not sent again.
         if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
             self.requested = Some(asking);
             self.submit(SsiJob::Set(asking), services);

@@ -184,7 +184,7 @@ impl LayoutDesigner {
     /// Converts an entry to a change of the layout.
     ///
     /// # Errors
-    /// Returns the reason why the entry was refused.
+    /// Returns the reason why the entry was rejected.
     pub(super) fn parse_entry(&self, field: Field, input: &FieldInput) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {

@@ -160,7 +160,7 @@ impl Strip {
         moving::clock(&self.layout, handle)
     }
 
-    /// Returns the strip after a part was moved to a clock, or as close to it as possible. See [`with_part_moved`].
+    /// Returns the strip after a part was moved to a clock, or as close to it as possible. See [`move_part`].
     pub fn with_part_moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
         Strip::from_layout(&move_part(&self.layout, handle, to, following))
     }

@@ -44,7 +44,7 @@ impl TabPage for Page {
     ];
 }
 
-/// State of a session's pages that persists between UI frames, such as typed text.
+/// State of a session's pages that persists between UI frames, such as entered text.
 #[derive(Default)]
 pub(crate) struct SsiUiState {
     form: form::LayoutFormUiState,

@@ -25,7 +25,7 @@ pub(super) struct TrialUiState {
 }
 
 impl TrialUiState {
-    /// Returns whether the user is typing. An entry that was refused and is still shown does not count.
+    /// Returns whether the user is typing. An entry that was rejected and is still shown does not count.
     fn is_typing(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())

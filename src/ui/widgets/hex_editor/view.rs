@@ -68,7 +68,7 @@ impl HexView {
         }
     }
 
-    /// Returns the reason why the last request was refused.
+    /// Returns the reason why the last request was rejected.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }

@@ -1,4 +1,4 @@
-//! Editor of a register value. The entry takes effect with Enter or when the editor loses focus. If it is refused, the
+//! Editor of a register value. The entry takes effect with Enter or when the editor loses focus. If it is rejected, the
 //! editor stays open and shows the reason.
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};

@@ -17,7 +17,7 @@ pub struct RegisterView {
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     pub(super) wanted: Option<RegisterLocation>,
-    /// Reason why the last attempt to edit the value was refused.
+    /// Reason why the last attempt to edit the value was rejected.
     pub(super) refused: Option<String>,
     /// Whether the selection has moved and must be scrolled into view.
     pub(super) reveal: bool,
@@ -59,18 +59,18 @@ impl RegisterView {
         }
     }
 
-    /// Returns the reason why the edited value was refused, or why the value cannot be edited.
+    /// Returns the reason why the edited value was rejected, or why the value cannot be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.format_text(problem));
         typed.or_else(|| self.refused.clone())
     }
 
-    /// Returns the register whose value is being entered or was refused.
+    /// Returns the register whose value is being entered or was rejected.
     pub fn edited_location(&self) -> Option<RegisterLocation> {
         self.edit.as_ref().map(|edit| edit.place)
     }
 
-    /// Returns whether the edited value was refused and its editor is still open.
+    /// Returns whether the edited value was rejected and its editor is still open.
     pub fn is_refused(&self) -> bool {
         self.edit.as_ref().is_some_and(|edit| edit.problem.is_some())
     }

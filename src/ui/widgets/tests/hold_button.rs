@@ -107,7 +107,7 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
         // The finger is still there, and must be lifted first.
         assert_eq!(step(&mut harness, []), [], "{cause}");
     }
-    // A button that is not drawn reports nothing, which ends the hold.
+    // A button that is not drawn does not report anything, which ends the hold.
     let mut harness = jog();
     let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
@@ -259,7 +259,8 @@ fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     assert_eq!(step(&mut harness, [key(true, true)]), []);
 }
 
-/// Issue 21.2: under a dialog the pointer holds nothing either, nor does a press that began there after it is closed.
+/// Issue 21.2: under a dialog the pointer does not hold anything either, nor does a press that began there after it is
+/// closed.
 #[test]
 fn a_press_under_a_dialog_starts_no_hold() {
     let mut harness = jog();

@@ -249,7 +249,7 @@ fn typed_text_is_accepted_when_another_box_is_clicked() {
     click(&mut harness, "00:08 register 8", value, 1);
     assert_eq!(harness.state().edits.get(&place(0, 5)), Some(&0x7A));
     assert_eq!(entry(&harness).as_deref(), Some("00:08 register 8"));
-    // A refused value stays with its reason, and is discarded only by a further press.
+    // A rejected value stays with its reason, and is discarded only by a further press.
     harness.event(Event::Text("xy".to_owned()));
     harness.run();
     click(&mut harness, "00:10 register 16", value, 1);

@@ -7,7 +7,7 @@ use crate::profile::OperationError;
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// An exchange failed, the encoder refused a request, or the operation was cancelled.
+    /// An exchange failed, the encoder rejected a request, or the operation was cancelled.
     #[error(transparent)]
     Device(#[from] Error),
     #[error("the calibration ended with {status}")]

@@ -93,7 +93,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.master
     }
 
-    /// Records that the encoder was found in operation. `password` tells whether the password is set.
+    /// Records that the encoder was found in operation. `password` specifies whether the password is set.
     pub(in crate::devices::biss::procedures) fn set_initial_state(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
@@ -140,7 +140,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.standing.activity = activity;
     }
 
-    /// Returns the encoder to operation and clears the password. Sends nothing if the encoder is already in operation.
+    /// Returns the encoder to operation and clears the password. Does not send anything if the encoder is already in
+    /// operation.
     pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
         self.begin_step(ProcedureStep::LeadBack);
@@ -413,7 +414,7 @@ pub(super) fn lead_back(
     Err(Error::StaysUnlocked { mode: stays })
 }
 
-/// Sends the command that a procedure requires before its mode is left. A refusal is ignored.
+/// Sends the command that a procedure requires before its mode is left. A rejection is ignored.
 fn end_procedure(master: &mut Master<'_>, description: &Description, mode: DeviceMode) -> Result<(), Error> {
     use crate::devices::biss::protocol::{CalibrationStatus, DataCommand, DataStatus, WiegandCommand};
     let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };

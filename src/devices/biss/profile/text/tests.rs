@@ -215,7 +215,7 @@ fn a_mark_covers_its_registers() {
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
 }
 
-/// Issue 22.26: one changed value changes one place in the text.
+/// Issue 22.26: one changed value changes the text at one point.
 #[test]
 fn a_change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));

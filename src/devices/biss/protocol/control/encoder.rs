@@ -15,7 +15,7 @@ pub struct Encoder {
 /// A register access requested by the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The host reads a register and waits until [`Encoder::start_reply`] supplies its value.
+    /// The host reads a register and waits until [`Encoder::provide_value`] supplies its value.
     Read {
         /// Register address, 00h to 7Fh.
         address: u8,

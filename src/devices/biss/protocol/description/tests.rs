@@ -1,4 +1,4 @@
-//! The built-in descriptions against the reference, and broken ones with their places.
+//! The built-in descriptions against the reference, and broken ones with their locations.
 
 use proptest::prelude::*;
 

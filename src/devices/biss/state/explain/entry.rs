@@ -1,4 +1,4 @@
-//! Reasons for refusing a profile.
+//! Reasons for rejecting a profile.
 
 use crate::app::Text;
 use crate::devices::biss::profile::EntryError;

@@ -52,7 +52,7 @@ pub enum MotionRequest {
     Stop,
 }
 
-/// A state to which a drive can be led.
+/// A target state of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TargetState {
     /// Not ready, 0000h.
@@ -149,7 +149,7 @@ pub enum ActionEnd {
     Fault,
     /// The drive is no longer permitted to move.
     Locked(MotionLock),
-    /// The request was refused, and nothing was sent.
+    /// The request was rejected, and no data was sent.
     Refused(MotionRefusal),
     /// The drive did not follow a control word and remains in this state.
     NoAnswer(State),
@@ -182,7 +182,7 @@ pub enum MotionRefusal {
         /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
-    /// The drive is outside its limits, and the motion would lead further outside.
+    /// The drive is outside its limits, and the motion would move the drive further outside.
     Outward {
         /// Position in scaled steps.
         position: i32,
@@ -325,7 +325,7 @@ impl Permit {
     /// Checks whether a motion may begin or continue. `target` is its final position, if it has one.
     ///
     /// # Errors
-    /// Returns the [`ExtendedStatus`] if the motion is not permitted.
+    /// Returns the [`MotionRefusal`] if the motion is not permitted.
     pub fn check_request(&self, request: MotionRequest, target: Option<i32>) -> Result<(), MotionRefusal> {
         if !request.needs_motion() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Leading a drive through its states: one control word after another, each until the drive has followed or a time
+//! Taking a drive through its states: one control word after another, each until the drive has followed or a time
 //! limit expires (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
 
 use super::{
@@ -49,7 +49,7 @@ impl StateSequencer {
         StateSequencer { goal, acknowledges: false, word: None }
     }
 
-    /// Creates a sequence that leads the drive out of a fault or the switch-on lock to the ready state.
+    /// Creates a sequence that brings the drive out of a fault or the switch-on lock to the ready state.
     const fn out_of_fault() -> Self {
         StateSequencer { goal: TargetState::Ready, acknowledges: true, word: None }
     }
@@ -102,7 +102,7 @@ impl StateSequencer {
 }
 
 impl DeadMan {
-    /// Starts to lead the drive to the requested state.
+    /// Starts to bring the drive to the requested state.
     pub(super) fn lead_to(
         &mut self,
         now: Moment,

@@ -159,7 +159,7 @@ impl DeadMan {
     }
 
     /// Escalates the stop until the drive is at rest, then holds its state. After a run, that state is ready, from
-    /// which the next motion leads up again.
+    /// which the next motion brings the drive up again.
     fn escalate_stop(&mut self, mark: ReportMark, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {

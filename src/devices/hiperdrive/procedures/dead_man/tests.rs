@@ -196,7 +196,7 @@ impl DeadManBench {
 
 const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
-/// Issue 21.3: parameters that are doubted while a drive is still being led up are read before it moves; a running
+/// Issue 21.3: parameters that are doubted while a drive is still being brought up are read before it moves; a running
 /// motion continues, and a paused one does not resume.
 #[test]
 fn doubted_limits_delay_the_start_of_a_motion() {
@@ -274,7 +274,7 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
 }
 
 /// Issue 21.6b: the first packets of a connection contain no position (a hub first queries all its drives), so a step
-/// from there would lead elsewhere. It starts once positions have arrived for 250 ms.
+/// from there would end at another position. It starts once positions have arrived for 250 ms.
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = DeadManBench::new();

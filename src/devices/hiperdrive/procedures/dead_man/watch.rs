@@ -4,7 +4,7 @@
 //! | case | rule |
 //! |---|---|
 //! | endless run | only the direction of an expert's endless run is supervised, since no limit applies |
-//! | unread limits | nothing may move, and a moving drive is stopped, as the permit states |
+//! | unread limits | no drive may move, and a moving drive is stopped, as the permit states |
 //! | already outside | the way back in is free; further out only if enabled for this press |
 //! | outside by status bit 15 alone, more than a degree inside or near both limits | only the direction enabled for this press, since the way in is unknown |
 //! | overrun while braking | a stop in progress continues and keeps its reason |
@@ -42,7 +42,7 @@ pub(super) struct ActionMonitor {
     waits_at: Option<i32>,
     /// Whether the user has allowed motion further outward while the button is pressed.
     freed: bool,
-    /// Whether a run started at the end of the range towards which it leads. There may be no travel left.
+    /// Whether a run started at the end of the range towards which it moves. There may be no travel left.
     pub(super) at_end: bool,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct ActionMonitor {
 const ACCURACY_DEG: i64 = 3;
 
 impl OutsideLimits {
-    /// Returns whether the direction may lead further outside.
+    /// Returns whether the direction may move the drive further outside.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
             OutsideLimits::At(side) => side.outward_direction() == direction,
@@ -91,8 +91,8 @@ impl LimitSide {
         }
     }
 
-    /// Returns the direction that leads further outside. Positions increase clockwise (manual 7.2: the step of
-    /// parameter 170, +4096, is clockwise).
+    /// Returns the direction that moves the drive further outside. Positions increase clockwise (manual 7.2: the step
+    /// of parameter 170, +4096, is clockwise).
     pub const fn outward_direction(self) -> Direction {
         match self {
             LimitSide::Above => Direction::Clockwise,
@@ -189,11 +189,12 @@ impl ActionMonitor {
 }
 
 impl Permit {
-    /// Checks whether a motion may begin at this position. From outside the limits it may only lead back in. The user
-    /// can allow motion further outward while the button is pressed.
+    /// Checks whether a motion may begin at this position. From outside the limits it may only move the drive back
+    /// inside. The user can allow motion further outward while the button is pressed.
     ///
     /// # Errors
-    /// Returns [`Refusal::Outward`] or [`Refusal::Unclear`] if the motion would lead, or could lead, further outside.
+    /// Returns [`MotionRefusal::Outward`] or [`MotionRefusal::Unclear`] if the motion would move the drive, or could move it,
+    /// further outside.
     pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), MotionRefusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),

@@ -42,7 +42,7 @@ const LONG_INTERVAL: Duration = Duration::from_millis(35);
 const MAX_INTERVAL_FACTOR: u32 = 2;
 const MAX_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Status code with which a device refuses a connection that is already in use.
+/// Status code with which a device rejects a connection that is already in use.
 const CONNECTION_IN_USE: u16 = 0x0100;
 const OWNED_BY_OTHER: u16 = 0x0106;
 const KIND: u16 = 0x0108;
@@ -53,7 +53,8 @@ impl Master<'_> {
     /// Opens the cyclic connection. The target sends its packets to the local `port`.
     ///
     /// # Errors
-    /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device refuses, or an error if the exchange fails.
+    /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device rejects the request, or an error if the
+    /// exchange fails.
     pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<OpenedConnection, Error> {
         let order = self.station.link.order;
         let with = |pkw| Layout { topology, pkw, order };
@@ -137,8 +138,8 @@ impl Master<'_> {
         };
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
-        // The request is sent once, because a second one would be refused as in use. The connection may be open even if
-        // the reply is not understood.
+        // The request is sent once, because a second one would be rejected as in use. The connection may be open even
+        // if the reply is not understood.
         let requested = self.request_with_items(RequestedItem::Open, &open.request(), &[ours], SEND_ONCE);
         let opened = requested.and_then(|(reply, items)| match ForwardOpenSuccess::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
@@ -179,7 +180,7 @@ fn is_connection_refusal(refusal: &ErrorReply) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
-/// Returns whether a request with this layout and type would avoid the refusal.
+/// Returns whether a request with this layout and type would avoid the rejection.
 fn avoids_refusal(refusal: &ErrorReply, layout: Layout, kind: NetworkType) -> bool {
     let first = refusal.extended.first().filter(|_| is_connection_refusal(refusal));
     match first {

@@ -1,4 +1,4 @@
-//! Diagnosis of a refused parameter. It determines, as far as possible, whether the drive exists and is requested, and
+//! Diagnosis of a rejected parameter. It determines, as far as possible, whether the drive exists and is requested, and
 //! the present range of the value.
 
 use super::{Master, RetryPolicy, writable_parameter};
@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 
 impl Master<'_> {
-    /// Determines why a parameter was refused, as far as possible.
+    /// Determines why a parameter was rejected, as far as possible.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -35,7 +35,7 @@ impl Master<'_> {
         if self.is_zero(number, VARIANT, drive)? {
             return Ok(Error::NoDrive { drive });
         }
-        // The drive refuses the request in its present state. The cause may be that it is not requested.
+        // The drive rejects the request in its present state. The cause may be that it is not requested.
         if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED_BY_BUS, drive)? {
             return Ok(Error::NotRequested { drive });
         }
@@ -89,7 +89,7 @@ impl Master<'_> {
         let mut of_drive = |base| match ParameterNumber::for_drive(base, drive) {
             Some(number) => match self.read_number(number) {
                 Ok(value) => Ok(Some(value)),
-                // Only the cause of the original refusal is reported.
+                // Only the cause of the original rejection is reported.
                 Err(error) if error.is_unavailable() => Ok(None),
                 Err(error) => Err(error),
             },

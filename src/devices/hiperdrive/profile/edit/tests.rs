@@ -1,4 +1,4 @@
-//! Orders of writing, refusals, warnings: compared with the rules of the manual, worked out by hand.
+//! Orders of writing, rejections, warnings: compared with the rules of the manual, worked out by hand.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_with_values, parameter};
@@ -19,7 +19,7 @@ fn at(place: u8, position: i32) -> Positions {
     [(drive(place), position)].into()
 }
 
-/// Returns the state of a hub with drives HDA30A at places 1 and 3.
+/// Returns the state of a hub with drives HDA30A in ports 1 and 3.
 fn state(image: &Image, positions: &Positions) -> DeviceState {
     let identity = identity("100", &[(1, "4711"), (3, "4712")]);
     DeviceState { identity, image: image.clone(), positions: positions.clone() }

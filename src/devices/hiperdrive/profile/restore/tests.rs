@@ -1,4 +1,4 @@
-//! Restored, unchanged and refused items, and differences.
+//! Restored, unchanged and rejected items, and differences.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{

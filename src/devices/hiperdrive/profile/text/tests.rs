@@ -146,7 +146,7 @@ fn the_identity_round_trips() {
 /// Profile as written by a user, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperdrive.ron"));
 
-/// Issue 22.26: one changed value changes one place in the text.
+/// Issue 22.26: one changed value changes the text at one point.
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(parameter(166), 40), Some(50));

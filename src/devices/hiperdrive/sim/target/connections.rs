@@ -38,7 +38,7 @@ struct ExplicitConnection {
     heard: Moment,
 }
 
-/// Reason why a connection is refused, as the first extended status word.
+/// Reason why a connection is rejected, as the first extended status word.
 type ExtendedStatus = u16;
 
 const IN_USE: ExtendedStatus = 0x0100;

@@ -157,7 +157,7 @@ impl Axis {
         }
     }
 
-    /// Records that a request was not carried out completely. `begun` tells whether part of it may have been written.
+    /// Records that a request was not executed completely. `begun` specifies whether part of it may have been written.
     pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
@@ -187,7 +187,7 @@ impl Axis {
         self.power = self.power.map(Power::after_power_off);
     }
 
-    /// Records that all parameters were read. `switched` tells whether the virtual supply has been switched since.
+    /// Records that all parameters were read. `switched` specifies whether the virtual supply has been switched since.
     pub(crate) fn on_survey(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.after_survey(seen, switched));
     }
@@ -237,8 +237,8 @@ impl Axis {
         }
     }
 
-    /// Undoes the results of the given step and all later steps. `taught` tells whether taught entries are discarded as
-    /// well.
+    /// Undoes the results of the given step and all later steps. `taught` specifies whether taught entries are
+    /// discarded as well.
     fn undo_results_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {
             self.confirmed = None;

@@ -1,5 +1,5 @@
 //! Power-cycle check: the state before and after the supply was lost, and the proof that it was off at all. A
-//! connection that was lost and restored proves nothing.
+//! connection that was lost and restored does not prove anything.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;

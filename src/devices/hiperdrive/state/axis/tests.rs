@@ -227,7 +227,7 @@ fn at_power_cycle_step() -> (Axis, DriveFacts) {
 fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_power");
-    // Reading without switching off proves nothing.
+    // Reading without switching off does not prove anything.
     axis.on_survey(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
     // Worked out by hand: the factory setting of 182 is 1000.

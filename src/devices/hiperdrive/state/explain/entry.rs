@@ -1,4 +1,4 @@
-//! Messages about refused profiles.
+//! Messages about rejected profiles.
 
 use super::error::out_of_range;
 use super::names::parameter;

@@ -1,4 +1,4 @@
-//! Messages about motion: why a drive may not move, why a request was refused, how a motion ended.
+//! Messages about motion: why a drive may not move, why a request was rejected, how a motion ended.
 
 use super::names::{parameter, state};
 use crate::app::explain::link_error_text;
@@ -21,7 +21,7 @@ pub fn lock(lock: MotionLock) -> Text {
     })
 }
 
-/// Explains why a request was refused, and what to do. `place` formats steps in the user's unit.
+/// Explains why a request was rejected, and what to do. `place` formats steps in the user's unit.
 pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         MotionRefusal::Locked(own) => lock(own),

@@ -1,4 +1,4 @@
-//! Messages about writes: changes, operations of a plan, planning errors, warnings, results, and early ends.
+//! Messages about writes: changes, operations of a plan, planning errors, warnings, results, and interruptions.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Edits: the effect of each on the edited values, and the reasons for refusing one.
+//! Edits: the effect of each on the edited values, and the reasons for rejecting one.
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
@@ -35,7 +35,7 @@ pub enum LimitsPolicy {
     AsNumbers,
 }
 
-/// Reason why an edit is refused. Nothing has changed.
+/// Reason why an edit is rejected. Nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// No values of the device have been read.

@@ -15,7 +15,7 @@ pub enum EditFinding {
     OutOfRange(OutOfRange),
     /// The upper limit is not greater than the lower limit.
     Crossed { drive: DriveNumber, lower: i64, upper: i64 },
-    /// The drive is outside its edited limits and would refuse them.
+    /// The drive is outside its edited limits and would reject them.
     Outside { drive: DriveNumber, position: i64, lower: i64, upper: i64 },
     /// The scale has changed but the limits have kept their numbers, which now denote other positions.
     LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },

@@ -72,7 +72,7 @@ fn invalid_edits_are_refused_with_a_reason() {
     assert!(!staged.is_dirty());
 }
 
-/// Issue 21.10: a value beyond a drive's travel is refused when entered, and marked if a scale or a profile causes it:
+/// Issue 21.10: a value beyond a drive's travel is rejected when entered, and marked if a scale or a profile causes it:
 /// ±512 turns of an HDA30 are 33554432 steps of 65536 per turn, and 204800 of 400.
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {

@@ -143,7 +143,7 @@ fn a_newer_schema_is_read_only() {
     assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
 }
 
-/// Issue 22.26: one changed value changes one place in the text.
+/// Issue 22.26: one changed value changes the text at one point.
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;

@@ -1,4 +1,4 @@
-//! The golden vectors and the manual's example, the refusals, the queue and the wear.
+//! The golden vectors and the manual's example, the rejections, the queue and the wear.
 
 use super::*;
 use crate::devices::hiperface::protocol::{Command, StatusCode};

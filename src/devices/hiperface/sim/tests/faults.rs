@@ -9,7 +9,7 @@ const POSITION: &str = "40 42 00 0E 05 31 38";
 
 #[test]
 fn a_flipped_bit_is_a_parity_error_if_parity_is_on() {
-    // Some of the requests keep their address byte; those are refused for their parity.
+    // Some of the requests keep their address byte; those are rejected for their parity.
     let refused = |settings: u8, fault: &str| {
         let mut host = Host::with(&format!("settings={settings}&fault={fault}&seed=11"));
         host.set_format(settings);

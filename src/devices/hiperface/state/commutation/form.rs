@@ -16,36 +16,36 @@ pub struct Form {
     pub uncoupled: bool,
     /// Whether the user has confirmed that the brake is released.
     pub released: bool,
-    /// Current limit in amperes, as typed.
+    /// Current limit in amperes, as entered.
     pub current_a: String,
-    /// Maximum time in seconds for which the motor is energised, as typed.
+    /// Maximum time in seconds for which the motor is energised, as entered.
     pub time_s: String,
     pub vector: EnergisedVector,
-    /// Angle of a custom vector in electrical degrees, as typed.
+    /// Angle of a custom vector in electrical degrees, as entered.
     pub vector_deg: String,
-    /// Pole pairs of the motor, as typed.
+    /// Pole pairs of the motor, as entered.
     pub pole_pairs: String,
-    /// Signal periods per revolution, as typed.
+    /// Signal periods per revolution, as entered.
     pub periods: String,
     /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub source: Source,
-    /// Position within a period, as typed, if it was measured with another device.
+    /// Position within a period, as entered, if it was measured with another device.
     pub phase: String,
-    /// Permitted difference in electrical degrees between approaching from either side, as typed.
+    /// Permitted difference in electrical degrees between approaching from either side, as entered.
     pub limit_deg: String,
-    /// Angle from the first to the second vector in electrical degrees, as typed.
+    /// Angle from the first to the second vector in electrical degrees, as entered.
     pub second_deg: String,
     /// Whether the user accepts the offset without verification by a second vector.
     pub without_second: bool,
-    /// Fine positions in periods, as typed, in the order of [`VectorSlot::ALL`].
+    /// Fine positions in periods, as entered, in the order of [`VectorSlot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
     /// Data field for the offset, or `None` for the proposed field.
     pub field: Option<u8>,
-    /// Index of the first byte, as typed, or empty for the proposed index.
+    /// Index of the first byte, as entered, or empty for the proposed index.
     pub address: String,
-    /// Signal period of the position to set with method 2, as typed.
+    /// Signal period of the position to set with method 2, as entered.
     pub period: String,
 }
 
@@ -241,7 +241,7 @@ impl Form {
     /// Returns the numbers from which the offset is calculated.
     ///
     /// # Errors
-    /// Returns the reason why the first invalid entry was refused.
+    /// Returns the reason why the first invalid entry was rejected.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
         let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MAX_POLE_PAIRS)?;
         let periods = self.signal_periods(geometry)?;

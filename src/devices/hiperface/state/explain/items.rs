@@ -1,4 +1,4 @@
-//! Names of encoder items, and messages about refused profile entries.
+//! Names of encoder items, and messages about rejected profile entries.
 
 use crate::app::Text;
 use crate::app::explain::literal_text;

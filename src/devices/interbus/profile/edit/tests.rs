@@ -1,4 +1,4 @@
-//! Plans of edits: the writes, their order, and refusals.
+//! Plans of edits: the writes, their order, and rejections.
 
 use super::super::test_profiles::{cam, cam_between, image, image_with, logbook_note, parse_item, program, value};
 use super::super::{Direction, ItemValue};

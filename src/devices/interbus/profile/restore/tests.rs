@@ -1,4 +1,4 @@
-//! What a restore writes, leaves and refuses; what a comparison names.
+//! What a restore writes, leaves and rejects; what a comparison names.
 
 use super::super::test_profiles::{cam_between, identity, image, image_with, logbook_note, profile, value};
 use super::super::{Base, ItemValue, Op};

@@ -117,7 +117,7 @@ fn parse_document(text: &str) -> ProfileDocument {
 /// Profile as written by a user, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/interbus.ron"));
 
-/// Issue 22.26: one changed value changes one place in the text.
+/// Issue 22.26: one changed value changes the text at one point.
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut InterbusProfile| {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::devices::interbus::protocol::{Cam, StartupMode, Value};
 
-/// A step is two places of the disc.
+/// A step is two positions of the disc.
 const SETTINGS: &str = "steps=4096&revolutions=1&position=200";
 
 fn at(position: i32) -> i32 {

@@ -187,7 +187,7 @@ fn configured_faults_are_injected() {
     assert_ne!(some(lossy), some("position=0&fault=drop:0.5&seed=8"));
 }
 
-/// A request that is not carried out leaves no trace; a cable can be repaired.
+/// A request that is not executed leaves no trace; a cable can be repaired.
 #[test]
 fn a_gateway_exception_keeps_the_word_from_the_encoder() {
     let mut host = Host::with("exception=1");

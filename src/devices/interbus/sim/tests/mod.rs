@@ -46,7 +46,7 @@ impl Master {
         }
     }
 
-    /// Writes words of which none is refused.
+    /// Writes words of which none is rejected.
     #[track_caller]
     fn put(&mut self, words: &[u32]) {
         for word in words {
@@ -64,7 +64,7 @@ impl Master {
         self.encoder.set_shaft_position(self.now, place);
     }
 
-    /// Returns the position, at a place of the disc.
+    /// Returns the position, at a position of the disc.
     fn position(&mut self, place: i32) -> u32 {
         self.set_shaft_position(place);
         self.read()

@@ -123,7 +123,7 @@ fn finding_text(mark: &EditFinding) -> Text {
     }
 }
 
-/// Explains why an edit was refused, and gives a remedy.
+/// Explains why an edit was rejected, and gives a remedy.
 pub fn edit_error_text(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {

@@ -1,4 +1,4 @@
-//! Every error tells what happened and what to do, in both languages and with the facts in it.
+//! Every error states what happened and what to do, in both languages and with the facts in it.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Edits, their effect on the edited values, and the reasons why an edit is refused.
+//! Edits, their effect on the edited values, and the reasons why an edit is rejected.
 
 use super::{BaseSource, EditedValues};
 use crate::devices::interbus::profile::{Direction, Edge, ImportedProgram, LONGEST_NAME};

@@ -21,7 +21,7 @@ pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
-/// Typed text, with the reason if it was refused.
+/// Typed text, with the reason if it was rejected.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

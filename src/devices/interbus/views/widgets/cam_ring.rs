@@ -291,7 +291,7 @@ impl Ring<'_> {
     }
 }
 
-/// Returns the place of a cam's number, which is at the start of the range.
+/// Returns the position of a cam's number, which is at the start of the range.
 fn cam_number_pos(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle_radius(cam))
 }

@@ -321,7 +321,7 @@ fn profile_errors_name_their_location() {
     }
 }
 
-/// Issue 22.26: one changed value changes one place in the text.
+/// Issue 22.26: one changed value changes the text at one point.
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut SsiProfile| {

@@ -9,7 +9,7 @@ const TRIED_COUNTS: usize = 40;
 /// Maximum information in bits above that of the best number of steps for another number to fit as well.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
-/// Returns the possible codes, each with two numbers of steps: the most usual one that fits, and the last one that
+/// Returns the possible codes, each with two numbers of steps: the most common one that fits, and the last one that
 /// fits.
 pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
     let whole = read.reading.wrap_after();
@@ -44,7 +44,7 @@ fn number_extremes(read: &FrameNumbers) -> Vec<(u64, u64)> {
     [0, few].into_iter().filter_map(pair).collect()
 }
 
-/// Returns the numbers of steps that make the motion most even: the most usual one and the last one. Returns `None` if
+/// Returns the numbers of steps that make the motion most even: the most common one and the last one. Returns `None` if
 /// none is better than the full range of the bits.
 fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;

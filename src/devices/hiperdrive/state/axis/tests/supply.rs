@@ -1,4 +1,4 @@
-//! The last step if its own write is refused or interrupted.
+//! The last step if its own write is rejected or interrupted.
 
 use super::*;
 

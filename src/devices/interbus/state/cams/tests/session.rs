@@ -65,7 +65,7 @@ impl Model {
         &self.past[self.at]
     }
 
-    /// Applies a step; nothing if it is refused or changes nothing.
+    /// Applies a step; nothing if it is rejected or does not change anything.
     fn play_event(&mut self, step: &Step) {
         let range = self.range;
         let wrap = |at: i64| at.rem_euclid(i64::from(range)) as u32;

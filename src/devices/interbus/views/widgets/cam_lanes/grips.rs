@@ -126,7 +126,7 @@ impl LanePainter<'_> {
         event
     }
 
-    /// Returns the area in which an edge can be grabbed, and its horizontal place. For an edge outside the view, the
+    /// Returns the area in which an edge can be grabbed, and its horizontal position. For an edge outside the view, the
     /// area is at the end of the lane and only the keyboard uses it.
     fn grip_area(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
