@@ -310,7 +310,7 @@ fn no_view_contains_a_literal_text() {
         "make_persistent_id(",
         "make_persistent_id((",
         "modal(ctx, theme,",
-        "apart(ui,",
+        "with_stable_ids(ui,",
         "add_filter(filter, &[",
         "Panel::top(",
         "Panel::bottom(",
@@ -354,7 +354,7 @@ fn every_used_text_is_in_the_table() {
     let known = Known::read(&sources);
     for source in sources.iter().filter(|source| source.place.floor() >= 5 && !source.is_test()) {
         for literal in literals(&source.text) {
-            let asked = ["Text::new(", "TEXTS.text(", "theme.say(", "say(theme,"]
+            let asked = ["Text::new(", "TEXTS.text(", "theme.translate(", "translate(theme,"]
                 .iter()
                 .any(|before| literal.before.ends_with(before))
                 && !literal.before.ends_with("RichText::new(");

@@ -436,11 +436,7 @@ fn every_step_has_instructions_and_a_result() {
     }
     let found = |step| words::finding_text(&axis, step, &seen).unwrap().to_string_in(Language::English);
     assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256 (400 steps per turn).");
-    assert_eq!(
-        found(AxisStep::Confirm),
-        "The drive's limits are -2044.00 mm to 2044.00 mm.",
-        "those that were looked at"
-    );
+    assert_eq!(found(AxisStep::Confirm), "The drive's limits are -2044.00 mm to 2044.00 mm.");
     assert_eq!(found(AxisStep::Upper), "The drive's limits are -10.00 mm to 20.00 mm.");
     assert_eq!(
         found(AxisStep::Jog),
