@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
+use super::logbook::LogbookMatches;
 use super::payload::Payload;
 use super::recorder::{self, ExportResult};
 use super::review::Permit;
@@ -18,7 +19,7 @@ use super::tab::Tab;
 use super::{ColorScheme, Language, Picture, Settings, Text, connect};
 use crate::link::LinkError;
 use crate::profile::{PlanId, ProfileDocument, ProfileError};
-use crate::store::{DeviceKey, FileError};
+use crate::store::{DeviceKey, EntryFilter, FileError, LogbookError};
 use crate::worker::{OpenError, Worker};
 
 pub enum Action {
@@ -65,6 +66,10 @@ pub enum Action {
     /// Use the file chosen in a dialog of the system. It may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
     CloseComparison,
+    /// Show the entries of the logbook that match a filter.
+    SearchLogbook(EntryFilter),
+    /// Add a note about a device to the logbook.
+    AddNote(DeviceKey, String),
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording. The user is asked first if it is long.
     AskForget(RecorderOwner),
@@ -157,6 +162,9 @@ pub enum TaskResult {
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
+    /// The logbook was searched. The number is that of the search.
+    LogbookRead(u64, Result<LogbookMatches, LogbookError>),
+    NoteAdded(Result<(), LogbookError>),
     /// Reading a backup has succeeded or failed.
     Backup {
         session: SessionId,
@@ -164,7 +172,7 @@ pub enum TaskResult {
         path: PathBuf,
         result: Result<Box<ProfileDocument>, ReadError>,
     },
-    /// A task of one kind of device has ended, for one session. See `Done::device`.
+    /// A task of one kind of device has ended, for one session. See `TaskResult::device`.
     Device(SessionId, Payload),
     /// A task of a tool has ended. See [`TaskResult::from_tool`].
     Tool(Tab, Payload),

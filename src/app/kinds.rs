@@ -1,6 +1,7 @@
 //! The kinds of devices and the tools of a program. The studio receives this list and does not name any of them.
 
 use super::devices::DeviceKind;
+use super::logbook::LOGBOOK_TAB;
 use super::tab::Tab;
 use super::tool::ToolKind;
 use super::{Text, explain};
@@ -38,7 +39,7 @@ impl KindRegistry {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
 
-    pub(super) fn for_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
+    pub(crate) fn for_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.keyword() == word)
     }
 
@@ -68,6 +69,6 @@ impl KindRegistry {
     }
 
     pub(super) fn has_tab(self, tab: Tab) -> bool {
-        self.kind_for_tab(tab).is_some() || self.tools.iter().any(|kind| kind.tab() == tab)
+        tab == LOGBOOK_TAB || self.kind_for_tab(tab).is_some() || self.tools.iter().any(|kind| kind.tab() == tab)
     }
 }

@@ -9,6 +9,7 @@ use super::devices::{AnyDevice, DeviceType, Selection};
 use super::diverged::ProfileConflict;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
+use super::logbook::{LOGBOOK_TAB, LogbookPage};
 use super::question::{FollowUpAction, Question};
 use super::services::{Services, StudioEnvironment};
 use super::settings_store::SettingsStore;
@@ -39,6 +40,7 @@ pub struct Studio {
     pub(super) waited: Option<ShutdownWait>,
     path_question: Option<FileQuestion>,
     pub(super) comparison: Option<ProfileComparison>,
+    pub(super) logbook: LogbookPage,
 }
 
 impl Studio {
@@ -63,6 +65,7 @@ impl Studio {
             waited: None,
             path_question: None,
             comparison: None,
+            logbook: LogbookPage::default(),
         }
     }
 
@@ -84,6 +87,8 @@ impl Studio {
         match self.with_absolute_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
             Action::New(tab) => self.new_profile(tab),
+            Action::SearchLogbook(filter) => self.search_logbook(filter),
+            Action::AddNote(device, note) => self.add_note(device, &note),
             Action::SetTheme(theme) => self.settings.theme = theme,
             Action::SetLanguage(language) => self.settings.language = language,
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
@@ -233,6 +238,10 @@ impl Studio {
 
     /// Shows a tab. If no device is open in it, an unsaved profile is created, provided that its kind supports this.
     fn show_tab(&mut self, tab: Tab) {
+        if tab == LOGBOOK_TAB {
+            // Another window or a command may have added entries.
+            self.logbook.mark_stale();
+        }
         self.settings.tab = tab;
         if self.shown.session_of(tab).is_none() {
             self.new_profile(tab);
@@ -342,7 +351,12 @@ impl Studio {
             TaskResult::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
             TaskResult::SettingsSeen(Err(error)) => self.handle_settings_error(&error),
             TaskResult::Draft(id, done) => self.finish_draft(id, done),
-            TaskResult::Listed(id, of, listed) => self.with_device(id, |device, _| device.set_history(&of, *listed)),
+            TaskResult::Listed(id, of, listed) => {
+                self.with_device(id, |device, _| device.set_history(&of, *listed));
+                self.logbook.mark_stale();
+            }
+            TaskResult::LogbookRead(number, matches) => self.show_logbook_matches(number, matches),
+            TaskResult::NoteAdded(result) => self.finish_note(result),
             TaskResult::Backup { session, of, path, result } => {
                 self.with_device(session, |device, services| device.apply_backup(&of, &path, result, services));
             }

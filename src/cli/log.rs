@@ -22,6 +22,8 @@ pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
 pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
     let LogArgs { device, serial_number, since, search, limit } = arguments;
     let filter = EntryFilter {
+        device: None,
+        what: None,
         kind: device.clone(),
         serial_number: serial_number.clone(),
         since: *since,

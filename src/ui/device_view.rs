@@ -8,7 +8,7 @@ use egui::Ui;
 use super::commands::NamedAction;
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, status_line};
-use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
+use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, LOGBOOK_TAB, Rgb, Studio, Tab, Text, ToolKind};
 
 /// A page of a tab, as listed in the navigation and the help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -320,10 +320,13 @@ impl TabViews {
     }
 
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
-        self.device_tabs().chain(self.tools.iter().map(|view| view.kind().tab()))
+        self.device_tabs().chain(self.tools.iter().map(|view| view.kind().tab())).chain([LOGBOOK_TAB])
     }
 
     pub(crate) fn title(self, theme: &Theme, tab: Tab) -> String {
+        if tab == LOGBOOK_TAB {
+            return theme.translate("logbook.title");
+        }
         let title = self.tool_view(tab).map(|view| theme.translate(view.title()));
         title.or_else(|| self.device(tab).map(|view| view.kind().bus_name().to_owned())).unwrap_or_default()
     }

@@ -5,7 +5,7 @@ use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, Ui
 use serde::{Deserialize, Serialize};
 
 use super::{Theme, Views, panels, workspace};
-use crate::app::{Action, Studio};
+use crate::app::{Action, LOGBOOK_TAB, Studio};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Pane {
@@ -61,7 +61,11 @@ impl Docks {
         actions: &mut Vec<Action>,
     ) {
         self.resize_live_panel(studio.settings.values_alone, ui.available_width());
-        let hidden = if studio.settings.lower_open { Vec::new() } else { self.lower_tiles() };
+        let mut panes = if studio.settings.lower_open { Vec::new() } else { Pane::LOWER_PANES.to_vec() };
+        if studio.settings.tab == LOGBOOK_TAB {
+            panes.push(Pane::Live);
+        }
+        let hidden = self.tiles_of(&panes);
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, false));
         let mut behaviour = DockBehaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
@@ -97,30 +101,30 @@ impl Docks {
         }
     }
 
-    /// Returns the tiles whose panes all belong to the lower panel, even if they were dragged elsewhere.
-    fn lower_tiles(&self) -> Vec<TileId> {
-        let mut lower = Vec::new();
+    /// Returns the tiles that contain only the given panes, even if they were dragged elsewhere.
+    fn tiles_of(&self, panes: &[Pane]) -> Vec<TileId> {
+        let mut tiles = Vec::new();
         if let Some(root) = self.tree.root() {
-            self.collect_lower_tiles(root, &mut lower);
+            self.collect_tiles(root, panes, &mut tiles);
         }
-        lower
+        tiles
     }
 
-    /// Collects the outermost lower-panel tiles at or below `tile`. A pane that shares its tabs with a pane of another
-    /// panel is left out.
-    fn collect_lower_tiles(&self, tile: TileId, lower: &mut Vec<TileId>) {
-        if self.is_in_lower_dock(tile) {
-            lower.push(tile);
+    /// Collects the outermost tiles at or below `tile` that contain only the given panes. A pane that shares its tabs
+    /// with another one is left out.
+    fn collect_tiles(&self, tile: TileId, panes: &[Pane], tiles: &mut Vec<TileId>) {
+        if self.contains_only(tile, panes) {
+            tiles.push(tile);
         } else if let Some(Container::Linear(_) | Container::Grid(_)) = self.tree.tiles.get_container(tile) {
             let children = self.tree.tiles.get_container(tile).map(Container::children_vec).unwrap_or_default();
-            children.into_iter().for_each(|child| self.collect_lower_tiles(child, lower));
+            children.into_iter().for_each(|child| self.collect_tiles(child, panes, tiles));
         }
     }
 
-    fn is_in_lower_dock(&self, tile: TileId) -> bool {
+    fn contains_only(&self, tile: TileId, panes: &[Pane]) -> bool {
         match self.tree.tiles.get(tile) {
-            Some(Tile::Pane(pane)) => Pane::LOWER_PANES.contains(pane),
-            Some(Tile::Container(container)) => container.children().all(|child| self.is_in_lower_dock(*child)),
+            Some(Tile::Pane(pane)) => panes.contains(pane),
+            Some(Tile::Container(container)) => container.children().all(|child| self.contains_only(*child, panes)),
             None => false,
         }
     }

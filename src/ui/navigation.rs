@@ -1,13 +1,13 @@
 //! The navigation: the tabs, and the pages of the open tab.
 
-use egui::Ui;
+use egui::{Rect, Ui};
 
 use super::controls::{icon_button, name};
 use super::device_view::PageInfo;
 use super::docks::Docks;
 use super::views::device_in_tab;
 use super::{Theme, Views, icons};
-use crate::app::{Action, Studio};
+use crate::app::{Action, LOGBOOK_TAB, Studio};
 
 pub(super) fn navigation_ui(
     ui: &mut Ui,
@@ -21,7 +21,13 @@ pub(super) fn navigation_ui(
     for tab in views.tabs.tabs() {
         let word = views.tabs.title(theme, tab);
         let text = egui::RichText::new(&word).font(theme.bold_font(theme.sizes.body));
-        if entry_ui(ui, false, text, &word).clicked() {
+        // In every other tab, one of its pages is marked.
+        let is_shown = tab == LOGBOOK_TAB && tab == studio.settings.tab;
+        let response = entry_ui(ui, is_shown, text, &word);
+        if is_shown {
+            mark_shown(ui, theme, response.rect);
+        }
+        if response.clicked() {
             views.plot.restore_size();
             actions.push(Action::ShowTab(tab));
         }
@@ -75,14 +81,18 @@ fn pages_ui(
             ui.painter().text(place, egui::Align2::CENTER_CENTER, icons::PENCIL_SIMPLE, font, ink);
         }
         if shown == at {
-            let bar = response.rect.with_max_x(response.rect.left() + 3.0);
-            ui.painter().rect_filled(bar, 1.0, theme.palette.accent);
+            mark_shown(ui, theme, response.rect);
         }
         if response.clicked() {
             pressed = Some(at);
         }
     }
     pressed
+}
+
+fn mark_shown(ui: &Ui, theme: &Theme, entry: Rect) {
+    let bar = entry.with_max_x(entry.left() + 3.0);
+    ui.painter().rect_filled(bar, 1.0, theme.palette.accent);
 }
 
 fn entry_ui(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {

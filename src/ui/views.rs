@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
 use super::dialogs::{ConnectView, FileView, PaletteUiState};
+use super::logbook::{self, LogbookView};
 use super::panels::TraceView;
 use super::plot;
-use crate::app::{AnyDevice, SessionId, Studio, Tab};
+use crate::app::{AnyDevice, LOGBOOK_TAB, SessionId, Studio, Tab};
 
 pub struct Views {
     pub(super) tabs: TabViews,
@@ -18,6 +19,7 @@ pub struct Views {
     pub(super) help: bool,
     pub(super) palette: Option<PaletteUiState>,
     pub(super) trace: TraceView,
+    pub(super) logbook: LogbookView,
     pub(super) plot: plot::PlotUiState,
     /// Polling interval of the position in microseconds.
     pub(super) rate: u64,
@@ -35,6 +37,7 @@ impl Views {
             help: false,
             palette: None,
             trace: TraceView::default(),
+            logbook: LogbookView::default(),
             plot: plot::PlotUiState::for_panel(),
             rate: 50_000,
         }
@@ -54,6 +57,9 @@ impl Views {
     /// Returns the open page of the open tab. A device tab without an open device has its first page open.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
+        if tab == LOGBOOK_TAB {
+            return Some(logbook::PAGE);
+        }
         let page = match (self.tool_pages(tab), device_in_tab(studio, tab)) {
             (Some(tool), _) => tool.page(),
             (None, Some(device)) => self.session(device)?.page(),

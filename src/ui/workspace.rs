@@ -4,11 +4,12 @@ use egui::{Align, Layout, Ui, vec2};
 
 use super::controls::{labelled_button, primary_button};
 use super::device_view::DeviceView;
+use super::logbook::logbook_ui;
 use super::page::with_stable_ids;
 use super::panels::plot_ui;
 use super::views::device_in_tab;
 use super::{Theme, Views, icons};
-use crate::app::{Action, Studio, connect};
+use crate::app::{Action, LOGBOOK_TAB, Studio, connect};
 
 /// Share of the height above the options of an empty tab, and their width.
 const EMPTY_TAB_TOP_SHARE: f32 = 0.22;
@@ -26,6 +27,9 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
     if let Some(tool) = views.tool_pages(tab) {
         tool.page_ui(ui, theme, studio, actions);
         return;
+    }
+    if tab == LOGBOOK_TAB {
+        return logbook_ui(ui, theme, studio, &mut views.logbook, actions);
     }
     let Some(device) = device_in_tab(studio, tab) else {
         return empty_page_ui(ui, theme, views.tabs.device(tab), actions);

@@ -30,6 +30,7 @@ mod hiperdrive_rules;
 mod hiperdrive_stop;
 mod interbus;
 mod leaving;
+mod logbook;
 mod losing;
 mod messages;
 mod monkey;

@@ -80,6 +80,11 @@ impl AnyDevice {
         self.state().writes.as_ref()
     }
 
+    /// Returns the device as the logbook names it. Returns `None` before the device has been read.
+    pub fn logbook_key(&self) -> Option<DeviceKey> {
+        self.memory()?.logbook_key()
+    }
+
     /// Returns the status codes of this device in the logbook, newest first.
     pub fn logged_status_codes(&self) -> &[Entry] {
         &self.state().statuses

@@ -311,6 +311,9 @@ pub trait DeviceMemory {
     /// Reads a backup that is to be restored.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
+    /// Returns the device as the logbook names it. Returns `None` before the device has been read.
+    fn logbook_key(&self) -> Option<DeviceKey>;
+
     /// Stores the lists of backups and writes. Lists of another device are ignored.
     fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
@@ -374,6 +377,10 @@ impl<T: HasProfile> DeviceMemory for T {
 
     fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
         HasProfile::read_backup(self, path, services);
+    }
+
+    fn logbook_key(&self) -> Option<DeviceKey> {
+        self.device_key()
     }
 
     fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory) {

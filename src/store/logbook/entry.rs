@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use crate::profile::ChangedItem;
 
 /// The device to which an entry belongs.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DeviceKey {
     /// Kind of device, such as `hiperface`.
     pub kind: String,
@@ -49,11 +49,19 @@ pub enum EntryKind {
     Preset,
     /// A procedure or a service of the device was executed, such as a calibration.
     Procedure,
+    /// The user has written a note.
+    Note,
 }
 
 impl EntryKind {
-    pub const ALL: [EntryKind; 5] =
-        [EntryKind::Status, EntryKind::Write, EntryKind::Restore, EntryKind::Preset, EntryKind::Procedure];
+    pub const ALL: [EntryKind; 6] = [
+        EntryKind::Status,
+        EntryKind::Write,
+        EntryKind::Restore,
+        EntryKind::Preset,
+        EntryKind::Procedure,
+        EntryKind::Note,
+    ];
 
     /// Returns the word in the file and on the command line.
     pub const fn keyword(self) -> &'static str {
@@ -63,6 +71,15 @@ impl EntryKind {
             EntryKind::Restore => "restore",
             EntryKind::Preset => "preset",
             EntryKind::Procedure => "procedure",
+            EntryKind::Note => "note",
+        }
+    }
+
+    /// Returns whether entries of this kind have a result.
+    pub const fn has_result(self) -> bool {
+        match self {
+            EntryKind::Write | EntryKind::Restore | EntryKind::Preset | EntryKind::Procedure => true,
+            EntryKind::Status | EntryKind::Note => false,
         }
     }
 
@@ -161,6 +178,8 @@ pub struct WriteResult {
 /// Selection of entries.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EntryFilter {
+    pub device: Option<DeviceKey>,
+    pub what: Option<EntryKind>,
     /// Kind of device.
     pub kind: Option<String>,
     pub serial_number: Option<String>,

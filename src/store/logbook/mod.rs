@@ -149,6 +149,23 @@ impl Logbook {
         self.insert_intent(at, device, codes, &event).map(drop)
     }
 
+    /// Adds a note of the user about a device. The record is on disk when this function returns.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be written.
+    pub fn add_note(&mut self, at: Timestamp, device: &DeviceKey, note: &str) -> Result<(), LogbookError> {
+        let event = Intent { kind: EntryKind::Note, items: Vec::new(), planned_cycles: 0, backup: None };
+        self.insert_intent(at, device, note, &event).map(drop)
+    }
+
+    /// Returns all devices that have entries, in the order of their kinds and serial numbers.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be read.
+    pub fn devices(&self) -> Result<Vec<DeviceKey>, LogbookError> {
+        query::devices(&self.database).map_err(|error| self.database_error(error))
+    }
+
     /// Returns the last `limit` entries that match the filter, newest first.
     ///
     /// # Errors

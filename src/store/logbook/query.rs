@@ -19,10 +19,19 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
     // as text.
     let condition = "(:kind IS NULL OR kind = :kind)
         AND (:serial_number IS NULL OR serial_number = :serial_number)
+        AND (:what IS NULL OR what = :what)
+        AND (:device IS NULL OR (kind, device_type, serial_number, is_virtual)
+            = (:device, :device_type, :device_number, :is_virtual))
         AND (:since IS NULL OR rtrim(event.at, 'Z') >= rtrim(:since, 'Z'))
         AND (:search = '' OR instr(lower(description || char(10) || kind || char(10) || device_type || char(10)
             || serial_number || char(10) || coalesce(user, '') || char(10) || bench), lower(:search)))";
+    let device = filter.device.as_ref();
     let parameters = named_params! {
+        ":device": device.map(|device| &device.kind),
+        ":device_type": device.map(|device| &device.device_type),
+        ":device_number": device.map(|device| &device.serial_number),
+        ":is_virtual": device.map(|device| device.is_virtual),
+        ":what": filter.what.map(EntryKind::keyword),
         ":kind": filter.kind,
         ":serial_number": filter.serial_number,
         ":since": filter.since.map(|since| since.to_string()),
@@ -32,8 +41,15 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
     select(database, condition, ":limit", parameters)
 }
 
+/// Returns all devices that have entries, in the order of their kinds and serial numbers.
+pub(super) fn devices(database: &Connection) -> rusqlite::Result<Vec<DeviceKey>> {
+    let sql = "SELECT DISTINCT kind, serial_number, device_type, is_virtual FROM event
+        ORDER BY kind, serial_number, device_type, is_virtual";
+    database.prepare(sql)?.query_map([], read_device)?.collect()
+}
+
 pub(super) fn write_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    query_device(database, device, "what <> 'status'", limit)
+    query_device(database, device, "what NOT IN ('status', 'note')", limit)
 }
 
 pub(super) fn status_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
@@ -69,12 +85,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
             EntryKind::parse(&word).ok_or_else(|| invalid_column(format!("{word:?} is not a kind of entry").into()))
         })?,
         at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
-        device: DeviceKey {
-            kind: row.get("kind")?,
-            device_type: row.get("device_type")?,
-            serial_number: row.get("serial_number")?,
-            is_virtual: row.get("is_virtual")?,
-        },
+        device: read_device(row)?,
         description: row.get("description")?,
         items: row
             .get("items")
@@ -83,6 +94,15 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
         backup: row.get::<_, Option<String>>("backup")?.map(PathBuf::from),
         origin: Origin { bench: row.get("bench")?, user: row.get("user")?, version: row.get("version")? },
         conclusion: read_conclusion(row)?,
+    })
+}
+
+fn read_device(row: &Row<'_>) -> rusqlite::Result<DeviceKey> {
+    Ok(DeviceKey {
+        kind: row.get("kind")?,
+        device_type: row.get("device_type")?,
+        serial_number: row.get("serial_number")?,
+        is_virtual: row.get("is_virtual")?,
     })
 }
 

@@ -311,3 +311,22 @@ fn entries_are_filtered_and_searched() {
     assert_eq!(logbook.status_entries(&device("GB2"), 10).unwrap().len(), 1);
     assert_eq!(logbook.history(&device("GB2"), 10).unwrap(), []);
 }
+
+#[test]
+fn notes_are_entries_of_a_device_without_a_write() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    let (own, simulated) = (device("GB1"), DeviceKey { is_virtual: true, ..device("GB1") });
+    logbook.record_intent(at(0), &own, &intent("field:1", 1, None)).unwrap();
+    logbook.add_note(at(10), &own, "Flange changed: see drawing 12").unwrap();
+    logbook.add_note(at(20), &simulated, "a virtual encoder").unwrap();
+    let of_own = EntryFilter { device: Some(own.clone()), ..EntryFilter::default() };
+    let entries = logbook.entries(&of_own, 10).unwrap();
+    assert_eq!(entries.iter().map(|entry| entry.at).collect::<Vec<_>>(), [at(10), at(0)], "not the virtual one");
+    let notes = EntryFilter { what: Some(EntryKind::Note), ..of_own };
+    let [note] = logbook.entries(&notes, 10).unwrap().try_into().unwrap();
+    assert_eq!((note.description.as_str(), note.conclusion), ("Flange changed: see drawing 12", None));
+    assert_eq!(logbook.history(&own, 10).unwrap().len(), 1, "a note is not a write");
+    assert_eq!(logbook.write_cycles(&own), Ok(1));
+    assert_eq!(logbook.devices().unwrap(), [own, simulated]);
+}

@@ -4,13 +4,14 @@
 
 mod detail;
 
-use egui::{Align, EventFilter, Id, Key, Modifiers, Rangef, Rect, RichText, Sense, Ui, UiBuilder};
+use egui::{Align, Id, Rangef, Rect, RichText, Sense, Ui, UiBuilder};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 use crate::app::{Action, Rgb, SessionId, Studio, Text, TraceFault, TraceFilter, TraceLine, TraceLog, TraceMatches};
 use crate::link::Direction;
 use crate::ui::controls::{empty_placeholder, icon_button, name};
 use crate::ui::entries::text_entry;
+use crate::ui::row_selection::selection_step;
 use crate::ui::{Theme, Views, icons};
 
 const ROW_HEIGHT: f32 = 18.0;
@@ -172,18 +173,6 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
     }
     view.offset = drawn.state.clamped_offset().y;
     view.is_behind = view.offset + drawn.inner_rect.height() < drawn.content_size.y - pitch / 2.0;
-}
-
-/// Returns by how many rows the arrow keys move the selection. They do so after a click on a row.
-fn selection_step(ui: &Ui, keys: Id) -> Option<isize> {
-    ui.interact(Rect::NOTHING, keys, Sense::focusable_noninteractive());
-    if !ui.memory(|memory| memory.has_focus(keys)) {
-        return None;
-    }
-    let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(keys, filter));
-    let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as isize;
-    Some(pressed(Key::ArrowDown) - pressed(Key::ArrowUp)).filter(|step| *step != 0)
 }
 
 /// Draws search, filter, pause and save. Returns whether the newest frame is to be shown.

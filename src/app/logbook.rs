@@ -1,0 +1,140 @@
+//! The logbook as a page: the filter, the entries that match it, and notes of the user. The file is read and written in
+//! tasks.
+
+use jiff::Timestamp;
+
+use super::action::{Action, TaskResult};
+use super::services::Services;
+use super::studio::Studio;
+use super::tab::Tab;
+use super::{Severity, Text, explain};
+use crate::store::{DeviceKey, Entry, EntryFilter, Logbook, LogbookError, Store};
+
+/// Tab that shows the logbook.
+pub const LOGBOOK_TAB: Tab = Tab::named("Logbook");
+
+/// Maximum number of characters of a note.
+pub const MAX_NOTE: usize = 1_000;
+
+/// State of the page.
+#[derive(Debug, Default)]
+pub struct LogbookPage {
+    filter: EntryFilter,
+    matches: Option<Result<LogbookMatches, Text>>,
+    /// Number of the latest search. Results of earlier searches are dropped.
+    search: u64,
+    is_searching: bool,
+    /// Whether entries may have been added since the last search.
+    is_stale: bool,
+    is_saving_note: bool,
+}
+
+/// Entries that match the filter, and all devices of the logbook.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct LogbookMatches {
+    /// Entries, newest first.
+    pub entries: Vec<Entry>,
+    /// Whether there are older entries that match.
+    pub has_more: bool,
+    /// Devices that have entries, in the order of their kinds and serial numbers.
+    pub devices: Vec<DeviceKey>,
+}
+
+impl LogbookPage {
+    /// Maximum number of entries that are shown.
+    pub const LIMIT: u32 = 2_000;
+
+    pub fn filter(&self) -> &EntryFilter {
+        &self.filter
+    }
+
+    /// Returns the entries that were last found, or the reason why the logbook cannot be read. Returns `None` before
+    /// the first search has ended.
+    pub fn matches(&self) -> Option<&Result<LogbookMatches, Text>> {
+        self.matches.as_ref()
+    }
+
+    /// Returns whether the entries are missing or out of date and no search is running.
+    pub fn needs_search(&self) -> bool {
+        !self.is_searching && (self.is_stale || self.matches.is_none())
+    }
+
+    pub fn is_saving_note(&self) -> bool {
+        self.is_saving_note
+    }
+
+    pub(super) fn mark_stale(&mut self) {
+        self.is_stale = true;
+    }
+}
+
+impl LogbookMatches {
+    fn read(store: &Store, filter: &EntryFilter) -> Result<Self, LogbookError> {
+        let path = store.logbook_path();
+        if matches!(path.try_exists(), Ok(false)) {
+            return Ok(LogbookMatches::default());
+        }
+        let logbook = Logbook::open(&path)?;
+        let mut entries = logbook.entries(filter, LogbookPage::LIMIT + 1)?;
+        let has_more = entries.len() > LogbookPage::LIMIT as usize;
+        entries.truncate(LogbookPage::LIMIT as usize);
+        Ok(LogbookMatches { entries, has_more, devices: logbook.devices()? })
+    }
+}
+
+impl Studio {
+    /// Returns the name of the bus for a kind of device, or `None` if this program does not have the kind.
+    pub fn bus(&self, kind: &str) -> Option<&'static str> {
+        self.services.world.kinds.for_profile(kind).map(|kind| kind.bus_name())
+    }
+
+    pub fn logbook(&self) -> &LogbookPage {
+        &self.logbook
+    }
+
+    /// Starts a task that reads the entries which match the filter.
+    pub(super) fn search_logbook(&mut self, filter: EntryFilter) {
+        let page = &mut self.logbook;
+        page.search += 1;
+        page.filter = filter.clone();
+        (page.is_searching, page.is_stale) = (true, false);
+        let (number, store) = (page.search, self.services.world.store.clone());
+        self.services.tasks.run("logbook", move || {
+            let matches = LogbookMatches::read(&store, &filter);
+            Action::Done(TaskResult::LogbookRead(number, matches))
+        });
+    }
+
+    pub(super) fn show_logbook_matches(&mut self, number: u64, matches: Result<LogbookMatches, LogbookError>) {
+        let page = &mut self.logbook;
+        if number == page.search {
+            page.is_searching = false;
+            page.matches = Some(matches.map_err(|error| explain::logbook_unreadable(&error)));
+        }
+    }
+
+    /// Starts a task that adds a note about a device. An empty note is not added.
+    pub(super) fn add_note(&mut self, device: DeviceKey, note: &str) {
+        let note: String = note.trim().chars().take(MAX_NOTE).collect();
+        if note.is_empty() || self.logbook.is_saving_note {
+            return;
+        }
+        self.logbook.is_saving_note = true;
+        let (at, path) = (self.services.current_time().timestamp(), self.services.world.store.logbook_path());
+        let add = move |at: Timestamp| Logbook::open(&path)?.add_note(at, &device, &note);
+        self.services.tasks.run("note", move || Action::Done(TaskResult::NoteAdded(add(at))));
+    }
+
+    pub(super) fn finish_note(&mut self, result: Result<(), LogbookError>) {
+        self.logbook.is_saving_note = false;
+        self.logbook.mark_stale();
+        if let Err(error) = result {
+            notify_note_failure(&mut self.services, &error);
+        }
+    }
+}
+
+fn notify_note_failure(services: &mut Services, error: &LogbookError) {
+    let text = Text::new("logbook.note_failed").with_text("why", explain::logbook_problem(error));
+    services.notify(Severity::Error, vec![text], None);
+}

@@ -1,0 +1,156 @@
+//! The selected entry of the logbook.
+
+use std::path::Path;
+
+use egui::{Label, RichText, ScrollArea, Ui};
+
+use super::{device_name, kind_text, result, time};
+use crate::app::{Action, AnyDevice, DeviceCommand, MAX_NOTE, Studio, Text};
+use crate::profile::ChangedItem;
+use crate::store::{DeviceKey, Entry, Origin};
+use crate::ui::controls::{card, card_with_trailing, enabled_button, fill_width, paragraph, row, text_entry};
+use crate::ui::{Theme, icons};
+
+const COMPARE: &str = icons::ARROWS_OUT_LINE_HORIZONTAL;
+
+pub(super) fn entry_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    note: &mut Option<(DeviceKey, String)>,
+    entry: &Entry,
+    actions: &mut Vec<Action>,
+) {
+    ScrollArea::vertical().id_salt(entry.id).auto_shrink(false).show(ui, |ui| {
+        fill_width(ui);
+        let at = theme.monospace(time(entry.at)).color(theme.palette.muted);
+        card_with_trailing(
+            ui,
+            theme,
+            kind_text(entry.kind),
+            |ui| drop(ui.label(at)),
+            |ui| {
+                facts_ui(ui, theme, studio, entry);
+                if !entry.items.is_empty() {
+                    ui.add_space(theme.space.between);
+                    items_ui(ui, theme, &entry.items);
+                }
+                if let Some(path) = &entry.backup {
+                    ui.add_space(theme.space.between);
+                    backup_ui(ui, theme, studio, (&entry.device, path), actions);
+                }
+                ui.add_space(theme.space.inside);
+                origin_ui(ui, theme, &entry.origin);
+            },
+        );
+        theme.add_gap(ui);
+        card(ui, theme, "logbook.note", |ui| note_ui(ui, theme, studio, note, &entry.device, actions));
+    });
+}
+
+fn facts_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
+    row(ui, theme, &theme.translate("logbook.device"), device_name(theme, studio, &entry.device, true));
+    if entry.items.is_empty() {
+        row(ui, theme, &theme.translate("logbook.text"), &entry.description);
+    }
+    if entry.kind.has_result() {
+        let (_, colour, words) = result(theme, entry);
+        row(ui, theme, &theme.translate("logbook.result"), RichText::new(words).color(colour));
+        row(ui, theme, &theme.translate("logbook.cycles"), entry.write_cycles().to_string());
+    }
+}
+
+/// Draws user, computer and version. Entries of older logbooks have none of them.
+fn origin_ui(ui: &mut Ui, theme: &Theme, origin: &Origin) {
+    let Origin { user, bench, version } = origin;
+    let words = theme.format_text(&Text::new("logbook.version").with("version", version));
+    let version = (!version.is_empty()).then_some(words);
+    let parts = [user.clone(), Some(bench.clone()), version];
+    let parts: Vec<String> = parts.into_iter().flatten().filter(|part| !part.is_empty()).collect();
+    if !parts.is_empty() {
+        paragraph(ui, theme.caption(parts.join(" · ")));
+    }
+}
+
+fn items_ui(ui: &mut Ui, theme: &Theme, items: &[ChangedItem]) {
+    ui.spacing_mut().item_spacing.y = theme.space.inside;
+    for item in items {
+        let name = item.name.as_ref().map_or_else(|| item.item.clone(), |name| format!("{}  {name}", item.item));
+        paragraph(ui, theme.label(name));
+        let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
+        ui.add(Label::new(theme.monospace(format!("{old}  →  {new}"))).wrap().selectable(true));
+    }
+}
+
+/// Draws what can be done with the backup. It can be compared and restored if the device is open.
+fn backup_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    (device, path): (&DeviceKey, &Path),
+    actions: &mut Vec<Action>,
+) {
+    let device = studio.devices().iter().map(Box::as_ref).find(|own| own.logbook_key().as_ref() == Some(device));
+    ui.label(theme.label(theme.translate("logbook.backup"))).on_hover_text(theme.translate("logbook.backup_hint"));
+    ui.horizontal_wrapped(|ui| {
+        if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
+            actions.push(Action::Open(path.to_owned()));
+        }
+        let compare = enabled_button(
+            ui,
+            device.is_some_and(|device| device.is_comparable()),
+            COMPARE,
+            &theme.translate("backups_card.compare"),
+        );
+        let restore = enabled_button(
+            ui,
+            device.is_some_and(|device| device.is_ready()),
+            icons::CLOCK_COUNTER_CLOCKWISE,
+            &theme.translate("backups_card.restore"),
+        );
+        let Some(device) = device else {
+            let why = theme.translate("logbook.not_connected");
+            compare.on_disabled_hover_text(&why);
+            restore.on_disabled_hover_text(&why);
+            return;
+        };
+        if compare.clicked() {
+            push_for(device, DeviceCommand::Compare(path.to_owned()), actions);
+        }
+        if restore.clicked() {
+            push_for(device, DeviceCommand::Restore(path.to_owned()), actions);
+        }
+    });
+}
+
+/// Shows a device and executes a command of it.
+fn push_for(device: &AnyDevice, command: DeviceCommand, actions: &mut Vec<Action>) {
+    actions.push(Action::Select(device.id()));
+    actions.push(device.command(command));
+}
+
+fn note_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    note: &mut Option<(DeviceKey, String)>,
+    device: &DeviceKey,
+    actions: &mut Vec<Action>,
+) {
+    let mut text = note.take().filter(|(about, _)| about == device).map(|(_, text)| text).unwrap_or_default();
+    let word = theme.translate("logbook.note_text");
+    let entry = text_entry(ui, &mut text, ui.available_width(), &word, &word);
+    let entered = entry.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    ui.horizontal(|ui| {
+        let can_add = !text.trim().is_empty() && text.chars().count() <= MAX_NOTE && !studio.logbook().is_saving_note();
+        let add = enabled_button(ui, can_add, icons::PLUS, &theme.translate("logbook.add_note"));
+        if can_add && (add.clicked() || entered) {
+            actions.push(Action::AddNote(device.clone(), std::mem::take(&mut text)));
+        }
+        if text.chars().count() > MAX_NOTE {
+            let words = Text::new("logbook.note_too_long").with("most", MAX_NOTE);
+            ui.label(RichText::new(theme.format_text(&words)).color(theme.palette.bad));
+        }
+    });
+    *note = Some((device.clone(), text)).filter(|(_, text)| !text.is_empty());
+}

@@ -1,0 +1,236 @@
+//! The page of the logbook: all entries of this computer, newest first. The selected entry is shown beside the list
+//! with its old and new values, its backup and its origin.
+
+mod detail;
+
+use egui::{Align, Id, Label, Layout, Rect, RichText, Sense, Ui, UiBuilder};
+use egui_extras::{Column, TableBuilder, TableRow};
+use jiff::tz::TimeZone;
+
+use super::backups::time;
+use super::controls::{dropdown, empty_placeholder, icon_button, problem_ui};
+use super::device_view::PageInfo;
+use super::entries::text_entry;
+use super::page::page_margin;
+use super::row_selection::selection_step;
+use super::{Theme, icons};
+use crate::app::{Action, LogbookMatches, Rgb, Studio, Text};
+use crate::store::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Outcome};
+
+/// The page in the help.
+pub(super) const PAGE: PageInfo = PageInfo::new(icons::BOOK_OPEN_TEXT, "logbook.title", "logbook.help");
+
+const ROW: f32 = 22.0;
+/// Width of the search entry in points.
+const SEARCH: f32 = 200.0;
+/// Widths of the columns with the time, the result and the device in points.
+const TIME: f32 = 128.0;
+const RESULT: f32 = 18.0;
+const DEVICE: f32 = 168.0;
+/// Width of the selected entry beside the list in points.
+const DETAIL: f32 = 330.0;
+
+#[derive(Default)]
+pub(super) struct LogbookView {
+    search: String,
+    selected: Option<EntryId>,
+    /// Note that is being written, with the device it is about.
+    note: Option<(DeviceKey, String)>,
+}
+
+pub(super) fn logbook_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    view: &mut LogbookView,
+    actions: &mut Vec<Action>,
+) {
+    let page = studio.logbook();
+    if page.needs_search() {
+        actions.push(Action::SearchLogbook(page.filter().clone()));
+    }
+    egui::Frame::NONE.inner_margin(page_margin(ui, theme)).show(ui, |ui| match page.matches() {
+        None => {
+            ui.label(theme.label(theme.translate("logbook.reading")));
+        }
+        Some(Err(why)) => {
+            problem_ui(ui, theme, Some(why));
+            ui.add_space(theme.space.between);
+            if icon_button(ui, true, icons::ARROW_CLOCKWISE, &theme.translate("logbook.refresh")).clicked() {
+                actions.push(Action::SearchLogbook(page.filter().clone()));
+            }
+        }
+        Some(Ok(matches)) => matches_ui(ui, theme, studio, view, matches, actions),
+    });
+}
+
+fn matches_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    view: &mut LogbookView,
+    matches: &LogbookMatches,
+    actions: &mut Vec<Action>,
+) {
+    let is_empty = matches.entries.is_empty();
+    if is_empty && *studio.logbook().filter() == EntryFilter::default() {
+        empty_placeholder(ui, theme, &theme.translate("logbook.empty"), None);
+        return;
+    }
+    toolbar_ui(ui, theme, studio, view, matches, actions);
+    ui.add_space(theme.space.between);
+    if is_empty {
+        empty_placeholder(ui, theme, &theme.translate("logbook.no_match"), None);
+        return;
+    }
+    let room = ui.available_rect_before_wrap();
+    let (list, detail) = room.split_left_right_at_x(room.right() - DETAIL);
+    let list = Rect { max: list.max - egui::vec2(theme.space.groups, 0.0), ..list };
+    ui.scope_builder(UiBuilder::new().max_rect(list), |ui| rows_ui(ui, theme, studio, view, &matches.entries));
+    let selected = view.selected.and_then(|id| matches.entries.iter().find(|entry| entry.id == id));
+    ui.scope_builder(UiBuilder::new().max_rect(detail), |ui| match selected {
+        Some(entry) => detail::entry_ui(ui, theme, studio, &mut view.note, entry, actions),
+        None => {
+            empty_placeholder(ui, theme, &theme.translate("logbook.select"), None);
+        }
+    });
+}
+
+/// Draws the filter and the number of entries.
+fn toolbar_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    view: &mut LogbookView,
+    matches: &LogbookMatches,
+    actions: &mut Vec<Action>,
+) {
+    let mut filter = studio.logbook().filter().clone();
+    let mut changed = false;
+    ui.horizontal_wrapped(|ui| {
+        let word = theme.translate("logbook.search");
+        if text_entry(ui, &mut view.search, SEARCH, &word, &word).changed() {
+            filter.search.clone_from(&view.search);
+            changed = true;
+        }
+        // The device of the filter is the one after "all devices".
+        let position = |device: &DeviceKey| matches.devices.iter().position(|own| own == device);
+        let mut device = filter.device.as_ref().and_then(position).map_or(0, |at| at + 1);
+        let devices = matches.devices.iter().map(|device| device_name(theme, studio, device, true));
+        let options = std::iter::once(theme.translate("logbook.all_devices")).chain(devices).enumerate();
+        if dropdown(ui, &theme.translate("logbook.device"), &mut device, options) {
+            filter.device = device.checked_sub(1).and_then(|at| matches.devices.get(at)).cloned();
+            changed = true;
+        }
+        let kinds = EntryKind::ALL.map(|kind| (Some(kind), theme.translate(kind_text(kind))));
+        let options = std::iter::once((None, theme.translate("logbook.all_kinds"))).chain(kinds);
+        changed |= dropdown(ui, &theme.translate("logbook.kind"), &mut filter.what, options);
+        if icon_button(ui, true, icons::ARROW_CLOCKWISE, &theme.translate("logbook.refresh")).clicked() {
+            changed = true;
+        }
+        let count = matches.entries.len();
+        let text = match (matches.has_more, count) {
+            (true, _) => Text::new("logbook.newest").with("count", count),
+            (false, 1) => Text::new("logbook.one"),
+            (false, _) => Text::new("logbook.count").with("count", count),
+        };
+        ui.label(theme.label(theme.format_text(&text)));
+    });
+    if changed {
+        actions.push(Action::SearchLogbook(filter));
+    }
+}
+
+fn rows_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &mut LogbookView, entries: &[Entry]) {
+    let keys = Id::unique("logbook_keys");
+    let selected = view.selected.and_then(|id| entries.iter().position(|entry| entry.id == id));
+    let moved =
+        selection_step(ui, keys).and_then(|step| selected?.checked_add_signed(step)).filter(|row| *row < entries.len());
+    let selected = moved.or(selected);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let mut table = TableBuilder::new(ui)
+        .id_salt("logbook")
+        .auto_shrink(false)
+        .sense(Sense::click())
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .min_scrolled_height(0.0);
+    if let Some(row) = moved {
+        table = table.scroll_to_row(row, None).animate_scrolling(false);
+    }
+    let mut clicked = None;
+    table
+        .column(Column::exact(TIME))
+        .column(Column::exact(RESULT))
+        .column(Column::exact(DEVICE).clip(true))
+        .column(Column::remainder().clip(true))
+        .body(|body| {
+            body.rows(ROW, entries.len(), |mut row| {
+                let at = row.index();
+                let Some(entry) = entries.get(at) else { return };
+                row.set_selected(selected == Some(at));
+                row_ui(&mut row, theme, studio, entry);
+                if row.response().clicked() {
+                    clicked = Some(at);
+                }
+            });
+        });
+    if clicked.is_some() {
+        ui.memory_mut(|memory| memory.request_focus(keys));
+    }
+    let selected = clicked.or(selected).and_then(|row| entries.get(row));
+    view.selected = selected.map(|entry| entry.id).or(view.selected);
+}
+
+fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &Entry) {
+    row.col(|ui| {
+        let minutes = entry.at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string();
+        ui.label(theme.monospace(minutes).color(theme.palette.muted)).on_hover_text(time(entry.at));
+    });
+    row.col(|ui| {
+        let (icon, colour, words) = result(theme, entry);
+        ui.label(RichText::new(icon).color(colour)).on_hover_text(words);
+    });
+    row.col(|ui| {
+        ui.add(Label::new(device_name(theme, studio, &entry.device, false)).truncate());
+    });
+    row.col(|ui| {
+        let text = format!("{}  {}", theme.translate(kind_text(entry.kind)), entry.description.replace('\n', " "));
+        ui.add(Label::new(text).truncate());
+    });
+}
+
+/// Returns the icon, colour and text for the result of an entry.
+fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
+    let palette = theme.palette;
+    match entry.conclusion.as_ref().map(|end| &end.outcome) {
+        Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, theme.translate("writes_card.done")),
+        Some(Outcome::Cancelled) => (icons::STOP, palette.warn, theme.translate("writes_card.cancelled")),
+        Some(Outcome::Failed(why)) => (icons::X_CIRCLE, palette.bad, why.clone()),
+        None => match entry.kind {
+            EntryKind::Status => (icons::WARNING_CIRCLE, palette.warn, theme.translate(kind_text(entry.kind))),
+            EntryKind::Note => (icons::PENCIL_SIMPLE, palette.accent, theme.translate(kind_text(entry.kind))),
+            _ => (icons::QUESTION, palette.warn, theme.translate("writes_card.open")),
+        },
+    }
+}
+
+fn kind_text(kind: EntryKind) -> &'static str {
+    match kind {
+        EntryKind::Status => "logbook.kind_status",
+        EntryKind::Write => "logbook.kind_write",
+        EntryKind::Restore => "logbook.kind_restore",
+        EntryKind::Preset => "logbook.kind_preset",
+        EntryKind::Procedure => "logbook.kind_procedure",
+        EntryKind::Note => "logbook.kind_note",
+    }
+}
+
+/// Returns the bus, the serial number and optionally the type of a device.
+fn device_name(theme: &Theme, studio: &Studio, device: &DeviceKey, has_type: bool) -> String {
+    let DeviceKey { kind, device_type, serial_number, is_virtual } = device;
+    let bus = studio.bus(kind).unwrap_or(kind);
+    let device_type = if has_type { device_type.as_str() } else { "" };
+    let parts = [bus, device_type, serial_number.as_str()];
+    let name = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ");
+    if *is_virtual { theme.format_text(&Text::new("logbook.virtual").with("device", name)) } else { name }
+}

@@ -1,0 +1,122 @@
+//! The page of the logbook, with the real widgets: entries with old and new values, the filter, backups and notes.
+
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::{Action, DeviceCommand, LOGBOOK_TAB, Language, Studio};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction, ReviewState};
+use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Logbook};
+
+use crate::screen::Screen;
+use crate::support::is_review;
+use crate::tabs::Tabs as _;
+
+const SIZE: [f32; 2] = [1024.0, 640.0];
+
+fn entry_count(studio: &Studio) -> Option<usize> {
+    if studio.logbook().needs_search() {
+        return None;
+    }
+    studio.logbook().matches()?.as_ref().ok().map(|matches| matches.entries.len())
+}
+
+/// A screen whose encoder has got X instead of E at address 0 of data field 0, which shows the logbook.
+fn after_a_write() -> Screen {
+    let mut screen = Screen::new_form(SIZE);
+    screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x58] });
+    screen.command(DeviceCommand::Review);
+    screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    screen.click("review.write");
+    screen.until("it is written", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Done(..)))
+            && studio.hiperface().unwrap().session.is_ready()
+    });
+    screen.click("review.close");
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("the logbook is read", |studio| entry_count(studio) == Some(1));
+    screen
+}
+
+fn select_first_entry(screen: &mut Screen) {
+    let time = first_entry_time(screen);
+    screen.harness.get_by_label(&time).click();
+    screen.steps();
+}
+
+/// Returns the time in the first row.
+fn first_entry_time(screen: &Screen) -> String {
+    let matches = screen.studio().logbook().matches().unwrap().as_ref().unwrap();
+    let at = matches.entries[0].at.to_zoned(jiff::tz::TimeZone::system());
+    at.strftime("%Y-%m-%d %H:%M").to_string()
+}
+
+#[test]
+fn a_write_is_shown_with_old_and_new_values_and_its_backup() {
+    let mut screen = after_a_write();
+    assert!(!screen.has_button("backups_card.restore"), "no entry is selected");
+    select_first_entry(&mut screen);
+    assert!(screen.shows("45  →  58"));
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    // Restoring leads to the review of the device. Nothing is written before.
+    screen.click("backups_card.restore");
+    screen.until("the way back is planned", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    assert!(screen.shows("58  →  45"));
+    assert_ne!(screen.studio().settings.tab, LOGBOOK_TAB);
+}
+
+#[test]
+fn a_note_is_added_to_the_device_of_the_selected_entry() {
+    let mut screen = after_a_write();
+    select_first_entry(&mut screen);
+    assert!(!screen.is_enabled("logbook.add_note"), "the note is empty");
+    let word = screen.say("logbook.note_text");
+    screen.harness.get_by_label(&word).focus();
+    screen.steps();
+    screen.harness.get_by_label(&word).type_text("Kupplung ersetzt");
+    screen.steps();
+    screen.click("logbook.add_note");
+    screen.until("the note is in the list", |studio| entry_count(studio) == Some(2));
+    let logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
+    let [note, write] = logbook.entries(&EntryFilter::default(), 10).unwrap().try_into().unwrap();
+    assert_eq!((note.kind, note.description.as_str()), (EntryKind::Note, "Kupplung ersetzt"));
+    assert_eq!(note.device, write.device);
+    assert!(!screen.is_enabled("logbook.add_note"), "the entry is empty again");
+}
+
+#[test]
+fn entries_are_searched_and_the_filter_survives_another_tab() {
+    let mut screen = after_a_write();
+    let other = DeviceKey::new("biss", "6129", "7", false);
+    let mut logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
+    logbook.add_note(jiff::Timestamp::now(), &other, "spare part").unwrap();
+    // The other entry comes from another program, so the list is read again when the tab is opened.
+    screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("both entries are shown", |studio| entry_count(studio) == Some(2));
+    let word = screen.say("logbook.search");
+    screen.harness.get_by_label(&word).focus();
+    screen.steps();
+    screen.harness.get_by_label(&word).type_text("SPARE");
+    screen.until("only the note is shown", |studio| entry_count(studio) == Some(1));
+    assert!(screen.harness.query_by_label_contains("spare part").is_some());
+    screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("it is read again", |studio| entry_count(studio) == Some(1));
+    screen.act(Action::SearchLogbook(EntryFilter { search: "nothing like this".into(), ..EntryFilter::default() }));
+    screen.until("no entry is left", |studio| entry_count(studio) == Some(0));
+    assert!(screen.shows(&screen.say("logbook.no_match")));
+}
+
+#[test]
+fn a_damaged_logbook_is_reported_and_the_rest_works() {
+    let outside = crate::support::Outside::new("");
+    let path = outside.store().logbook_path();
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(&path, "this is not a database").unwrap();
+    let mut screen = Screen::opened(outside, None, SIZE);
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("it is reported", |studio| matches!(studio.logbook().matches(), Some(Err(_))));
+    assert!(screen.has_button("logbook.refresh"));
+    assert_eq!(std::fs::read(&path).unwrap(), b"this is not a database");
+}
