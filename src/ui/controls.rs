@@ -114,6 +114,17 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
+/// Draws a STOP button, which acts when it is pressed down. Its word stays readable while the button is disabled.
+pub(crate) fn stop_button(ui: &mut Ui, theme: &Theme, active: bool, button: Button<'_>, size: egui::Vec2) -> Response {
+    let palette = theme.palette;
+    let button = if active { button } else { button.fill(palette.surface).stroke(Stroke::new(1.0, palette.line)) };
+    ui.add_enabled_ui(active, |ui| {
+        ui.set_opacity(1.0);
+        if size.y > 0.0 { ui.add_sized(size, button) } else { ui.add(button.min_size(size)) }
+    })
+    .inner
+}
+
 /// Draws a button. The tooltip of a disabled button gives the reason.
 pub(crate) fn button_with_reason(
     ui: &mut Ui,
@@ -202,6 +213,11 @@ pub(crate) fn dropdown<T: PartialEq + Copy>(
     // A long list may use most of the window's height.
     let height = ui.ctx().content_rect().height() * 0.6;
     let list = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).height(height);
+    let list = if choice_width(ui, &shown) > ui.available_width() {
+        list.width(ui.available_width().max(0.0)).truncate()
+    } else {
+        list
+    };
     let response = list.show_ui(ui, |ui| {
         // Twelve entries fit without scrolling. egui gives such an area 400 points at first.
         ui.spacing_mut().item_spacing.y = ui.spacing().button_padding.y;
@@ -215,6 +231,14 @@ pub(crate) fn dropdown<T: PartialEq + Copy>(
         info
     });
     *value != before
+}
+
+/// Returns the width of a drop-down list that shows a text in full.
+fn choice_width(ui: &Ui, shown: &str) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let words = ui.painter().layout_no_wrap(shown.to_owned(), font, egui::Color32::PLACEHOLDER);
+    let spacing = ui.spacing();
+    words.size().x + spacing.icon_spacing + spacing.icon_width + 2.0 * spacing.button_padding.x
 }
 
 /// Draws a choice with all options visible, as many per row as fit. It also works in a panel that closes on an outside

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Stroke, Ui};
 
-use super::controls::{badge, connection_dot, enabled_button, icon_button, labelled_button, name};
+use super::controls::{badge, connection_dot, enabled_button, icon_button, labelled_button, name, stop_button};
 use super::page::with_stable_ids;
 use super::stop_debounce::{press_began, press_time, register_stop_press};
 use super::{Theme, Views, icons};
@@ -232,12 +232,14 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let stop = if active && !is_alarming {
         egui::Button::new(text)
     } else if active {
-        egui::Button::new(RichText::new(text).color(palette.on_bad)).fill(palette.bad).stroke(Stroke::NONE)
+        egui::Button::new(RichText::new(text).color(palette.on_bad))
+            .fill(palette.bad)
+            .stroke(Stroke::new(1.0, palette.bad))
     } else {
         egui::Button::new(RichText::new(text).color(palette.muted))
     };
     let width = if moves { STOP_BUTTON_WIDTH * 2.0 } else { STOP_BUTTON_WIDTH };
-    let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
+    let response = stop_button(ui, theme, active, stop, egui::vec2(width, 0.0)).on_hover_text(hint);
     ui.data_mut(|data| data.insert_temp(stop_button_id(), response.rect.min));
     let pressed = press_began(ui, &response);
     let clicked = name(response, active, &word).clicked();

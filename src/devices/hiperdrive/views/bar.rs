@@ -7,7 +7,7 @@ use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, TEXTS, explain};
 use crate::devices::hiperdrive::views::translate;
-use crate::ui::controls::{button_with_reason, message_label, name, paragraph};
+use crate::ui::controls::{button_with_reason, message_label, name, paragraph, stop_button};
 use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 use crate::ui::{Theme, icons};
 
@@ -62,12 +62,10 @@ fn control_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
 fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (palette, active) = (theme.palette, studio.can_stop_motion());
     let word = theme.translate("hd_bar.stop");
-    let (ink, fill) = if active { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
+    let ink = if active { palette.on_bad } else { palette.muted };
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.bold_font(theme.sizes.section)).color(ink);
-    let button = egui::Button::new(text).fill(fill).stroke(Stroke::NONE);
-    // The button acts when it is pressed down. A stop does not wait for the release.
-    let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP_BUTTON_SIZE, button)).inner;
-    let response = response
+    let button = egui::Button::new(text).fill(palette.bad).stroke(Stroke::new(1.0, palette.bad));
+    let response = stop_button(ui, theme, active, button, STOP_BUTTON_SIZE)
         .on_hover_text(theme.translate("hd_bar.stop_hint"))
         .on_disabled_hover_text(translate(theme, "hd_bar.stop_without_control"));
     let pressed = press_began(ui, &response);
