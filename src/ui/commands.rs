@@ -26,6 +26,8 @@ pub(super) struct Command {
     /// Name of the device or tab that the command acts on. Empty for a command that acts on the whole program.
     pub(super) about: String,
     pub(super) name: String,
+    /// Name in the other language, by which the command is also found.
+    pub(super) other_name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
     /// Whether text editing receives the key while the user is typing.
     pub(super) yields_to_typing: bool,
@@ -63,7 +65,17 @@ pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -
     commands
 }
 
+/// Returns all commands, with their names in both languages.
 pub(super) fn all_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+    let mut commands = in_language(theme, studio, views);
+    let others = in_language(&theme.in_other_language(), studio, views);
+    for (own, other) in commands.iter_mut().zip(others) {
+        own.other_name = other.name;
+    }
+    commands
+}
+
+fn in_language(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = Vec::new();
     if let Some(device) = studio.selected_device() {
         commands.extend(common_device_commands(theme, device, views));
@@ -201,7 +213,8 @@ impl NamedAction {
 impl Command {
     fn new(about: impl Into<String>, name: String, effect: CommandEffect) -> Self {
         let about = about.into();
-        Command { about, name, shortcut: None, yields_to_typing: false, is_enabled: true, effect }
+        let other_name = String::new();
+        Command { about, name, other_name, shortcut: None, yields_to_typing: false, is_enabled: true, effect }
     }
 
     fn with_shortcut(self, modifiers: Modifiers, key: Key) -> Self {

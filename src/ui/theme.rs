@@ -34,6 +34,15 @@ impl Theme {
         }
     }
 
+    /// Returns the same theme with the texts of the other language.
+    pub(crate) fn in_other_language(&self) -> Self {
+        let language = match self.language {
+            Language::English => Language::German,
+            Language::German => Language::English,
+        };
+        Theme { language, ..*self }
+    }
+
     pub fn translate(&self, id: &'static str) -> String {
         Text::new(id).to_string_in(self.language)
     }
@@ -45,6 +54,11 @@ impl Theme {
     /// Formats a number with the decimal sign of the current language.
     pub fn format_number(&self, value: f64, decimals: usize) -> String {
         crate::app::format_decimal(value, decimals, self.language)
+    }
+
+    /// Returns a formatted number, whose decimal separator is a point, in the form of the language.
+    pub fn digits(&self, number: &str) -> String {
+        crate::app::texts::localize_number(number, self.language)
     }
 
     /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would only
@@ -140,6 +154,7 @@ impl Theme {
                 dormant_handle_opacity: 0.35,
                 active_handle_opacity: 0.5,
                 interact_handle_opacity: 0.8,
+                handle_min_length: 32.0,
                 ..egui::style::ScrollStyle::thin()
             };
             style.wrap_mode = Some(egui::TextWrapMode::Extend);

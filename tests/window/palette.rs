@@ -48,6 +48,17 @@ fn pages_devices_and_settings_are_found_by_name() {
     assert!(screen.has_button("memory.review"));
 }
 
+/// A user who has read the German manual, and one of a German window who knows the English name.
+#[test]
+fn names_are_found_in_both_languages() {
+    let mut screen = Screen::new_form(SIZE);
+    find_and_choose(&mut screen, "kommutierung");
+    assert!(screen.has_button("commutation.read_one"), "the page Commutation is open");
+    screen.act(Action::SetLanguage(Language::German));
+    find_and_choose(&mut screen, "set-up");
+    assert!(screen.has_button("position_card.plan"), "the page Set-up is open");
+}
+
 #[test]
 fn actions_of_the_shown_device_are_carried_out() {
     let mut screen = Screen::new_form(SIZE);

@@ -11,6 +11,8 @@ use crate::ui::entries::text_entry;
 const DIALOG_WIDTH: f32 = 560.0;
 const ROW_HEIGHT: f32 = 28.0;
 const ROWS: usize = 11;
+/// Width of the column of keys, enough for *Ctrl+Shift+Z*.
+const KEYS: f32 = 104.0;
 
 /// State of the palette: the typed text, and the row that Enter selects.
 #[derive(Default)]
@@ -56,7 +58,9 @@ pub(in crate::ui) fn palette_ui(
 fn matching_commands(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     let fitting = commands.into_iter().filter_map(|command| {
         let fit = match_score(typed, &command.name)
-            .or_else(|| Some(10 + match_score(typed, &format!("{} {}", command.about, command.name))?))?;
+            .or_else(|| Some(10 + match_score(typed, &format!("{} {}", command.about, command.name))?))
+            .or_else(|| Some(20 + match_score(typed, &command.other_name)?))
+            .or_else(|| Some(30 + match_score(typed, &format!("{} {}", command.about, command.other_name))?))?;
         Some((!command.is_enabled, fit, command))
     });
     let mut fitting: Vec<(bool, usize, Command)> = fitting.collect();
@@ -101,9 +105,13 @@ fn row_ui(ui: &mut Ui, theme: &Theme, rect: Rect, command: &Command, is_lit: boo
     let inner = rect.shrink2(vec2(theme.space.between, 0.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(inner).layout(Layout::right_to_left(Align::Center)), |ui| {
         ui.spacing_mut().item_spacing.x = theme.space.between;
-        if let Some(keys) = command.shortcut {
-            ui.label(theme.monospace(ui.ctx().format_shortcut(&keys)).color(palette.muted));
-        }
+        // The keys have a column of their own, and so the names of the devices are aligned.
+        ui.allocate_ui_with_layout(vec2(KEYS, ROW_HEIGHT), Layout::right_to_left(Align::Center), |ui| {
+            ui.set_min_width(KEYS);
+            if let Some(keys) = command.shortcut {
+                ui.label(theme.monospace(ui.ctx().format_shortcut(&keys)).color(palette.muted));
+            }
+        });
         ui.label(theme.caption(&command.about));
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let ink = if command.is_enabled { palette.text } else { palette.muted };
