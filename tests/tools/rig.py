@@ -17,7 +17,7 @@ SIZE = (1280, 1000)
 # Positions in a window of that size, in English. --points has others.
 POINTS = {
     "page": (59, 252), "take": (349, 70), "stop": (227, 78), "nowhere": (349, 860), "connect": (967, 25),
-    "torque": (707, 429), "plus": (729, 478), "target": (379, 626), "go": (231, 735), "run": (661, 843),
+    "torque": (707, 429), "plus": (729, 478), "target": (379, 626), "go": (231, 735), "run": (661, 942),
     "parameters": (70, 288), "register 24": (501, 549),
 }
 Packet = collections.namedtuple("Packet", "at sequence word status position moves")

@@ -141,6 +141,29 @@ fn a_key_repeat_presses_no_button() {
     assert!(!is_motion_active(screen.studio()), "held since then");
 }
 
+/// Issue 26: a held key on a speed preset sets the speed once, and moves nothing; the repetitions after the focus has
+/// moved on press no pad.
+#[test]
+fn a_key_held_on_a_speed_preset_moves_nothing() {
+    for key in [Key::Enter, Key::Space] {
+        let mut screen = in_hand();
+        let label = format!("{}: 100 %", screen.say("hd_jog.speed"));
+        screen.harness.get_by_role_and_label(Role::RadioButton, &label).focus();
+        screen.steps();
+        repeats(&mut screen, key);
+        let speed = |screen: &Screen| {
+            let moves = &screen.studio().hiperdrive().unwrap().moves;
+            moves.jog_speed_torque(encoder_studio::devices::hiperdrive::protocol::DriveNumber::FIRST).speed.get()
+        };
+        assert_eq!(speed(&screen), 100, "{key:?}");
+        focus(&mut screen, "hd_jog.up");
+        repeats(&mut screen, key);
+        assert!(!is_held(&screen) && !is_motion_active(screen.studio()), "{key:?}");
+        up(&mut screen, key);
+        assert!(!is_motion_active(screen.studio()), "{key:?}");
+    }
+}
+
 /// Issue 21.2: if a key repeats by an immediate release and press, the two may be in frames that are far apart.
 #[test]
 fn a_key_repeat_split_over_two_frames_moves_nothing() {

@@ -27,6 +27,7 @@ mod hiperdrive_motion;
 mod hiperdrive_recording;
 mod hiperdrive_remote;
 mod hiperdrive_rules;
+mod hiperdrive_run;
 mod hiperdrive_stop;
 mod interbus;
 mod leaving;

@@ -90,6 +90,7 @@ impl HiperdriveDevice {
             MotorCommand::Stop => return self.moves.stop(),
             MotorCommand::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
             MotorCommand::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
+            MotorCommand::RunEffort(effort) => return self.moves.set_run_effort(drive, effort),
             MotorCommand::Expert(expert) => return self.moves.set_endless_allowed(drive, expert),
             MotorCommand::FreeOutward(direction) => return self.enable_outward_jog(drive, direction, services),
             MotorCommand::ConfirmLimits(drive) => {
@@ -112,7 +113,7 @@ impl HiperdriveDevice {
                 MotionRequest::Move { target, effort: self.moves.move_speed_torque(drive) }
             }
             MotorCommand::Run { direction, end } => {
-                MotionRequest::Run { direction, end, effort: self.moves.move_speed_torque(drive) }
+                MotionRequest::Run { direction, end, effort: self.moves.run_speed_torque(drive) }
             }
             MotorCommand::Pause => MotionRequest::Pause,
             MotorCommand::Resume => MotionRequest::Resume,

@@ -70,8 +70,9 @@ pub enum MotorCommand {
     Resume,
     Stop,
     JogEffort(SpeedTorque),
-    /// Sets the speed and torque of moves, steps and runs.
+    /// Sets the speed and torque of moves and steps.
     MoveEffort(SpeedTorque),
+    RunEffort(SpeedTorque),
     /// Confirms or revokes the warning about endless runs.
     Expert(bool),
     /// Confirms the limits after the user has checked them in the user's own unit.

@@ -8,6 +8,7 @@ mod brake;
 mod connect_form;
 mod discovery;
 mod drafts;
+mod endless_run;
 mod events;
 pub mod explain;
 pub mod forms;

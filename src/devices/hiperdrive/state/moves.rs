@@ -5,6 +5,8 @@
 //! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. A
 //! window that hangs refreshes nothing, and the drives stop 250 ms later.
 
+mod effort;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::devices::hiperdrive::jobs::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
@@ -24,6 +26,8 @@ pub struct DriveMotion {
     /// Speed and torque of jogs, for drives on which they differ from the default.
     jogs: BTreeMap<DriveNumber, SpeedTorque>,
     jobs: BTreeMap<DriveNumber, SpeedTorque>,
+    /// Speed and torque of runs, for drives on which they differ from the default.
+    runs: BTreeMap<DriveNumber, SpeedTorque>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
     /// Latest endless run, with its number. When it ends or is replaced, the next one must be allowed again.
@@ -67,6 +71,7 @@ impl Default for DriveMotion {
             act: None,
             jogs: BTreeMap::new(),
             jobs: BTreeMap::new(),
+            runs: BTreeMap::new(),
             experts: BTreeSet::new(),
             endless_run: None,
             freed: None,
@@ -80,8 +85,8 @@ impl Default for DriveMotion {
 }
 
 impl DriveMotion {
-    /// Begins a session. Unconfirmed limits remain unconfirmed. Endless runs are not allowed yet, and jogs are slow
-    /// ([`SpeedTorque::DEFAULT_JOG`]).
+    /// Begins a session. Unconfirmed limits remain unconfirmed. Endless runs are not allowed yet. Jogs and runs,
+    /// which last until they are stopped, are slow ([`SpeedTorque::DEFAULT_JOG`]).
     pub(super) fn begin_session(&mut self, motion: Motion) {
         for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
@@ -89,6 +94,7 @@ impl DriveMotion {
         (self.experts, self.endless_run, self.act) = (BTreeSet::new(), None, None);
         // Every session begins slowly, whatever was set in the one before.
         self.jogs.clear();
+        self.runs.clear();
         self.limits_changed.clear();
         self.taken = false;
         let DrivesSnapshot { at, view, limits } = motion.take_snapshot();
@@ -107,7 +113,7 @@ impl DriveMotion {
         self.stop();
         self.limits.clear();
         self.limits_changed.clear();
-        (self.jogs, self.jobs) = (BTreeMap::new(), BTreeMap::new());
+        (self.jogs, self.jobs, self.runs) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
         for drive in std::mem::take(&mut self.experts) {
             self.set_endless_allowed(drive, false);
         }
@@ -274,14 +280,6 @@ impl DriveMotion {
         self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
 
-    pub(super) fn set_jog_effort(&mut self, drive: DriveNumber, effort: SpeedTorque) {
-        self.jogs.insert(drive, effort);
-    }
-
-    pub(super) fn set_move_effort(&mut self, drive: DriveNumber, effort: SpeedTorque) {
-        self.jobs.insert(drive, effort);
-    }
-
     pub(super) fn set_endless_allowed(&mut self, drive: DriveNumber, expert: bool) {
         if expert {
             self.experts.insert(drive);
@@ -408,33 +406,6 @@ impl DriveMotion {
             |own: &&DriveSnapshot| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });
         let busy = self.view.drives.iter().find(has_job).filter(|_| self.view.open);
         asked.or_else(|| busy.map(|own| own.number))
-    }
-
-    pub fn jog_speed_torque(&self, drive: DriveNumber) -> SpeedTorque {
-        self.jogs.get(&drive).copied().unwrap_or(SpeedTorque::DEFAULT_JOG)
-    }
-
-    pub fn move_speed_torque(&self, drive: DriveNumber) -> SpeedTorque {
-        self.jobs.get(&drive).copied().unwrap_or(SpeedTorque::DEFAULT_MOVE)
-    }
-
-    /// Returns the speed and torque of a running jog, if any.
-    pub fn running_jog_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        self.active_speed_torque(drive).filter(|_| self.is_jog(drive))
-    }
-
-    /// Returns the speed and torque of a running move, step or run, if any.
-    pub fn running_move_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        self.active_speed_torque(drive).filter(|_| !self.is_jog(drive))
-    }
-
-    fn is_jog(&self, drive: DriveNumber) -> bool {
-        self.act.is_some_and(|act| act.drive == drive && act.kind == Kind::Held)
-    }
-
-    fn active_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        let own = self.drive(drive).filter(|own| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_)))?;
-        Some(SpeedTorque { speed: own.sent.speed, torque: own.sent.torque })
     }
 
     pub fn allows_endless_run(&self, drive: DriveNumber) -> bool {

@@ -65,7 +65,7 @@ fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mu
             empty_placeholder(ui, theme, &translate(theme, "hd_device.nothing"), None);
             return;
         };
-        ui.label(theme.value(&identity.category));
+        paragraph(ui, theme.value(&identity.category));
         ui.add_space(theme.space.inside);
         for (label, value) in [
             ("hd_device.name", &identity.name),

@@ -61,7 +61,8 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
     row(ui, theme, &translate(theme, "hd_live.state"), RichText::new(word).color(colour));
     row(ui, theme, &translate(theme, "hd_effort.speed"), theme.monospace(speed));
     // The row is drawn even without a target, so the buttons below stay in place when control is taken.
-    let target = unit.moves.last_setpoint(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
+    // Only a move has a target; the cyclic data contain a number also without one.
+    let target = unit.moves.target(drive).map(|target| in_measure(target, unit.measure).unwrap_or_default());
     let target = target.map(|target| format!("{target} {}", translate(theme, unit.measure.unit())));
     let target = theme.monospace(target.unwrap_or_else(|| "–".to_owned()));
     row(ui, theme, &translate(theme, "hd_live.target"), target);

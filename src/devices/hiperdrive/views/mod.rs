@@ -13,6 +13,7 @@ mod motion;
 mod network;
 pub(crate) mod outside;
 mod parameters;
+mod run;
 mod scale;
 mod state_machine;
 mod travel;

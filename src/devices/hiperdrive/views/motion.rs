@@ -3,10 +3,10 @@
 use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
 use super::state_machine::{StateMachine, state_machine};
-use super::{figures, jog, outside};
+use super::{figures, jog, outside, run};
 use crate::app::{Action, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{MotionKind, MotionLock, Phase, SpeedTorque};
-use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd, State};
+use crate::devices::hiperdrive::protocol::{ErrorCode, Percent, State};
 use crate::devices::hiperdrive::state::{
     HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand, TEXTS, explain, forms,
 };
@@ -28,6 +28,7 @@ pub(super) struct MotionUiState {
     pub(super) step: String,
     pub(super) outside: outside::Draft,
     move_effort: [Draft; 2],
+    run_effort: [Draft; 2],
     pub(super) target: String,
 }
 
@@ -84,7 +85,7 @@ pub(super) fn page_ui(
                 jog::step_card_ui(ui, theme, unit, allowed, view, actions);
                 theme.add_gap(ui);
                 folding_card(ui, theme, TEXTS.text("hd_run.title"), |ui| {
-                    speed_control_ui(ui, theme, unit, allowed, actions)
+                    run::run_ui(ui, theme, unit, &mut view.run_effort, actions)
                 });
             },
         );
@@ -245,41 +246,6 @@ fn move_to_position_ui(
     let target = target.err().filter(|_| !view.target.trim().is_empty());
     show_error_below(ui, theme, target.as_ref().or(entered.as_ref().err()));
     allowed
-}
-
-/// Draws the controls for a run at a speed, to the end of the range or, for experts, without end.
-fn speed_control_ui(
-    ui: &mut Ui,
-    theme: &Theme,
-    unit: &HiperdriveDevice,
-    allowed: &Result<(), Text>,
-    actions: &mut Vec<Action>,
-) {
-    let id = unit.session.id;
-    let allowed = &allowed.clone().and(unit.may_move_until_stopped(unit.drive()));
-    let mut expert = unit.moves.allows_endless_run(unit.drive());
-    let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
-    ui.horizontal_wrapped(|ui| {
-        let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
-        for (direction, word) in ways {
-            if button_with_reason(ui, theme, allowed, "", &translate(theme, word)).clicked() {
-                motor(actions, id, MotorCommand::Run { direction, end });
-            }
-        }
-    });
-    let words = if expert { "hd_run.endless_words" } else { "hd_run.words" };
-    paragraph(ui, theme.caption(move_speed_torque_text(theme, unit, words)));
-    let endless = unit.check_can_allow_endless_run(unit.drive());
-    // The option can always be switched off.
-    ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
-        if ui.checkbox(&mut expert, translate(theme, "hd_run.expert")).changed() {
-            motor(actions, id, MotorCommand::Expert(expert));
-        }
-    });
-    match endless {
-        Ok(()) => paragraph(ui, theme.caption(translate(theme, "hd_run.expert_words"))),
-        Err(why) => paragraph(ui, theme.caption(theme.format_text(&why))),
-    }
 }
 
 /// Draws speed and torque in percent, in one row if there is room. Buttons offer the speed `presets`, which start
