@@ -19,12 +19,13 @@ use crate::ui::controls::{
 use crate::ui::{Theme, icons};
 
 const ENTRY_WIDTH: f32 = 96.0;
+const LIMIT: f32 = 56.0;
 const READ_BUTTON_WIDTH: f32 = 160.0;
 const POSITION_WIDTH: f32 = 80.0;
 /// Minimum width in points for showing the position on the same line as its buttons.
 const MIN_ONE_LINE_WIDTH: f32 = 430.0;
-/// Minimum width in points for both limits in one row.
-const BOTH_LIMITS: f32 = 420.0;
+/// Minimum width in points for two entries in one row.
+const BOTH: f32 = 420.0;
 const MESSAGE_LINES: f32 = 2.0;
 /// Minimum width in points for two columns.
 const MIN_TWO_COLUMN_WIDTH: f32 = 700.0;
@@ -98,17 +99,28 @@ fn preparation_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
 }
 
 fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
-    if ui.available_width() < BOTH_LIMITS {
-        number_ui(ui, theme, "commutation.current", &mut form.current_a, "");
-        number_ui(ui, theme, "commutation.time", &mut form.time_s, "");
+    let (current, time) = (&mut form.current_a, &mut form.time_s);
+    two_numbers_ui(ui, theme, ("commutation.current", current, ""), ("commutation.time", time, ""));
+}
+
+/// Draws two numbers in one row if there is room. Each has the ID of its name, its text and its hint.
+fn two_numbers_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    (one, first, first_hint): (&'static str, &mut String, &str),
+    (other, second, second_hint): (&'static str, &mut String, &str),
+) {
+    if ui.available_width() < BOTH {
+        number_ui(ui, theme, one, first, first_hint);
+        number_ui(ui, theme, other, second, second_hint);
         return;
     }
-    let [current, time] = ["commutation.current", "commutation.time"].map(|id| translate(theme, id));
-    entry(ui, theme, &current, |ui| {
-        text_entry(ui, &mut form.current_a, ENTRY_WIDTH, &current, "");
+    let [one, other] = [one, other].map(|id| translate(theme, id));
+    entry(ui, theme, &one, |ui| {
+        text_entry(ui, first, ENTRY_WIDTH, &one, first_hint);
         ui.add_space(theme.space.between);
-        ui.label(theme.label(&time));
-        text_entry(ui, &mut form.time_s, ENTRY_WIDTH, &time, "");
+        ui.label(theme.label(&other));
+        text_entry(ui, second, ENTRY_WIDTH, &other, second_hint);
     });
 }
 
@@ -120,9 +132,10 @@ fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
 
 fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.motor"), |ui| {
-        number_ui(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().signal_periods(encoder.geometry()).map(|periods| periods.to_string());
-        number_ui(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
+        let of_type = of_type.unwrap_or_default();
+        let (pairs, periods) = (&mut form.pole_pairs, &mut form.periods);
+        two_numbers_ui(ui, theme, ("commutation.pole_pairs", pairs, ""), ("commutation.periods", periods, &of_type));
         if let Some(words) = form.periods_warning(encoder.geometry()) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
@@ -131,6 +144,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
             let directions = directions.map(|(reversed, id)| (reversed, translate(theme, id)));
             dropdown(ui, &translate(theme, "commutation.direction"), &mut form.reversed, directions);
         });
+        let beside = ui.available_width() >= BOTH;
         entry(ui, theme, &translate(theme, "commutation.source"), |ui| {
             let sources = [
                 (Source::Signals, "commutation.from_signals"),
@@ -139,15 +153,22 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
             ];
             let sources = sources.map(|(source, id)| (source, translate(theme, id)));
             dropdown(ui, &translate(theme, "commutation.source"), &mut form.source, sources);
+            if beside {
+                let limit = translate(theme, "commutation.limit");
+                ui.add_space(theme.space.between);
+                ui.label(theme.label(&limit));
+                let entry = text_entry(ui, &mut form.limit_deg, LIMIT, &limit, "5");
+                entry.on_hover_text(translate(theme, "commutation.limit_hint"));
+            }
         });
         if form.source == Source::Typed {
             number_ui(ui, theme, "commutation.phase", &mut form.phase, &theme.format_number(0.0, 4));
         }
-        let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
-        limit.on_hover_text(translate(theme, "commutation.limit_hint"));
-        if let Err(why) = form.inputs(encoder.geometry()) {
-            paragraph(ui, theme.label(theme.format_text(&why)));
+        if !beside {
+            let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
+            limit.on_hover_text(translate(theme, "commutation.limit_hint"));
         }
+        // The card of the offset names an entry that is missing or invalid.
     });
 }
 

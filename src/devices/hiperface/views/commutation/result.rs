@@ -3,7 +3,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{assistant_action, fixed_height_message_ui, number_ui};
+use super::{BOTH, assistant_action, fixed_height_message_ui, number_ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
 use crate::devices::hiperface::state::commutation::{
@@ -24,7 +24,6 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
         let degrees =
             |id, degrees, decimals| theme.format_text(&TEXTS.text(id).with_number("degrees", degrees, decimals));
         let angle = values.map(|offset| degrees("commutation.offset_value", offset.angle.to_degrees(), 4));
-        ui.label(theme.value(angle.unwrap_or_else(|| "–".to_owned())));
         let resolution = values.and_then(|offset| offset.resolution_deg);
         let parts = [
             values.map(|offset| format!("{:08X}h", offset.angle.bits())),
@@ -32,7 +31,20 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
             resolution.map(|own| degrees("commutation.resolution", own, 2)),
         ];
         let parts = parts.into_iter().flatten().collect::<Vec<_>>().join("  ·  ");
-        ui.add(egui::Label::new(theme.monospace(&parts)).truncate().selectable(true)).on_hover_text(parts);
+        let angle = theme.value(angle.unwrap_or_else(|| "–".to_owned()));
+        let parts = |ui: &mut Ui| {
+            let label = egui::Label::new(theme.monospace(&parts)).truncate().selectable(true);
+            ui.add(label).on_hover_text(&parts);
+        };
+        if ui.available_width() >= BOTH {
+            ui.horizontal(|ui| {
+                ui.label(angle);
+                parts(ui);
+            });
+        } else {
+            ui.label(angle);
+            parts(ui);
+        }
         let is_confirmed = encoder.commutation.is_confirmed(encoder.geometry());
         let message = match &offset {
             Err(why) => theme.label(theme.format_text(why)),
