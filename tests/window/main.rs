@@ -45,6 +45,7 @@ mod remembering;
 mod saving;
 mod screen;
 mod served;
+mod set_position;
 mod shell;
 mod signals;
 mod signals_adapter;

@@ -173,7 +173,7 @@ fn old_and_new_text(op: &Op) -> (String, String) {
         }
         Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
         op => {
-            let changes = words::operation_texts(op).changes.into_iter();
+            let changes = words::operation_texts(op, None).changes.into_iter();
             changes.map(|own| (own.old.terminal_text(), own.new.terminal_text())).next().unwrap_or_default()
         }
     }

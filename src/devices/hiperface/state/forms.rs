@@ -1,8 +1,8 @@
-//! Parsing of typed codes, addresses, positions and channels. The error messages name the valid values.
+//! Parsing of typed codes, addresses and channels. The error messages name the valid values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
-    AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings,
+    AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, LineSettings,
 };
 use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
@@ -48,40 +48,6 @@ pub fn parse_channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
-/// Parses a position. A number of steps is decimal, or hexadecimal with `0x`. An angle within the first turn is in
-/// degrees, followed by `°` or `deg`. Signs, exponents and words are invalid.
-///
-/// # Errors
-/// Returns an error if the entry is invalid. The message contains the range, if known.
-pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
-    let text = text.trim();
-    let last = geometry.and_then(Geometry::position_count).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
-    let refused = || TEXTS.text("entry.position").with("entry", text).with("last", last);
-    let degrees = text.strip_suffix('°').or_else(|| text.strip_suffix("deg"));
-    let steps = match (degrees, text.strip_prefix("0x")) {
-        (Some(degrees), _) => {
-            let degrees = degrees.trim().replace(',', ".");
-            // The number parser would also accept a sign, an exponent and texts such as `inf`.
-            if !degrees.bytes().all(|c| c.is_ascii_digit() || c == b'.') {
-                return Err(refused());
-            }
-            let degrees: f64 = degrees.parse().map_err(|_| refused())?;
-            let per_turn = geometry.and_then(Geometry::steps_per_turn).ok_or_else(refused)?;
-            let steps = (degrees / 360.0 * per_turn as f64).round();
-            if steps < 0.0 || steps > last as f64 {
-                return Err(refused());
-            }
-            steps as u64
-        }
-        (None, Some(hex)) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => {
-            u64::from_str_radix(hex, 16).map_err(|_| refused())?
-        }
-        (None, None) if text.bytes().all(|c| c.is_ascii_digit()) => text.parse().map_err(|_| refused())?,
-        (None, _) => return Err(refused()),
-    };
-    u32::try_from(steps).ok().filter(|_| steps <= last).ok_or_else(refused)
-}
-
 /// Returns line settings with the given format, time-out and wiring. Bits of unknown meaning are preserved.
 ///
 /// # Errors
@@ -110,47 +76,6 @@ fn byte(text: &str) -> Option<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
-
-    #[test]
-    fn positions_are_steps_or_degrees_within_the_range() {
-        // 128 periods × 32 steps = 4096 steps per turn; 90° are 1024 of them; 4096 turns are 16 777 216 steps.
-        for (text, steps) in [
-            ("0", 0),
-            (" 1024 ", 1024),
-            ("0x10", 16),
-            ("90°", 1024),
-            ("90 deg", 1024),
-            ("90deg", 1024),
-            ("0,5 °", 6),
-            ("16777215", 16_777_215),
-        ] {
-            assert_eq!(position(text, Some(SKM36)), Ok(steps), "{text}");
-        }
-        for text in [
-            "",
-            "-1",
-            "16777216",
-            "x",
-            "1.5",
-            "-90°",
-            "°",
-            "deg",
-            "NaN°",
-            "inf°",
-            "+5",
-            "+5°",
-            "0x+5",
-            "1e2°",
-            "5 h",
-            "4294967296",
-        ] {
-            assert!(position(text, Some(SKM36)).is_err(), "{text}");
-        }
-        assert_eq!(position("4294967295", None), Ok(u32::MAX));
-        assert!(position("90°", None).is_err(), "without a resolution, degrees are no steps");
-    }
 
     #[test]
     fn bytes_are_hexadecimal_in_every_usual_form() {

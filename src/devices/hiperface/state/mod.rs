@@ -13,6 +13,7 @@ mod kind;
 mod meaning;
 mod model;
 mod mounting;
+mod position_entry;
 mod record;
 #[cfg(test)]
 mod recorded;
@@ -30,6 +31,7 @@ pub use texts::TEXTS;
 pub use action::HiperfaceAction;
 pub use connect_form::{LinkForm, LinkKind};
 pub use encoder::Encoder;
+pub use position_entry::{PositionEntry, PositionUnit, position_text};
 pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
 pub use rules::ActionPermission;

@@ -41,8 +41,8 @@ impl Reviewable for Hiperface {
         }
     }
 
-    fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
-        words::operation_texts(op)
+    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
+        words::operation_texts(op, prepared.identity.geometry)
     }
 
     fn skips_mounting_values(prepared: &Prepared) -> bool {
@@ -101,11 +101,16 @@ impl Reviewable for Hiperface {
                 _ => None,
             };
             needs.extend(need.filter(|need| !needs.contains(need)));
-            if let Op::Store { status, .. } = op
-                && !codes.contains(&status.code())
-            {
-                codes.push(status.code());
-            }
+            let code = match op {
+                Op::Store { status, .. } => Some(status.code()),
+                Op::Define { from, to, .. } => Some(from.unwrap_or(*to).code()),
+                // The telegrams of these commands contain access code 0.
+                Op::SetPosition { .. } | Op::SetAddress { .. } | Op::Configure { .. } | Op::ClearCounter { .. } => {
+                    Some(AccessCodeNumber::ZERO)
+                }
+                Op::ChangeCode { .. } | Op::IncrementCounter { .. } => None,
+            };
+            codes.extend(code.filter(|code| !codes.contains(code)));
             if let Op::ChangeCode { .. } = op {
                 needs.push(TEXTS.text("review.needs_code_kept"));
             }

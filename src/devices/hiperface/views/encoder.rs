@@ -45,7 +45,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             empty_placeholder(ui, theme, &theme.translate("encoder_card.nothing"), None);
             return;
         };
-        ui.label(theme.value(&identity.name));
+        paragraph(ui, theme.value(&identity.name));
         ui.add_space(theme.space.inside);
         facts_ui(ui, theme, identity);
         if let Some(memory) = identity.memory {

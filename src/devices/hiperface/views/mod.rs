@@ -5,6 +5,7 @@ mod connect_form;
 mod encoder;
 mod live;
 mod memory;
+mod position;
 mod setup;
 mod values;
 mod wiring;

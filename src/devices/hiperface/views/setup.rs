@@ -3,6 +3,7 @@
 
 use egui::Ui;
 
+use super::position::{self, PositionUiState};
 use crate::app::{Action, Text, explain};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::protocol::{AccessCodeNumber, BAUDS, LineSettings};
@@ -18,11 +19,7 @@ use crate::units::{CharacterFormat, Parity};
 
 #[derive(Default)]
 pub(super) struct SetupUiState {
-    position: String,
-    exact: bool,
-    synchronise: bool,
-    kit: bool,
-    position_problem: Option<Text>,
+    position: PositionUiState,
     address: String,
     address_problem: Option<Text>,
     settings: Option<SelectedSettings>,
@@ -55,7 +52,7 @@ pub(super) fn page_ui(
         theme,
         (actions, view),
         |ui, (actions, view)| {
-            position_ui(ui, theme, encoder, view, actions);
+            position::card_ui(ui, theme, encoder, &mut view.position, actions);
             theme.add_gap(ui);
             access_codes_ui(ui, theme, encoder, view, actions);
         },
@@ -70,7 +67,12 @@ pub(super) fn page_ui(
 }
 
 /// Submits a valid change, or stores the reason why it is invalid.
-fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Text>, actions: &mut Vec<Action>) {
+pub(super) fn plan(
+    encoder: &Encoder,
+    change: Result<Change, Text>,
+    problem: &mut Option<Text>,
+    actions: &mut Vec<Action>,
+) {
     match change {
         Ok(change) => {
             *problem = None;
@@ -80,52 +82,8 @@ fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Te
     }
 }
 
-fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
-    let geometry = encoder.identity.as_ref().and_then(|identity| identity.geometry);
-    let kit = encoder.identity.as_ref().and_then(|identity| identity.kit);
-    card(ui, theme, TEXTS.text("position_card.title"), |ui| {
-        paragraph(ui, theme.label(translate(theme, "position_card.words")));
-        entry(ui, theme, &translate(theme, "position_card.wanted"), |ui| {
-            let hint = translate(theme, "position_card.hint");
-            text_entry(ui, &mut view.position, 168.0, &translate(theme, "position_card.wanted"), &hint);
-        });
-        ui.checkbox(&mut view.exact, translate(theme, "position_card.exact"))
-            .on_hover_text(translate(theme, "position_card.exact_hint"));
-        let hint = translate(theme, "position_card.synchronise_hint");
-        ui.add_enabled_ui(kit != Some(false), |ui| {
-            ui.checkbox(&mut view.synchronise, translate(theme, "position_card.synchronise"))
-                .on_hover_text(&hint)
-                .on_disabled_hover_text(&hint);
-        });
-        if view.synchronise && kit.is_none() {
-            ui.checkbox(&mut view.kit, translate(theme, "position_card.kit"));
-        }
-        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &translate(theme, "position_card.plan"))
-            .clicked()
-        {
-            let wanted = forms::position(&view.position, geometry);
-            let (exact, kit) = (view.exact, view.kit);
-            let synchronise = view.synchronise && encoder.identity.as_ref().is_some_and(|own| own.kit != Some(false));
-            let change = wanted.map(|wanted| Change::SetPosition { wanted, exact, synchronise, kit });
-            plan(encoder, change, &mut view.position_problem, actions);
-        }
-        show_error_below(ui, theme, view.position_problem.as_ref());
-        if let Some((from, to)) = encoder.position_set {
-            let steps = i64::from(from) - i64::from(to);
-            let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
-            ui.horizontal_wrapped(|ui| {
-                ui.label(theme.label(theme.format_text(&text)));
-                let undo = translate(theme, "position_card.undo");
-                if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
-                    actions.push(Action::device(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
-                }
-            });
-        }
-    });
-}
-
 fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
         paragraph(ui, theme.label(translate(theme, "codes_card.words")));
         entry(ui, theme, &translate(theme, "codes_card.number"), |ui| {
             let numbers = AccessCodeNumber::all().map(|number| (number, number.to_string()));

@@ -6,11 +6,11 @@ use crate::app::explain::literal_text;
 use crate::app::review::OperationTexts;
 use crate::bits::hex;
 use crate::devices::hiperface::profile::Op;
-use crate::devices::hiperface::protocol::DataFieldStatus;
-use crate::devices::hiperface::state::TEXTS;
+use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry};
+use crate::devices::hiperface::state::{TEXTS, position_text};
 
 /// Describes an operation without revealing access codes.
-pub fn operation_texts(op: &Op) -> OperationTexts {
+pub fn operation_texts(op: &Op, geometry: Option<Geometry>) -> OperationTexts {
     match op {
         Op::Define { field, from, to } => define_texts(*field, *from, *to),
         Op::Store { field, address, old, new, .. } => OperationTexts::single(
@@ -25,7 +25,7 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
         ),
         Op::SetPosition { from, to, synchronise } => {
             let item = if *synchronise { "op.synchronise" } else { "op.position" };
-            OperationTexts::single(TEXTS.text(item), literal_text(from), literal_text(to))
+            OperationTexts::single(TEXTS.text(item), position_text(*from, geometry), position_text(*to, geometry))
         }
         Op::SetAddress { from, to } => {
             OperationTexts::single(TEXTS.text("op.address"), literal_text(format!("{from:02X}h")), literal_text(to))
@@ -101,7 +101,7 @@ mod tests {
                 Op::ChangeCode { number: AccessCodeNumber::ZERO, old, new },
                 "access code 0: current code, not shown → new code, not shown",
             ),
-            (Op::SetPosition { from: 123, to: 456, synchronise: false }, "position: 123 → 456"),
+            (Op::SetPosition { from: 123, to: 456, synchronise: false }, "position: 123 steps → 456 steps"),
             (Op::SetAddress { from: 0x40, to: DeviceAddress::new(0x41).unwrap() }, "address: 40h → 41h"),
             (
                 Op::Configure { from: settings(0xE4), to: settings(0x65) },
@@ -112,12 +112,17 @@ mod tests {
         ];
         for (operation, english) in cases {
             let words: Vec<String> =
-                operation_texts(&operation).texts().map(|text| text.to_string_in(English)).collect();
+                operation_texts(&operation, None).texts().map(|text| text.to_string_in(English)).collect();
             let [item, old, new] = words.as_slice() else { panic!("{words:?}") };
             assert_eq!(format!("{item}: {old} → {new}"), english);
         }
         let words: Vec<String> =
-            operation_texts(&define(Some(0xE8), 0xA9)).texts().map(|text| text.to_string_in(German)).collect();
+            operation_texts(&define(Some(0xE8), 0xA9), None).texts().map(|text| text.to_string_in(German)).collect();
         assert_eq!(words, ["Datenfeld 1", "16 Bytes, beschreibbar", "32 Bytes, schreibgeschützt"]);
+        // 4096 steps a turn: 10,240 are two turns and a half.
+        let turns = Some(Geometry::Rotary { periods: 128, turns: 4096 });
+        let set = operation_texts(&Op::SetPosition { from: 0, to: 10_240, synchronise: false }, turns);
+        let words: Vec<String> = set.texts().map(|text| text.to_string_in(German)).collect();
+        assert_eq!(words, ["Position", "0 Schritte · Umdrehung 0, 0,000°", "10240 Schritte · Umdrehung 2, 180,000°"]);
     }
 }
