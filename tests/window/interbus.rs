@@ -4,9 +4,10 @@
 use crate::tabs::Tabs as _;
 use std::time::Duration;
 
+use encoder_studio::analysis::history::Value;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity};
+use encoder_studio::app::{Action, DeviceCommand, DeviceModel as _, ReviewAction, Severity, Studio};
 use encoder_studio::devices::interbus::profile::Scale;
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOutNumber, StartupMode};
 use encoder_studio::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus};
@@ -128,6 +129,28 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     // Rejected in its entry, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
+}
+
+/// Issue 26: the plot showed positions beyond the range beside rows within it. A turn of the shaft is the whole range.
+#[test]
+fn the_plot_shows_the_position_of_the_rows() {
+    let mut desk = read("sim:?steps=3600&revolutions=1&rpm=60");
+    command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
+    let shown = |studio: &Studio| {
+        let recorder = studio.interbus().unwrap().recording().recorder();
+        let line = &recorder.series()[0];
+        let (_, last) = recorder.recorded_span()?;
+        let sample = recorder.nearest_sample(line, last)?;
+        let Value::Whole(continuous) = sample.value else { return None };
+        Some((continuous, line.value(&sample) * 3600.0))
+    };
+    desk.until("the range has been passed", |studio| shown(studio).is_some_and(|(steps, _)| steps.abs() > 3600));
+    command(&mut desk, DeviceCommand::Poll(None));
+    until_ready(&mut desk);
+    let (continuous, shown) = shown(&desk.studio).unwrap();
+    let row = encoder(&desk).position().unwrap();
+    assert_eq!(shown.round() as i64, i64::from(row));
+    assert_eq!(continuous.rem_euclid(3600), i64::from(row));
 }
 
 #[test]

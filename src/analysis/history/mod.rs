@@ -15,6 +15,7 @@ mod statistics;
 #[cfg(test)]
 mod tests;
 mod times;
+mod wrap;
 
 use std::ops::Range;
 

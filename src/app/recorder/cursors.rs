@@ -79,11 +79,18 @@ impl Recorder {
         let history = self.history(line)?;
         let statistics = history.statistics(line.column, history.indices_between(from, to.saturating_add_ns(1)))?;
         let factor = line.factor();
-        let ends = (statistics.min.to_f64() * factor, statistics.max.to_f64() * factor);
+        let (min, max) = (statistics.min.to_f64(), statistics.max.to_f64());
+        // Positions on both sides of the end of a range have no useful mean.
+        let begin = match line.range_of_samples().map(|range| range as f64) {
+            Some(range) if (min / range).floor() != (max / range).floor() => return None,
+            Some(range) => (min / range).floor() * range,
+            None => 0.0,
+        };
+        let ends = ((min - begin) * factor, (max - begin) * factor);
         Some(CursorStatistics {
             count: statistics.count,
             bad: statistics.bad,
-            mean: statistics.mean * factor,
+            mean: (statistics.mean - begin) * factor,
             // The unit may have the opposite sign, which exchanges minimum and maximum.
             min: ends.0.min(ends.1),
             max: ends.0.max(ends.1),

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
+use super::line::within_range;
 use super::{GroupId, Recorder, SAMPLE, Series};
 use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, History};
@@ -67,6 +68,7 @@ struct Column {
     head: usize,
     column: usize,
     factor: f64,
+    range: Option<i64>,
     /// Whether the values are calculated from another line. A missing value is then not an error of the sample.
     derived: bool,
 }
@@ -148,6 +150,7 @@ impl Recorder {
                 head,
                 column: line.column,
                 factor: line.factor(),
+                range: line.range_of_samples(),
                 derived: line.derived,
             });
         }
@@ -257,7 +260,7 @@ fn cell_of(column: &Column, histories: &[Option<&History>], due: &[Option<u64>])
         (*histories.get(column.head)?)?.sample(column.column, index)
     };
     let Some(sample) = sample() else { return Cell::default() };
-    let value = sample.value.to_f64() * column.factor;
+    let value = within_range(sample.value, column.range) * column.factor;
     let value = Some(value).filter(|value| value.is_finite() && !sample.flags.contains(Flags::BAD));
     let flags = if column.derived { Flags::NONE } else { sample.flags };
     Cell { value, flags }

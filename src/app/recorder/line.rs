@@ -14,12 +14,20 @@ pub struct Scale {
     pub factor: f64,
     /// Useful number of decimals.
     pub decimals: usize,
+    /// Range of the samples at whose end a displayed value begins again with 0, or `None` for continuous values.
+    pub range: Option<i64>,
 }
 
 impl Scale {
     /// Creates a unit that equals `factor` units of the samples.
     pub fn new(unit: &'static str, factor: f64, decimals: usize) -> Self {
-        Scale { unit: Text::new(unit), factor, decimals }
+        Scale { unit: Text::new(unit), factor, decimals, range: None }
+    }
+
+    /// Displays values within a range, as the device sends them.
+    #[must_use]
+    pub fn within(self, range: i64) -> Self {
+        Scale { range: Some(range.max(1)), ..self }
     }
 }
 
@@ -110,8 +118,13 @@ impl Series {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 
+    /// Returns the range at whose end a displayed value begins again with 0, in units of the samples.
+    pub fn range_of_samples(&self) -> Option<i64> {
+        self.scale().and_then(|scale| scale.range)
+    }
+
     pub fn value(&self, sample: &Sample) -> f64 {
-        sample.value.to_f64() * self.factor()
+        within_range(sample.value, self.range_of_samples()) * self.factor()
     }
 
     /// Returns `later` minus `earlier` in the displayed unit. Counts are subtracted before rounding.
@@ -121,5 +134,13 @@ impl Series {
             (earlier, later) => later.to_f64() - earlier.to_f64(),
         };
         difference * self.factor()
+    }
+}
+
+/// Returns the value of a sample within a range of counts. Values without a range, and real ones, stay as they are.
+pub(super) fn within_range(value: Value, range: Option<i64>) -> f64 {
+    match (value, range) {
+        (Value::Whole(count), Some(range)) => count.rem_euclid(range.max(1)) as f64,
+        (value, _) => value.to_f64(),
     }
 }

@@ -10,6 +10,8 @@ mod line;
 mod tests;
 mod trigger;
 mod view;
+#[cfg(test)]
+mod within_range_tests;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,5 +1,6 @@
 //! The trigger, which waits for an event in a line and then shows it with the samples before it.
 
+use super::line::within_range;
 use super::{GroupId, Recorder, SeriesId, TimeWindow};
 use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, Sample};
@@ -58,6 +59,8 @@ pub(super) struct TriggerDetector {
     when: TriggerCondition,
     level: f64,
     state: TriggerState,
+    /// Range at whose end the values of the line begin again with 0, if they do.
+    range: Option<i64>,
     /// Last valid value, which is needed to detect an edge. It is `None` after a gap.
     last: Option<f64>,
     /// Duration of the view in nanoseconds.
@@ -86,13 +89,27 @@ impl TriggerDetector {
         let last = self.last.filter(|_| !sample.flags.contains(Flags::BREAK));
         self.last = value;
         let level = self.level;
+        let shown = within_range(sample.value, self.range);
         match (self.when, last, value) {
             (TriggerCondition::Error, ..) => bad || sample.flags.contains(Flags::WARNING),
-            (TriggerCondition::Above, _, Some(value)) => value >= level,
-            (TriggerCondition::Below, _, Some(value)) => value <= level,
-            (TriggerCondition::Rising, Some(last), Some(value)) => last < level && value >= level,
-            (TriggerCondition::Falling, Some(last), Some(value)) => last > level && value <= level,
+            (TriggerCondition::Above, _, Some(_)) => shown >= level,
+            (TriggerCondition::Below, _, Some(_)) => shown <= level,
+            (TriggerCondition::Rising, Some(last), Some(value)) => self.passes(last, value),
+            (TriggerCondition::Falling, Some(last), Some(value)) => self.passes(-last, -value),
             _ => false,
+        }
+    }
+
+    /// Returns whether the level lies on the way from `last` to `value`, whose signs are exchanged for a falling edge.
+    /// Values within a range pass the level once in each range. The step from the end of the range to 0 is no edge.
+    fn passes(&self, last: f64, value: f64) -> bool {
+        let level = if self.when == TriggerCondition::Falling { -self.level } else { self.level };
+        match self.range {
+            None => last < level && value >= level,
+            Some(range) => {
+                let count = |own: f64| ((own - level) / range as f64).floor();
+                count(value) > count(last)
+            }
         }
     }
 }
@@ -103,7 +120,8 @@ impl Recorder {
     }
 
     pub(super) fn arm(&mut self, trigger: Trigger) {
-        let Some(factor) = self.series_by_id(trigger.line).map(super::Series::factor) else { return };
+        let Some(line) = self.series_by_id(trigger.line) else { return };
+        let (factor, range) = (line.factor(), line.range_of_samples());
         let level = trigger.level / factor;
         if trigger.when.needs_level() && !level.is_finite() {
             return;
@@ -119,7 +137,8 @@ impl Recorder {
         let before = if trigger.before.is_finite() { trigger.before.clamp(0.0, 1.0) } else { 0.5 };
         let trigger = Trigger { before, ..trigger };
         let span = self.window_length();
-        self.watch = Some(TriggerDetector { trigger, when, level, state: TriggerState::Armed, last: None, span });
+        self.watch =
+            Some(TriggerDetector { trigger, when, level, state: TriggerState::Armed, range, last: None, span });
         if self.finished {
             self.search();
         } else {

@@ -28,7 +28,7 @@ impl PositionScales {
     /// Creates the meaning of positions on a shaft. The number of steps per revolution may be fractional.
     pub fn for_steps_per_turn(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
-        let scales = [
+        let mut scales = [
             vec![
                 Scale::new("unit.turns", turns, 5),
                 Scale::new("unit.degrees", 360.0 * turns, 3),
@@ -45,7 +45,18 @@ impl PositionScales {
                 Scale::new("unit.steps_per_second_squared", 1.0, 0),
             ],
         ];
+        if let ([positions, ..], Some(range)) = (&mut scales, range) {
+            positions.push(Scale::new("unit.turns_in_range", turns, 5).within(range));
+        }
         PositionScales { range, scales, is_linear: false, step: Some(turns) }
+    }
+
+    /// Displays positions within the range at first, as the device sends them, instead of continuous ones.
+    #[must_use]
+    pub fn within_range(mut self) -> Self {
+        let [positions, ..] = &mut self.scales;
+        positions.sort_by_key(|scale| scale.range.is_none());
+        self
     }
 
     /// Creates the meaning of linear positions, with the length of a step in millimetres.

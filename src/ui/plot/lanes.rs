@@ -47,7 +47,7 @@ pub(super) struct Layout {
 #[derive(Default)]
 pub(super) struct ReducedLane {
     pictures: Vec<(SeriesId, HistoryPicture)>,
-    made: Vec<(SeriesId, PictureInputs)>,
+    made: Vec<(SeriesId, PictureInputs, Option<i64>)>,
     gutter: f32,
 }
 
@@ -68,12 +68,13 @@ impl ReducedLane {
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
         let shown = |id: &SeriesId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
-        self.made.retain(|(id, _)| shown(id));
+        self.made.retain(|(id, ..)| shown(id));
         let mut cuts: Vec<(PictureInputs, GridColumns)> = Vec::new();
         for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
             let wanted = PictureInputs { samples: recorder.group_stamp(line), all: history.indices(), grid: *grid };
-            if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
+            let range = line.range_of_samples();
+            if self.made.iter().any(|(id, made, own)| *id == line.id && *made == wanted && *own == range) {
                 continue;
             }
             // Lines share one cut if their samples were taken together.
@@ -87,9 +88,12 @@ impl ReducedLane {
             let picture = self.pictures.iter_mut().find(|(id, _)| *id == line.id);
             if let (Some((_, cut)), Some((_, picture))) = (cut, picture) {
                 history.render_column(line.column(), cut, picture);
+                if let Some(range) = range {
+                    picture.wrap(range);
+                }
             }
-            self.made.retain(|(id, _)| *id != line.id);
-            self.made.push((line.id, wanted));
+            self.made.retain(|(id, ..)| *id != line.id);
+            self.made.push((line.id, wanted, range));
         }
     }
 

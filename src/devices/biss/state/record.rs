@@ -259,7 +259,7 @@ impl Watchable for Register {
         let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { literal_text(&self.unit) };
         let decimals = if self.is_whole() { 0 } else { 1 };
         let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();
-        Series::new(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
+        Series::new(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals, range: None }])
     }
 }
 

@@ -94,10 +94,11 @@ impl Record {
 
 fn position_scales(gear: Option<Gear>) -> PositionScales {
     match gear {
-        Some(gear) => PositionScales::for_steps_per_turn(
-            Some(gear.total_steps().into()),
-            f64::from(gear.total_steps()) / f64::from(gear.turns()),
-        ),
+        Some(gear) => {
+            let per_turn = f64::from(gear.total_steps()) / f64::from(gear.turns());
+            // Cams refer to positions within the range.
+            PositionScales::for_steps_per_turn(Some(gear.total_steps().into()), per_turn).within_range()
+        }
         None => PositionScales::for_steps(None),
     }
 }
