@@ -73,6 +73,9 @@ fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
     assert_eq!(recorder.window_length(), 100);
     (0..100).for_each(|_| recorder.handle_action(RecorderAction::Zoom(at(320), 1e9)));
     assert_eq!(recorder.window_length(), 8_640_000 * 1_000 * MILLISECOND, "a hundred days");
+    recorder.finish();
+    recorder.handle_action(RecorderAction::Zoom(at(320), 1e9));
+    assert_eq!(recorder.window_length(), 4 * 999 * MILLISECOND, "a complete recording of 1000 samples");
     recorder.handle_action(RecorderAction::Look(at(5), at(5)));
     assert_eq!(recorder.window_length(), 100);
     recorder.handle_action(RecorderAction::Look(

@@ -85,13 +85,23 @@ impl Recorder {
         };
     }
 
+    /// Returns the longest view. The view of a complete recording shows little more than the recording.
+    fn longest(&self) -> i64 {
+        /// Length of the longest view in lengths of the recording.
+        const TIMES: i64 = 4;
+        let recorded_span = self.recorded_span().filter(|_| self.finished);
+        recorded_span.map_or(MAX_LENGTH_NS, |(first, last)| {
+            last.nanoseconds_since(first).saturating_mul(TIMES).clamp(MIN_LENGTH_NS, MAX_LENGTH_NS)
+        })
+    }
+
     /// Zooms around a time. If the view follows the samples, the newest one stays in place.
     pub(super) fn zoom_around(&mut self, about: SampleTime, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;
         }
         let longer = |nanoseconds: i64| (nanoseconds as f64 * factor).round() as i64;
-        let span = longer(self.window_length()).clamp(MIN_LENGTH_NS, MAX_LENGTH_NS);
+        let span = longer(self.window_length()).clamp(MIN_LENGTH_NS, self.longest());
         match self.view {
             TimeWindow::Follow { .. } => self.view = TimeWindow::Follow { span },
             TimeWindow::Fixed { from, to } => {
