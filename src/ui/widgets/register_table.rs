@@ -176,7 +176,8 @@ pub fn register_table(
             controls::fill_width(ui);
             // The lines are beside the scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
-            let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
+            let mut columns = Columns::new(table.kind, width, value_width(theme, table.kind));
+            columns.has_small_names = view.small_names_at == Some(columns.width());
             output.is_narrow = columns.is_narrow();
             paint::header(ui, theme, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER_HEIGHT).max(LINE_HEIGHT * 3.0);
@@ -331,15 +332,11 @@ fn row(
         view.wanted = Some(place);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
-    paint::row(
-        ui,
-        theme,
-        rect,
-        (table.kind, columns),
-        &row,
-        (open, typing),
-        paint::State::from_response(selected, &response),
-    );
+    let state = paint::State::from_response(selected, &response);
+    if !paint::row(ui, theme, rect, (table.kind, columns), &row, (open, typing), state) && !columns.has_small_names {
+        view.small_names_at = Some(columns.width());
+        ui.ctx().request_repaint();
+    }
     if response.hovered() && !typing {
         response.on_hover_ui(|ui| paint::show_tooltip(ui, theme, (table.kind, columns), &row));
     }

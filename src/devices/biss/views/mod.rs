@@ -126,7 +126,7 @@ impl TypedDeviceView for BissView {
     ) {
         if page.handles_scrolling() {
             // Tables fill the available space.
-            let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
+            let frame = egui::Frame::NONE.inner_margin(page::page_margin(ui, theme));
             frame.show(ui, |ui| match page {
                 Page::Data => data::page_ui(ui, theme, (studio, device), encoder, &mut view.data, actions),
                 _ => registers::page_ui(ui, theme, encoder, &mut view.registers, actions),

@@ -22,7 +22,7 @@ pub(super) struct RegistersUiState {
 
 /// Width of the bank list. On a page narrower than `BESIDE`, a drop-down above the table replaces the list.
 const BANK_LIST_WIDTH: f32 = 176.0;
-const MIN_TWO_COLUMN_WIDTH: f32 = 860.0;
+const MIN_TWO_COLUMN_WIDTH: f32 = 840.0;
 
 pub(super) fn page_ui(
     ui: &mut Ui,

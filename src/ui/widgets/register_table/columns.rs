@@ -52,6 +52,8 @@ pub(super) struct Columns {
     ranges: Vec<(Column, Rangef)>,
     /// Whether columns are hidden or narrower than usual.
     is_narrow: bool,
+    /// Whether names are drawn in the small size, because one of them does not fit otherwise.
+    pub(super) has_small_names: bool,
 }
 
 impl Columns {
@@ -85,7 +87,7 @@ impl Columns {
             (column, range)
         };
         let is_narrow = share < 1.0 || shown.len() < all_columns(kind).len();
-        Columns { ranges: shown.into_iter().map(place).collect(), is_narrow }
+        Columns { ranges: shown.into_iter().map(place).collect(), is_narrow, has_small_names: false }
     }
 
     pub(super) fn is_narrow(&self) -> bool {

@@ -79,7 +79,7 @@ pub(super) fn paint_heading(ui: &Ui, theme: &Theme, rect: Rect, group: &Register
     draw_label(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
-/// Draws a register. Its value is left out while it is being edited.
+/// Draws a register. Its value is left out while it is being edited. Returns whether its name fits in the usual size.
 pub(super) fn row(
     ui: &Ui,
     theme: &Theme,
@@ -88,7 +88,7 @@ pub(super) fn row(
     row: &RegisterRow,
     (open, typing): (bool, bool),
     state: State,
-) {
+) -> bool {
     state.paint(ui, theme, rect);
     paint_marks(ui, theme, rect.left_center(), row, open);
     let palette = theme.palette;
@@ -99,10 +99,12 @@ pub(super) fn row(
     {
         ui.painter().rect_filled(value_edit_rect(theme, rect, range), 2.0, palette.raised);
     }
+    let mut fits = true;
     for (column, range) in columns.iter() {
         let (words, ink) = match column {
             Column::Marks => continue,
             Column::Address => (theme.monospace(&row.address), palette.muted),
+            Column::Name if columns.has_small_names => (theme.caption(&row.name), palette.text),
             Column::Name => (egui::RichText::new(&row.name), palette.text),
             Column::Value if typing => continue,
             Column::Value if row.value.is_empty() => (theme.monospace("–"), palette.muted),
@@ -119,9 +121,13 @@ pub(super) fn row(
             Column::Default if row.differs => (theme.monospace(format!("≠ {}", row.default)), palette.text),
             Column::Default => (theme.monospace(&row.default), palette.muted),
         };
-        // A name or meaning that is too long is drawn smaller. It is cut only if it still does not fit.
+        // A meaning that is too long is drawn smaller. It is cut only if it still does not fit.
         let words = match column {
-            Column::Name | Column::Meaning if is_too_long(ui, theme, range, &words) => words.size(theme.sizes.caption),
+            Column::Name if !columns.has_small_names && is_too_long(ui, theme, range, &words) => {
+                fits = false;
+                words.size(theme.sizes.caption)
+            }
+            Column::Meaning if is_too_long(ui, theme, range, &words) => words.size(theme.sizes.caption),
             _ => words,
         };
         let right = column == Column::Decimal;
@@ -137,6 +143,7 @@ pub(super) fn row(
             ui.painter().hline(left..=left + width, y, Stroke::new(1.0, palette.staged));
         }
     }
+    fits
 }
 
 /// Returns the clickable area that starts editing a line's value.

@@ -22,6 +22,8 @@ pub struct RegisterView {
     /// Whether the selection has moved and must be scrolled into view.
     pub(super) reveal: bool,
     pub(super) page: usize,
+    /// Width of the table at which a name did not fit. All names are then drawn in the small size.
+    pub(super) small_names_at: Option<f32>,
     /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame shows
     /// which of them is to receive these events.
     pub(super) late: Vec<Event>,
