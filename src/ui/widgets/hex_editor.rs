@@ -118,7 +118,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         // Scrolling must not fade the edges. A half-visible line of bytes must be readable.
         ui.spacing_mut().scroll.fade.strength = 0.0;
-        let narrow = ui.available_width() < grid.width + theme.space.groups * 2.0;
+        let narrow = ui.available_width() < grid.width + Grid::width_around(ui, theme);
         let frame = theme.sunken_frame().show(ui, |ui| {
             let area = ScrollArea::horizontal().id_salt(id.with("across")).scroll([narrow, false]);
             area.show(ui, |ui| body_ui(ui, theme, id, &grid, model, view)).inner

@@ -30,21 +30,28 @@ fn snap_to_grid(length: f32) -> f32 {
 }
 
 impl Grid {
+    /// Returns the width of the frame and the scroll bar around the bytes.
+    pub(super) fn width_around(ui: &Ui, theme: &Theme) -> f32 {
+        2.0 * theme.space.between + ui.spacing().scroll.allocated_width()
+    }
+
     pub(super) fn new(ui: &Ui, theme: &Theme, model: &HexModel<'_>) -> Self {
         let len = model.wanted.len();
         let font = FontId::monospace(theme.sizes.body);
         let (glyph, row) = ui.fonts_mut(|fonts| (fonts.glyph_width(&font, '0'), fonts.row_height(&font)));
         let characters = model.addresses.width(len);
         let (byte, letter) = (snap_to_grid(glyph * 2.0 + theme.space.between - 1.0), glyph.ceil());
-        let places = |gap: f32| {
+        let places = |gap: f32, byte: f32| {
             let hex_left = snap_to_grid(glyph * characters as f32) + gap + theme.space.inside;
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
-            (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
+            (gap, byte, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
-        // In a small window, the columns are closer together, so no characters are truncated.
-        let wide = places(theme.space.between);
-        let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
-        let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
+        // In a small window, first the columns are closer together and then the bytes, so no characters are truncated.
+        let (far, near) = (theme.space.between, theme.space.inside);
+        let room = ui.available_width() - Self::width_around(ui, theme);
+        let closest = places(near, byte - 1.0);
+        let fitting = [places(far, byte), places(near, byte)].into_iter().find(|own| own.4 <= room);
+        let (gap, byte, hex_left, text_left, width) = fitting.unwrap_or(closest);
         let row = snap_to_grid(row + 2.0);
         Grid { font, glyph, row, width, gap, text_left, hex_left, byte, letter, len }
     }
