@@ -53,11 +53,11 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     };
     card_with_trailing(ui, theme, "encoder_card.title", read, |ui| {
         if let Some(identity) = encoder.identity() {
-            ui.label(theme.value(identity.description.name()));
+            paragraph(ui, theme.value(identity.description.name()));
             ui.add_space(theme.space.inside);
             facts_ui(ui, theme, identity);
         } else if let Some(identity) = encoder.profile_identity() {
-            ui.label(theme.value(&identity.description));
+            paragraph(ui, theme.value(&identity.description));
             ui.add_space(theme.space.inside);
             profile_identity_ui(ui, theme, encoder, identity);
         } else {

@@ -51,7 +51,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         let serial = theme.translate("encoder_card.serial");
         if let Some(survey) = &encoder.survey {
             let identity = &survey.identity;
-            ui.label(theme.value(translate(theme, "ib_card.class")));
+            paragraph(ui, theme.value(translate(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&identity.serial_number));
             row(
@@ -74,7 +74,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             let celsius = words::temperature_text(survey.temperature_tenths);
             row(ui, theme, &translate(theme, "ib_card.temperature"), theme.format_text(&celsius));
         } else if let Some(profile) = encoder.profile() {
-            ui.label(theme.value(translate(theme, "ib_card.class")));
+            paragraph(ui, theme.value(translate(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;

@@ -52,7 +52,7 @@ fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
             return;
         };
         let (meaning, remedy) = words::led_texts(own);
-        ui.label(theme.value(theme.format_text(&meaning)));
+        paragraph(ui, theme.value(theme.format_text(&meaning)));
         paragraph(ui, theme.format_text(&remedy));
     });
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::views::translate;
 
-use egui::{RichText, Ui};
+use egui::{Align, Layout, RichText, Ui, vec2};
 
 use crate::app::{Action, Text};
 use crate::devices::interbus::jobs::{Change, WEAR_CONFIRMATION, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan};
@@ -28,8 +28,10 @@ pub(super) struct EncoderParametersUiState {
     preset_problem: Option<Text>,
 }
 
-const ENTRY_WIDTH: f32 = 112.0;
+const ENTRY_WIDTH: f32 = 96.0;
 const TEXT_WIDTH: f32 = 240.0;
+/// Width of a word in hexadecimal digits.
+const WORD: f32 = 80.0;
 
 pub(super) fn page_ui(
     ui: &mut Ui,
@@ -212,19 +214,26 @@ fn handshake_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         }
         let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(TEXT_WIDTH).stick_to_bottom(true);
         list.auto_shrink([false, true]).show(ui, |ui| {
-            egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
-                for step in &encoder.handshake {
-                    ui.label(theme.monospace(format!("0x{:08X}", step.out)));
-                    ui.label(theme.label(theme.format_text(&word_meaning::command_text(step.command))));
-                    ui.label(theme.monospace(format!("0x{:08X}", step.input)));
-                    let known = word_meaning::WordContext::for_command(step.command, encoder.shift());
-                    ui.add(
-                        egui::Label::new(theme.label(theme.format_text(&word_meaning::word_text(step.input, &known))))
-                            .truncate(),
-                    );
-                    ui.end_row();
-                }
-            });
+            ui.spacing_mut().item_spacing = vec2(theme.space.groups, theme.space.inside);
+            // The meanings share the width that the words leave.
+            let room = ui.available_width() - ui.spacing().scroll.allocated_width() - 3.0 * theme.space.groups;
+            let meaning = (room / 2.0 - WORD).max(WORD / 2.0);
+            let cell = |ui: &mut Ui, width: f32, words: RichText| {
+                let size = vec2(width, ui.spacing().interact_size.y);
+                ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                    ui.set_min_width(width);
+                    ui.add(egui::Label::new(words).truncate());
+                });
+            };
+            for step in &encoder.handshake {
+                let known = word_meaning::WordContext::for_command(step.command, encoder.shift());
+                ui.horizontal(|ui| {
+                    cell(ui, WORD, theme.monospace(format!("0x{:08X}", step.out)));
+                    cell(ui, meaning, theme.label(theme.format_text(&word_meaning::command_text(step.command))));
+                    cell(ui, WORD, theme.monospace(format!("0x{:08X}", step.input)));
+                    cell(ui, meaning, theme.label(theme.format_text(&word_meaning::word_text(step.input, &known))));
+                });
+            }
         });
     });
 }

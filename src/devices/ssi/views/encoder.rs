@@ -50,7 +50,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
             return;
         };
         let hello = &identity.hello;
-        ui.label(theme.value(&hello.name));
+        paragraph(ui, theme.value(&hello.name));
         ui.add_space(theme.space.inside);
         row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(&hello.firmware));
         row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(&hello.serial));
