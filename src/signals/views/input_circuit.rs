@@ -1,6 +1,6 @@
 //! Calculator for the input circuit of a drive. Nothing is measured here.
 
-use egui::{RichText, Ui};
+use egui::{Align, FontId, Layout, RichText, Ui, vec2};
 
 use crate::analysis::input_circuit::BANDWIDTH_HZ;
 use crate::app::Text;
@@ -107,31 +107,58 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) 
 
 fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
     card(ui, theme, TEXTS.text("input.table"), |ui| {
-        // The rows are low, because they contain no controls.
-        ui.spacing_mut().interact_size.y = theme.space.groups;
-        egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
-            let grid = egui::Grid::new("input.table").spacing([theme.space.between, theme.space.inside]);
-            grid.show(ui, |ui| {
-                for id in ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"] {
-                    ui.label(theme.caption(translate(theme, id)));
-                }
-                ui.end_row();
-                for point in circuit.operating_points(ROWS) {
-                    let response = point.response;
-                    for (value, decimals) in [
-                        (point.speed_rpm, 1),
-                        (point.frequency_hz / 1e3, 1),
-                        (response.phase_deg, 3),
-                        (response.lag_in_steps(), 3),
-                        (response.gain, 5),
-                    ] {
-                        ui.label(theme.monospace(format!("{:>7}", theme.format_number(value, decimals))));
-                    }
-                    ui.end_row();
+        let heads = ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"];
+        let rows: Vec<[String; 5]> =
+            circuit.operating_points(ROWS).iter().map(|point| table_row(theme, point)).collect();
+        let columns = column_widths(ui, theme, &heads.map(|id| translate(theme, id)), &rows);
+        let room = ui.available_width() - columns.iter().sum::<f32>();
+        // The last column ends before the edge of a wide card.
+        let between = (room / columns.len() as f32).clamp(theme.space.inside, theme.space.around);
+        let line = |ui: &mut Ui, cells: Vec<RichText>| {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = between;
+                for (width, cell) in columns.iter().zip(cells) {
+                    let size = vec2(*width, ui.spacing().interact_size.y);
+                    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Max), |ui| {
+                        ui.set_min_width(*width);
+                        ui.label(cell);
+                    });
                 }
             });
-        });
+        };
+        // The rows are low, because they contain no controls.
+        ui.spacing_mut().interact_size.y = theme.space.groups;
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
+        line(ui, heads.iter().map(|id| theme.caption(translate(theme, id))).collect());
+        for row in rows {
+            line(ui, row.into_iter().map(|cell| theme.monospace(cell)).collect());
+        }
     });
+}
+
+fn table_row(theme: &Theme, point: &OperatingPoint) -> [String; 5] {
+    let response = point.response;
+    [
+        theme.format_number(point.speed_rpm, 0),
+        theme.format_number(point.frequency_hz / 1e3, 1),
+        theme.format_number(response.phase_deg, 3),
+        theme.format_number(response.lag_in_steps(), 3),
+        theme.format_number(response.gain, 4),
+    ]
+}
+
+/// Returns the width of each column: that of its longest cell or its heading.
+fn column_widths(ui: &Ui, theme: &Theme, heads: &[String; 5], rows: &[[String; 5]]) -> [f32; 5] {
+    let width = |words: &str, font: FontId| {
+        ui.painter().layout_no_wrap(words.to_owned(), font, theme.palette.text.into()).size().x.ceil()
+    };
+    let mut widths = heads.each_ref().map(|head| width(head, FontId::proportional(theme.sizes.caption)));
+    for row in rows {
+        for (own, cell) in widths.iter_mut().zip(row) {
+            *own = own.max(width(cell, FontId::monospace(theme.sizes.body)));
+        }
+    }
+    widths
 }
 
 fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {

@@ -10,8 +10,8 @@ use crate::ui::{Theme, controls};
 /// Minimum width in points for showing a value in its second unit. In a narrower window, the second unit is in the
 /// tooltip.
 const MIN_SECOND_UNIT_WIDTH: f32 = 390.0;
-/// Minimum width in points for the column of limits. In a narrower window, each limit is in the tooltip of its verdict
-/// icon.
+/// Minimum width in points for the column of limits. In a narrower window, each limit is beside its verdict icon,
+/// without the unit, which is that of the value.
 const MIN_LIMITS_WIDTH: f32 = 350.0;
 const LIMITS_WIDTH: f32 = 110.0;
 
@@ -28,6 +28,7 @@ pub(super) fn rows_ui(
     let wide = room >= if bounded { MIN_SECOND_UNIT_WIDTH } else { MIN_SECOND_UNIT_WIDTH - LIMITS_WIDTH }
         && compared.is_none();
     let limits = room >= MIN_LIMITS_WIDTH && compared.is_none();
+    let short = !limits && compared.is_none();
     let between = if wide { theme.space.groups } else { theme.space.between };
     ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = 20.0;
@@ -50,7 +51,13 @@ pub(super) fn rows_ui(
                     ui.label(theme.caption(&words));
                 }
                 if let Some(verdict) = quantity.verdict {
-                    verdict_icon_ui(ui, theme, verdict, &words);
+                    ui.horizontal(|ui| {
+                        ui.spacing_mut().item_spacing.x = theme.space.inside;
+                        verdict_icon_ui(ui, theme, verdict, &words);
+                        if let Some(bound) = quantity.bound.filter(|_| short) {
+                            ui.label(theme.caption(limit_numbers(theme, bound)));
+                        }
+                    });
                 }
                 ui.end_row();
             }
@@ -97,14 +104,17 @@ fn without_negative_zero(value: f64, decimals: usize) -> f64 {
 }
 
 fn limit_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
+    with_unit_symbol(limit_numbers(theme, bound), unit)
+}
+
+fn limit_numbers(theme: &Theme, bound: QuantityLimit) -> String {
     let plain = |value: f64| theme.format_plain((value * 1e6).round() / 1e6);
-    let words = match bound {
+    match bound {
         QuantityLimit::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
         QuantityLimit::Within(most) => format!("± {}", plain(most)),
         QuantityLimit::AtMost(most) => format!("≤ {}", plain(most)),
         QuantityLimit::AtLeast(least) => format!("≥ {}", plain(least)),
-    };
-    with_unit_symbol(words, unit)
+    }
 }
 
 fn with_unit_symbol(words: String, unit: Unit) -> String {

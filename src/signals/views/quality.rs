@@ -37,7 +37,7 @@ pub(super) fn page_ui(
     split(
         ui,
         theme,
-        (0.44, 520.0),
+        (0.42, 520.0),
         (view, actions),
         |ui, (view, _)| {
             figure_ui(ui, theme, signals, measurement, view);

@@ -1,6 +1,6 @@
 //! The source of the samples, with its progress and errors. It is shown at the top of every page that uses the samples.
 
-use egui::{RichText, Ui};
+use egui::{Align, Layout, RichText, Ui, vec2};
 
 use super::{adapter, table, virtual_encoder};
 use crate::app::Action;
@@ -12,6 +12,9 @@ use crate::signals::views::translate;
 use crate::ui::controls::{badge, enabled_button, fill_width, icon_button, labelled_button, name, paragraph, spinner};
 use crate::ui::widgets::series_colour;
 use crate::ui::{Theme, icons};
+
+/// Width of the buttons of an empty page in points.
+const BUTTON: f32 = 220.0;
 
 #[derive(Default)]
 pub(super) struct SourceUiState {
@@ -307,21 +310,24 @@ fn empty_page_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sourc
         ui.add_space(theme.space.between);
         ui.add(egui::Label::new(theme.label(translate(theme, "signals.nothing"))).wrap());
         ui.add_space(theme.space.between);
-        if labelled_button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
-            actions.push(Action::AskOpen);
-        }
-        if labelled_button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
-            actions.push(Action::tool(Signals_::Source(SourceAction::Start)));
-        }
-        if labelled_button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
-            view.adapter = true;
-        }
-        theme.add_gap(ui);
-        ui.label(theme.caption(translate(theme, "signals.try_example")));
-        for example in ExampleCapture::ALL {
-            if labelled_button(ui, icons::WAVE_SINE, &translate(theme, example.keyword())).clicked() {
-                actions.push(Action::tool(Signals_::Example(example)));
+        let size = vec2(BUTTON.min(ui.available_width()), 0.0);
+        ui.allocate_ui_with_layout(size, Layout::top_down_justified(Align::Center), |ui| {
+            if labelled_button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
+                actions.push(Action::AskOpen);
             }
-        }
+            if labelled_button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
+                actions.push(Action::tool(Signals_::Source(SourceAction::Start)));
+            }
+            if labelled_button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
+                view.adapter = true;
+            }
+            theme.add_gap(ui);
+            ui.label(theme.caption(translate(theme, "signals.try_example")));
+            for example in ExampleCapture::ALL {
+                if labelled_button(ui, icons::WAVE_SINE, &translate(theme, example.keyword())).clicked() {
+                    actions.push(Action::tool(Signals_::Example(example)));
+                }
+            }
+        });
     });
 }
