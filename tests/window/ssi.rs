@@ -185,7 +185,7 @@ fn exports_are_in_the_language_of_the_window() {
     let sheet = german(ExportFormat::Sheet);
     for line in [
         "SSI-Einstellungen: ahm36,code=gray",
-        "Telegrammlänge                  27 Bits",
+        "Telegrammlänge                  27 Bit",
         "Monoflopzeit (tm)               15 bis 25 µs (die Pause muss länger sein)",
         "  Codeart                         Gray",
         "  Bitnummer LSB der Position      1",
