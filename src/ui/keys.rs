@@ -50,6 +50,8 @@ impl KeyboardFilter {
                 let repeats = own.is_some_and(|own| fresh.is_down(own));
                 let counts = match own {
                     Some(own) => fresh.is_fresh_press(own),
+                    // Ctrl is pressed immediately before the Enter of Ctrl+Enter.
+                    None if is_modifier(*key) => true,
                     None => {
                         if !asks {
                             fresh.record_other_key_press(now);
@@ -76,6 +78,11 @@ impl KeyboardFilter {
         }
         stops
     }
+}
+
+const fn is_modifier(key: Key) -> bool {
+    use Key::{AltLeft, AltRight, ControlLeft, ControlRight, ShiftLeft, ShiftRight, SuperLeft, SuperRight};
+    matches!(key, ShiftLeft | ShiftRight | ControlLeft | ControlRight | AltLeft | AltRight | SuperLeft | SuperRight)
 }
 
 /// Returns the key as a press key. Returns `None` if it does not press buttons.

@@ -80,6 +80,24 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
+/// Issue 26: Ctrl is a key of its own, and a key right before Enter made its press doubtful: in the hex editor, which is
+/// no text entry, Ctrl+Enter did nothing if both were pressed together.
+#[test]
+fn ctrl_and_enter_pressed_together_open_the_review() {
+    let mut screen = Screen::new_form(SIZE);
+    type_bytes(&mut screen, "58");
+    for _ in 0..8 {
+        screen.harness.step();
+    }
+    let event =
+        |key, pressed, modifiers| egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+    screen.harness.event(event(Key::ControlLeft, true, Modifiers::NONE));
+    screen.harness.event(event(Key::Enter, true, Modifiers::COMMAND));
+    screen.harness.event(event(Key::Enter, false, Modifiers::COMMAND));
+    screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    assert_eq!(screen.outside.wire(PORT).wear(), 0, "nothing is written yet");
+}
+
 /// Issue 22.4: a write that needs a permission cannot be started without it.
 #[test]
 fn without_a_logbook_the_write_button_needs_a_permission() {
