@@ -41,6 +41,8 @@ type Watcher = Box<dyn FnMut(&TraceEntry) + Send>;
 #[derive(Default)]
 pub struct Trace {
     watchers: Vec<Watcher>,
+    /// Time of the last frame.
+    last: Moment,
 }
 
 impl fmt::Debug for Trace {
@@ -55,12 +57,15 @@ impl Trace {
         self.watchers.push(Box::new(watcher));
     }
 
-    /// Reports a frame to all watchers.
+    /// Reports a frame to all watchers. The time of a reply is calculated from the duration of its bytes. Where a
+    /// device server or a pseudo-terminal transfers them at once, it would be before the request; it is then the time of
+    /// the request.
     pub fn record_frame(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
         if bytes.is_empty() {
             return;
         }
-        let entry = TraceEntry { at, direction, bytes };
+        self.last = at.max(self.last);
+        let entry = TraceEntry { at: self.last, direction, bytes };
         for watcher in &mut self.watchers {
             watcher(&entry);
         }
@@ -162,6 +167,18 @@ mod tests {
             write_entry(&mut written, entry).unwrap();
         }
         assert_eq!(String::from_utf8(written).unwrap(), text);
+    }
+
+    #[test]
+    fn no_frame_is_before_the_previous_one() {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let mut trace = Trace::default();
+        trace.add_watcher(move |entry| sender.send(entry.at).unwrap());
+        let at = |millis| Moment::from_elapsed(Duration::from_millis(millis));
+        for (millis, direction) in [(358, Direction::Sent), (354, Direction::Received), (374, Direction::Sent)] {
+            trace.record_frame(at(millis), direction, "40 42 02".parse().unwrap());
+        }
+        assert_eq!(receiver.try_iter().collect::<Vec<_>>(), [at(358), at(358), at(374)]);
     }
 
     #[test]
