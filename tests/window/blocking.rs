@@ -224,6 +224,36 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
+/// Issue 26: below 2,000 frames a second, every frame is in the trace. A drawn window takes the frames in at least eight
+/// times a second. Here a whole second of them, 1,000 readings of two frames each, waits ten times.
+#[test]
+fn two_thousand_frames_a_second_are_all_in_the_trace() {
+    let mut desk = Desk::new_form("rpm=60");
+    let wire = desk.wire();
+    let (before, frames) = (wire.count(0x42), desk.encoder().session.trace.next_number());
+    desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
+    let mut longest = 0;
+    for _ in 0..10 {
+        let since = wire.count(0x42);
+        without_polling(|| wire.count(0x42) >= since + 1_000);
+        desk.studio.poll();
+        longest = longest.max(wire.count(0x42) - since);
+    }
+    desk.command(DeviceCommand::Poll(None));
+    desk.until("the last reply has arrived", |studio| {
+        studio.hiperface().is_some_and(|own| !own.session.is_polling() && own.session.is_ready())
+    });
+    desk.settle();
+    let trace = &desk.encoder().session.trace;
+    let readings = u64::try_from(wire.count(0x42) - before).unwrap();
+    assert!(readings >= 10_000);
+    assert_eq!(trace.next_number() - frames + trace.dropped_count(), 2 * readings, "a request and a reply each");
+    // On a busy computer, more than ten seconds of frames may wait, for which there is no room.
+    if longest < 9_000 {
+        assert_eq!(trace.dropped_count(), 0);
+    }
+}
+
 #[test]
 fn the_end_of_an_unwatched_search_is_not_lost() {
     let mut desk = Desk::fresh("encoders=8");
