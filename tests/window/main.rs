@@ -37,6 +37,7 @@ mod messages;
 mod monkey;
 #[path = "../new_kind/novo/mod.rs"]
 mod novo;
+mod page_height;
 mod palette;
 mod pressing;
 mod profiles;
