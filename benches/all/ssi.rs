@@ -28,7 +28,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     let frame = |_| {
         let flags = if random.u8(..) == 0 { Flags::error(0) } else { Flags::NONE };
-        layout.encode(random.u64(..=layout.position_code().last()), flags).unwrap()
+        layout.encode(random.u64(..=layout.position_code().last_position()), flags).unwrap()
     };
     (0..FRAMES).map(frame).collect()
 }

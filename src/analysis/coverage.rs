@@ -90,7 +90,7 @@ impl AnglePath {
     /// Number of quarter periods that an angle must move back to count as a reversal. Noise moves it back less.
     const REVERSAL_QUARTERS: i64 = 3;
 
-    fn from(first: UnwrappedAngle) -> Self {
+    fn starting_at(first: UnwrappedAngle) -> Self {
         AnglePath {
             top: first,
             bottom: first,
@@ -198,7 +198,7 @@ impl Coverage {
         let start = remaining_ranges(length, left_out).next()?.start;
         let (first_y, first_x) = correction.apply(*sine.get(start)?, *cosine.get(start)?);
         let first = UnwrappedAngle::from_sample(first_y, first_x);
-        let (mut here, mut way) = (first, AnglePath::from(first));
+        let (mut here, mut way) = (first, AnglePath::starting_at(first));
         let mut octants = 0_u32;
         let (mut squares, mut count) = (0.0, 0_usize);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

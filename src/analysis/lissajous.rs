@@ -121,7 +121,7 @@ impl SampleDensity {
         (self.outside, self.bad) = (0, 0);
     }
 
-    pub fn square(&self) -> PlotSquare {
+    pub fn plot_square(&self) -> PlotSquare {
         self.square
     }
 

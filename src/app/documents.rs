@@ -61,7 +61,11 @@ impl Studio {
             found: found.to_owned(),
             known: self.services.world.kinds.formats.kinds().collect(),
         };
-        self.services.notify(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
+        self.services.notify(
+            Severity::Error,
+            vec![explain::profile_file_error_text(path, &error, self.services.world.kinds)],
+            None,
+        );
     }
 
     /// Handles the result of a task with the draft of a session.
@@ -126,6 +130,6 @@ fn read_text_and_profile(path: &Path, formats: ProfileFormats) -> Result<(String
 pub(super) fn read_error(path: &Path, error: &ReadError, kinds: KindRegistry) -> Text {
     match error {
         ReadError::File(error) => explain::file_error_text(error),
-        ReadError::Profile(error) => explain::profile(path, error, kinds),
+        ReadError::Profile(error) => explain::profile_file_error_text(path, error, kinds),
     }
 }

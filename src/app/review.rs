@@ -280,7 +280,7 @@ pub(crate) type Op<K> = <<K as Reviewable>::Prepared as PlannedWrite>::Op;
 pub fn written_texts<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written_text(&committed.written);
     match &committed.logbook_warning {
-        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
+        Some(why) => (Severity::Warning, vec![text, explain::logbook_error_text(why)]),
         None => (Severity::Good, vec![text]),
     }
 }
@@ -330,7 +330,7 @@ impl<K: Reviewable> Review<K> {
             ReviewState::Done(_, own) => Stage::Done {
                 verified: K::verified_text(&own.written),
                 backup: own.backup.clone(),
-                logbook: own.logbook_warning.as_ref().map(explain::logbook),
+                logbook: own.logbook_warning.as_ref().map(explain::logbook_error_text),
             },
             ReviewState::Failed { texts, begun, .. } => {
                 Stage::Failed { texts: texts.clone(), begun: *begun, done: cut_off.map_or(0, |(_, done)| done) }

@@ -49,7 +49,7 @@ impl Studio {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
         let (settings, settings_store) = SettingsStore::load(&mut services);
-        let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.begin(settings.links_of(kind.tab())));
+        let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.create_tool(settings.links_of(kind.tab())));
         Studio {
             tools: kinds.tools().iter().map(begin).collect(),
             settings,

@@ -22,7 +22,7 @@ pub trait ToolKind: Sync {
     fn tab(&self) -> Tab;
 
     /// Creates the tool. `links` are the links used in it before, with the latest first.
-    fn begin(&self, links: &[String]) -> Box<dyn Tool>;
+    fn create_tool(&self, links: &[String]) -> Box<dyn Tool>;
 }
 
 /// A tab that does not need a device.

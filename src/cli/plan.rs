@@ -99,6 +99,6 @@ impl WriteSummary {
 
 pub(crate) fn warn_not_logged(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
-        output.print_message(&explain::logbook(why).terminal_text());
+        output.print_message(&explain::logbook_error_text(why).terminal_text());
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
 pub(crate) fn load_profile_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?
         .check_schema()
-        .map_err(|error| to_failure(&explain::profile(path, &error, KindRegistry::NONE)))?;
+        .map_err(|error| to_failure(&explain::profile_file_error_text(path, &error, KindRegistry::NONE)))?;
     print_profile_note(output, path, &document)?;
     Ok(document.body)
 }
@@ -46,7 +46,7 @@ fn print_profile_note(output: &Output, path: &Path, document: &ProfileDocument) 
 fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
     let text = read_text(path).map_err(|error| to_failure(&explain::file_error_text(&error)))?;
     ProfileDocument::parse(&text, output.formats())
-        .map_err(|error| to_failure(&explain::profile(path, &error, KindRegistry::NONE)))
+        .map_err(|error| to_failure(&explain::profile_file_error_text(path, &error, KindRegistry::NONE)))
 }
 
 pub fn save_profile(path: &Path, body: Body) -> Result<()> {
@@ -66,8 +66,9 @@ pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Res
         Some(path) => (load(output, path)?, path.as_path()),
         None => (kind.read_for_comparison(common, output, None)?, Path::new("the device")),
     };
-    let comparison =
-        left.compare(&right).map_err(|error| to_failure(&explain::profile(name, &error, KindRegistry::NONE)))?;
+    let comparison = left
+        .compare(&right)
+        .map_err(|error| to_failure(&explain::profile_file_error_text(name, &error, KindRegistry::NONE)))?;
     let missing = comparison.one_sided_items();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
@@ -80,8 +81,9 @@ pub(super) fn verify_profile(common: &CommonArgs, output: &Output, file: &Path) 
     if let Some(words) = kind.device_mismatch(&profile, &device) {
         output.print_message(&words);
     }
-    let comparison =
-        profile.compare(&device).map_err(|error| to_failure(&explain::profile(file, &error, KindRegistry::NONE)))?;
+    let comparison = profile
+        .compare(&device)
+        .map_err(|error| to_failure(&explain::profile_file_error_text(file, &error, KindRegistry::NONE)))?;
     // Items that only the device has do not count, because they are not part of the profile.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
@@ -97,7 +99,9 @@ pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Resul
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
-    profile.into_profile().map_err(|error| to_failure(&explain::profile(&restore.file, &error, KindRegistry::NONE)))
+    profile
+        .into_profile()
+        .map_err(|error| to_failure(&explain::profile_file_error_text(&restore.file, &error, KindRegistry::NONE)))
 }
 
 pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {

@@ -111,7 +111,7 @@ impl<D: CliDevice> Runner<D> {
         }
         let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
-            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal_text()),
+            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open_error_text(&error).terminal_text()),
             error => to_failure(&D::open_error(&error)),
         })?;
         let kept = D::prepare_context(&mut session, &given);

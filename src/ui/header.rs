@@ -72,7 +72,7 @@ fn tools_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, acti
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
     }
-    stop(ui, theme, studio, actions);
+    stop_button_ui(ui, theme, studio, actions);
     let settings = &studio.settings;
     let (other, other_code) = match settings.language {
         Language::English => (Language::German, "DE"),
@@ -217,7 +217,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 
 /// Draws the STOP button. It ends every running job and every motion in all sessions. Its width doubles while a drive
 /// moves. While this window moves a drive, the button acts on press instead of release and ends only motion.
-fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
     // Live values alone are no reason for an alarm.
@@ -262,7 +262,7 @@ pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studi
     }
     let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_button_id())) else { return };
     let area = egui::Area::new(egui::Id::unique("stop over dialogs")).order(egui::Order::Tooltip).fixed_pos(place);
-    area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop(ui, theme, studio, actions)));
+    area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop_button_ui(ui, theme, studio, actions)));
 }
 
 fn stop_button_id() -> egui::Id {

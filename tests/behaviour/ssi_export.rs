@@ -82,7 +82,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];
     for _ in 0..500 {
         let flags = encoder_studio::devices::ssi::protocol::Flags::error(rng.usize(..4));
-        let frame = layout.encode(rng.u64(..=layout.position_code().last()), flags).unwrap();
+        let frame = layout.encode(rng.u64(..=layout.position_code().last_position()), flags).unwrap();
         frames.extend([frame, frame ^ 1 << rng.u8(..layout.clock_count()), rng.u64(..)]);
     }
     frames

@@ -204,7 +204,7 @@ fn on_screen() -> Screen {
 
 fn choose(screen: &mut Screen, of: DriveNumber) {
     let drive = screen.studio().hiperdrive().unwrap();
-    let state = screen.words(&explain::state(drive.state(of).unwrap()));
+    let state = screen.words(&explain::state_text(drive.state(of).unwrap()));
     let label = format!("drive {}, {state}", of.get());
     screen.harness.get_by_role_and_label(Role::RadioButton, &label).click();
     screen.steps();

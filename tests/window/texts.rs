@@ -110,7 +110,7 @@ fn check_encoder(encoder: &Encoder) {
     for field in encoder.staged.device() {
         check(&words::field_status(field.status));
     }
-    encoder.codes.iter().flatten().for_each(|code| check(&words::status(*code)));
+    encoder.codes.iter().flatten().for_each(|code| check(&words::status_code_name(*code)));
     if let Some(Err(why)) = &encoder.session.backups {
         check(why);
     }

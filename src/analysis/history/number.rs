@@ -54,7 +54,7 @@ pub(super) trait Number: Copy + PartialOrd {
     }
 
     /// Returns `self − base`, rounded to nearest.
-    fn difference(self, base: Self) -> f64;
+    fn difference_from(self, base: Self) -> f64;
 
     /// Returns the greatest `f64` not above the number.
     fn to_f64_floor(self) -> f64;
@@ -104,7 +104,7 @@ impl Number for f64 {
         self + f64::from(distance)
     }
 
-    fn difference(self, base: f64) -> f64 {
+    fn difference_from(self, base: f64) -> f64 {
         self - base
     }
 
@@ -180,7 +180,7 @@ impl Number for i64 {
         i128_to_f64_ceil(i128::from(self) + distance as i128)
     }
 
-    fn difference(self, base: i64) -> f64 {
+    fn difference_from(self, base: i64) -> f64 {
         match self.checked_sub(base) {
             Some(difference) => difference as f64,
             None => (i128::from(self) - i128::from(base)) as f64,

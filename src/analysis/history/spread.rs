@@ -20,9 +20,9 @@ impl<T: Number> RunningStatistics<T> {
         let base = *values.first()?;
         let (min, max) = min_and_max(values)?;
         let count = values.len() as f64;
-        let mean = sum(values, |value| value.difference(base)) / count;
+        let mean = sum(values, |value| value.difference_from(base)) / count;
         let squares = sum(values, |value| {
-            let deviation = value.difference(base) - mean;
+            let deviation = value.difference_from(base) - mean;
             deviation * deviation
         });
         Some(RunningStatistics { count: values.len() as u64, base, mean, squares, min, max })
@@ -32,7 +32,7 @@ impl<T: Number> RunningStatistics<T> {
     pub(super) fn merge(self, other: Self) -> Self {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
-        let apart = other.base.difference(self.base) + other.mean - self.mean;
+        let apart = other.base.difference_from(self.base) + other.mean - self.mean;
         RunningStatistics {
             count: self.count + other.count,
             base: self.base,

@@ -99,7 +99,7 @@ impl ConnectDialog {
 
     /// Parses a link as a link to the chosen kind of device.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
-        let url: LinkUrl = link.parse().map_err(|error| target::unusable_link_text(explain::url(&error)))?;
+        let url: LinkUrl = link.parse().map_err(|error| target::unusable_link_text(explain::url_error_text(&error)))?;
         target::validated_link(url, |url| {
             self.kinds.kind_for_tab(self.device).map_or(Ok(()), |kind| kind.check_link(url))
         })

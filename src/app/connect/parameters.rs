@@ -109,7 +109,7 @@ impl Parameters {
         let words: Vec<String> = self.0.iter().map(|(name, value)| format!("{name}={value}")).collect();
         let question = if words.is_empty() { "" } else { "?" };
         let link = format!("{}:{target}{question}{}", scheme.keyword(), words.join("&"));
-        link.parse().map_err(|error| unusable_link_text(explain::url(&error)))
+        link.parse().map_err(|error| unusable_link_text(explain::url_error_text(&error)))
     }
 }
 

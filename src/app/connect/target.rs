@@ -54,9 +54,9 @@ pub(crate) fn rejection_text(url: &LinkUrl, error: &OpenError) -> Text {
         OpenError::Sim(ConfigError::Fault(_)) => {
             return Text::new("form.fault").with("value", url.query.get("fault").unwrap_or_default());
         }
-        OpenError::Url(error) => return unusable_link_text(explain::url(error)),
-        OpenError::Sim(error) => return unusable_link_text(explain::setting(error)),
-        error => return explain::open(error),
+        OpenError::Url(error) => return unusable_link_text(explain::url_error_text(error)),
+        OpenError::Sim(error) => return unusable_link_text(explain::setting_error_text(error)),
+        error => return explain::open_error_text(error),
     };
     let own = [("margin", "form.margin"), ("rpm", "form.rpm"), ("clock", "form.clock")];
     match own.iter().find(|(own, _)| own == name) {

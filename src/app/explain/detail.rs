@@ -13,7 +13,7 @@ use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookErrorKind};
 
 /// Returns the reason why a string is not a valid link, or why a link does not accept a parameter.
-pub fn url(error: &UrlError) -> Text {
+pub fn url_error_text(error: &UrlError) -> Text {
     match error {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
         UrlError::Device { scheme, known } => Text::new("url.other_device").with("scheme", scheme).with("known", known),
@@ -38,7 +38,7 @@ pub fn url(error: &UrlError) -> Text {
     }
 }
 
-pub fn setting(error: &ConfigError) -> Text {
+pub fn setting_error_text(error: &ConfigError) -> Text {
     match error {
         ConfigError::Key { device, key, known } => {
             let device = match device {
@@ -75,7 +75,7 @@ pub fn profile_error_text(error: &ProfileError, kinds: KindRegistry) -> Text {
             Text::new("detail.shape").with("path", path).with_text("expected", expected_text(shape))
         }
         ProfileError::Bytes { path, problem } => {
-            Text::new("detail.value").with("path", path).with_text("what", hex(problem))
+            Text::new("detail.value").with("path", path).with_text("what", hex_error_text(problem))
         }
         ProfileError::Refused { path, cause } => {
             Text::new("detail.value").with("path", path).with_text("what", kinds.explain_rejection(cause))
@@ -95,7 +95,7 @@ fn syntax_problem(problem: &SyntaxErrorKind) -> Text {
     }
 }
 
-fn hex(error: &HexError) -> Text {
+fn hex_error_text(error: &HexError) -> Text {
     match error {
         HexError::Digit(digit) => Text::new("detail.hex_digit").with("digit", format!("{digit:?}")),
         HexError::Odd(digits) => Text::new("detail.hex_odd").with("digits", format!("{digits:?}")),
@@ -107,7 +107,7 @@ pub fn trace_error_text(error: &TraceFileError) -> Text {
         TraceFileError::Header => Text::new("detail.no_trace").with("header", TRACE_HEADER),
         TraceFileError::Line { line } => Text::new("detail.trace_line").with("line", line),
         TraceFileError::Hex { line, source } => {
-            Text::new("detail.in_line").with("line", line).with_text("what", hex(source))
+            Text::new("detail.in_line").with("line", line).with_text("what", hex_error_text(source))
         }
     }
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 pub(crate) use detail::syntax_error_text;
 #[cfg(test)]
 pub(crate) use detail::tests::check as assert_in_both_languages;
-pub use detail::{logbook_problem, profile_error_text, setting, trace_error_text, url};
+pub use detail::{logbook_problem, profile_error_text, setting_error_text, trace_error_text, url_error_text};
 pub use expected::expected_text;
 
 use super::action::OpenFailure;
@@ -44,10 +44,10 @@ pub fn link_error_text(error: &LinkError) -> Text {
     }
 }
 
-pub fn open(error: &OpenError) -> Text {
+pub fn open_error_text(error: &OpenError) -> Text {
     match error {
-        OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),
-        OpenError::Sim(why) => Text::new("link.url").with_text("why", setting(why)),
+        OpenError::Url(why) => Text::new("link.url").with_text("why", url_error_text(why)),
+        OpenError::Sim(why) => Text::new("link.url").with_text("why", setting_error_text(why)),
         OpenError::Link(error) => link_error_text(error),
         OpenError::File(error) => file_error_text(error),
         OpenError::Recording { path, cause } => {
@@ -98,7 +98,7 @@ pub fn store_error_text(error: &StoreError) -> Text {
 }
 
 /// Returns the reason why a profile cannot be read. `kinds` explains values that a device rejects.
-pub fn profile(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
+pub fn profile_file_error_text(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
     let path = path.display();
     match error {
         ProfileError::Schema { found, known } => {
@@ -145,7 +145,7 @@ pub fn not_started_text(why: &NotStarted) -> Text {
     }
 }
 
-pub fn logbook(why: &LogbookError) -> Text {
+pub fn logbook_error_text(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
 
@@ -154,7 +154,7 @@ pub fn logbook_unreadable(why: &LogbookError) -> Text {
     Text::new("backups.no_logbook").with_text("why", logbook_problem(why))
 }
 
-pub fn parity(parity: Parity) -> Text {
+pub fn parity_text(parity: Parity) -> Text {
     Text::new(match parity {
         Parity::None => "parity.none",
         Parity::Even => "parity.even",

@@ -16,7 +16,7 @@ use crate::app::number::decimal_places;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
-pub fn read(path: &Path, error: &ReadCaptureError) -> Text {
+pub fn read_capture_error_text(path: &Path, error: &ReadCaptureError) -> Text {
     match error {
         ReadCaptureError::File(error) => file_error_text(error),
         ReadCaptureError::Capture(error) => capture_error_text(path, error),
@@ -81,7 +81,7 @@ fn fit_error_text(path: &Path, error: &FitError) -> Text {
     }
 }
 
-pub fn spectrum(error: &SpectrumError) -> Text {
+pub fn spectrum_error_text(error: &SpectrumError) -> Text {
     match error {
         SpectrumError::TooFew { samples: 0 } => Text::new("spectrum.no_times"),
         SpectrumError::TooFew { samples } => Text::new("spectrum.few").with("samples", samples),
@@ -251,7 +251,7 @@ pub fn setting_name(quantity: Quantity) -> Text {
     })
 }
 
-pub fn setting(error: &SettingError) -> Text {
+pub fn setting_value_error_text(error: &SettingError) -> Text {
     let SettingError { quantity: of, value, least, most } = *error;
     let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };
     Text::new(id)
@@ -301,7 +301,8 @@ mod tests {
     fn a_setting_out_of_range_is_reported_with_its_range() {
         let said = |quantity, value| {
             let error = Settings::default().with_value(quantity, value).validate().unwrap_err();
-            [Language::English, Language::German].map(|language| setting(&error).to_string_in(language))
+            [Language::English, Language::German]
+                .map(|language| setting_value_error_text(&error).to_string_in(language))
         };
         assert_eq!(
             said(Quantity::GainRatio, 0.1234),

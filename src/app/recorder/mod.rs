@@ -222,7 +222,7 @@ impl Recorder {
             RecorderAction::Zoom(about, factor) => self.zoom_around(about, factor),
             RecorderAction::SetCursor(cursor, time) => self.set_cursor(cursor, time),
             RecorderAction::ShowCursors(shown) => self.show_cursors(shown),
-            RecorderAction::Arm(trigger) => self.arm(trigger),
+            RecorderAction::Arm(trigger) => self.arm_trigger(trigger),
             RecorderAction::Disarm => self.disarm(),
             RecorderAction::Clear => self.clear(),
             RecorderAction::CancelExport => {

@@ -119,7 +119,7 @@ impl Recorder {
         self.watch.as_ref().map(|watch| (&watch.trigger, watch.state))
     }
 
-    pub(super) fn arm(&mut self, trigger: Trigger) {
+    pub(super) fn arm_trigger(&mut self, trigger: Trigger) {
         let Some(line) = self.series_by_id(trigger.line) else { return };
         let (factor, range) = (line.factor(), line.range_of_samples());
         let level = trigger.level / factor;

@@ -39,7 +39,7 @@ pub trait Kind: Device + Sized {
 
     /// Returns the reason why a link cannot be opened, and what to do.
     fn open_error(error: &OpenError) -> Text {
-        explain::open(error)
+        explain::open_error_text(error)
     }
 
     /// Returns the reason why a link could not be opened or its thread could not be started.

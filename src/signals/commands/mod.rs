@@ -46,7 +46,8 @@ fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
     // Never cancelled here: Ctrl-C ends the whole process, since the command only reads.
     let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
-    let (layout, capture) = read.map_err(|error| to_failure(&explain::signal::read(path, &error)))?;
+    let (layout, capture) =
+        read.map_err(|error| to_failure(&explain::signal::read_capture_error_text(path, &error)))?;
     print_remarks(output, &layout, &capture);
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();

@@ -77,7 +77,7 @@ impl AdapterLink {
     /// Returns the reason why the link cannot be used for an adapter.
     pub(super) fn read(text: &str) -> Result<Self, Text> {
         let url: LinkUrl =
-            text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
+            text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url_error_text(&why)))?;
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let (margin, open) =
             open_adapter(&url, clock.clone(), attachable_kinds()).map_err(|error| open_error_text(&error))?;
@@ -223,8 +223,8 @@ fn bridge_error_text(error: &BridgeError) -> Text {
 
 fn open_error_text(error: &OpenError) -> Text {
     match error {
-        OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url(why)),
-        OpenError::Sim(why) => TEXTS.text("adapter.link").with_text("why", explain::setting(why)),
-        other => explain::open(other),
+        OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url_error_text(why)),
+        OpenError::Sim(why) => TEXTS.text("adapter.link").with_text("why", explain::setting_error_text(why)),
+        other => explain::open_error_text(other),
     }
 }

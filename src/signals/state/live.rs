@@ -200,7 +200,7 @@ impl Source {
                 true
             }
             Err(error) => {
-                self.problem = Some(explain::signal::setting(&error));
+                self.problem = Some(explain::signal::setting_value_error_text(&error));
                 false
             }
         }
@@ -210,7 +210,7 @@ impl Source {
         let checked = match self.settings.clone().validate() {
             Ok(checked) => checked,
             Err(error) => {
-                self.problem = Some(explain::signal::setting(&error));
+                self.problem = Some(explain::signal::setting_value_error_text(&error));
                 return false;
             }
         };

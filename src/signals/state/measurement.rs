@@ -217,7 +217,7 @@ mod tests {
         for density in [&measurement.raw, &measurement.corrected] {
             let density = density.as_ref().unwrap();
             assert_eq!(density.cell_counts().iter().sum::<u32>(), 10_000);
-            assert_eq!((density.cells_per_side(), density.square().half_v), (240, 0.75));
+            assert_eq!((density.cells_per_side(), density.plot_square().half_v), (240, 0.75));
         }
         for lengths in measurement.corrected.as_ref().unwrap().vector_lengths() {
             assert!((lengths.least_v - 0.5).abs() < 1e-6 && (lengths.most_v - 0.5).abs() < 1e-6, "{lengths:?}");

@@ -35,7 +35,7 @@ impl ToolKind for SignalsKind {
         TAB
     }
 
-    fn begin(&self, links: &[String]) -> Box<dyn Tool> {
+    fn create_tool(&self, links: &[String]) -> Box<dyn Tool> {
         Box::new(Signals::with_links(links))
     }
 }

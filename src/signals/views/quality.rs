@@ -125,7 +125,7 @@ impl Picture {
             self.0 = Some((measurement.clone(), corrected, colour, texture));
         }
         let (.., texture) = self.0.as_ref()?;
-        Some((texture.id(), density.square()))
+        Some((texture.id(), density.plot_square()))
     }
 }
 

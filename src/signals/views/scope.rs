@@ -81,7 +81,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
         let spectra = match &measurement.spectra {
             Ok(spectra) => spectra,
             Err(error) => {
-                paragraph(ui, theme.label(theme.format_text(&explain::signal::spectrum(error))));
+                paragraph(ui, theme.label(theme.format_text(&explain::signal::spectrum_error_text(error))));
                 return;
             }
         };

@@ -113,7 +113,12 @@ impl ReducedLane {
     }
 }
 
-pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut ReducedLane) -> Layout {
+pub(super) fn compute_layout(
+    recorder: &Recorder,
+    rect: Rect,
+    pixels_per_point: f32,
+    reduced: &mut ReducedLane,
+) -> Layout {
     // The width of the labels depends on the values, and the values depend on the width. The width of the previous
     // frame is tried first. A picture that changes little is then made only once.
     let (from, to) = recorder.window_bounds();
@@ -230,12 +235,12 @@ mod tests {
     fn samples_of_another_recorder_are_not_confused() {
         let mut reduced = ReducedLane::default();
         let (one, mut other) = (recorder(1.0), recorder(2.0));
-        layout(&one, RECT, 1.0, &mut reduced);
+        compute_layout(&one, RECT, 1.0, &mut reduced);
         assert_eq!(shown(&reduced, &one), 1.0);
-        layout(&other, RECT, 1.0, &mut reduced);
+        compute_layout(&other, RECT, 1.0, &mut reduced);
         assert_eq!(shown(&reduced, &other), 2.0, "the same times, other values");
         other.handle_action(RecorderAction::Clear);
-        layout(&other, RECT, 1.0, &mut reduced);
+        compute_layout(&other, RECT, 1.0, &mut reduced);
         let line = other.series()[0].id;
         assert!(reduced.picture_of(line).unwrap().pixels.is_empty());
     }
@@ -244,15 +249,15 @@ mod tests {
     fn a_plot_with_long_labels_is_computed_once() {
         let mut reduced = ReducedLane::default();
         let recorder = recorder(123_456.789_1);
-        layout(&recorder, RECT, 1.0, &mut reduced);
+        compute_layout(&recorder, RECT, 1.0, &mut reduced);
         let (made, gutter) = (reduced.made.clone(), reduced.gutter);
         assert!(gutter > MIN_LABEL_WIDTH);
-        let chart = layout(&recorder, RECT, 1.0, &mut reduced).chart;
+        let chart = compute_layout(&recorder, RECT, 1.0, &mut reduced).chart;
         assert!(reduced.made == made, "nothing has changed");
         assert_eq!(chart.left(), RECT.left() + gutter);
         // Wide labels of an earlier picture do not keep the space forever.
         let short = self::recorder(1.0);
-        layout(&short, RECT, 1.0, &mut reduced);
-        assert!(layout(&short, RECT, 1.0, &mut reduced).chart.left() < chart.left());
+        compute_layout(&short, RECT, 1.0, &mut reduced);
+        assert!(compute_layout(&short, RECT, 1.0, &mut reduced).chart.left() < chart.left());
     }
 }

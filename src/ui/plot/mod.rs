@@ -125,7 +125,7 @@ fn chart_ui(
         empty_placeholder(&mut inner, theme, &words, None);
         return None;
     }
-    let layout = lanes::layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
+    let layout = lanes::compute_layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
     let is_free = view.drag.is_none() && !view.shot.is_wanted();
     let hovered = response.hover_pos().filter(|place| layout.chart.contains(*place) && is_free);
     pointer::handle_interaction(ui, &response, context, &layout, &mut view.drag);

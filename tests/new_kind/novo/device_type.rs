@@ -98,8 +98,8 @@ impl FormModel for NovoForm {
         NovoForm { link: url.to_string() }
     }
     fn url(&self) -> Result<LinkUrl, Text> {
-        let url: LinkUrl = self.link.parse().map_err(|error| explain::url(&error))?;
-        jobs::check(&url).map_err(|error| explain::open(&error))?;
+        let url: LinkUrl = self.link.parse().map_err(|error| explain::url_error_text(&error))?;
+        jobs::check(&url).map_err(|error| explain::open_error_text(&error))?;
         Ok(url)
     }
     fn example_link(&self) -> &'static str {

@@ -20,14 +20,14 @@ pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
 fn link_errors_are_explained_in_both_languages() {
     for text in ["usb:1", "serial:", "replay:", "tcp:host", "bridge:", "serial:x?baud", "serial:x?baud=1&baud=2"] {
         let error = text.parse::<LinkUrl>().unwrap_err();
-        check(&url(&error), &error);
+        check(&url_error_text(&error), &error);
     }
     let error = UrlError::Device { scheme: "bridge", known: "sim:, serial:, tcp:, replay:" };
-    assert_eq!(url(&error).to_string_in(English), error.to_string());
-    assert_ne!(url(&error).to_string_in(German), error.to_string());
+    assert_eq!(url_error_text(&error).to_string_in(English), error.to_string());
+    assert_ne!(url_error_text(&error).to_string_in(German), error.to_string());
     let known = "baud, parity".to_owned();
     let error = UrlError::Unknown { name: "bad".to_owned(), scheme: "serial", known };
-    check(&url(&error), &error);
+    check(&url_error_text(&error), &error);
 }
 
 #[test]

@@ -75,7 +75,7 @@ fn operation_number(operation: Operation) -> String {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::app::explain::{assert_in_both_languages, setting};
+    use crate::app::explain::{assert_in_both_languages, setting_error_text};
     use crate::buses::bridge::sim::Adapter;
     use crate::kinds::attachable_kinds;
     use crate::link::UrlQuery;
@@ -143,7 +143,7 @@ mod tests {
         for text in queries.split_whitespace() {
             let query: UrlQuery = text.parse().unwrap();
             let error = Adapter::from_pairs(query.pairs(), attachable_kinds()).err().unwrap();
-            assert_in_both_languages(&setting(&error), &error);
+            assert_in_both_languages(&setting_error_text(&error), &error);
         }
     }
 }

@@ -178,7 +178,7 @@ fn parse_mounting_steps(output: &Output, words: &[&str]) -> Result<MountingSteps
 fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
     load_profile_to_write(output, file)?
         .into_profile()
-        .map_err(|error| to_failure(&explain::profile(file, &error, KindRegistry::NONE)))
+        .map_err(|error| to_failure(&explain::profile_file_error_text(file, &error, KindRegistry::NONE)))
 }
 
 fn parse_preset_value(text: &str) -> Result<PresetValue> {

@@ -27,11 +27,11 @@ impl Encoder {
             DecodedValue::Bits(set) if set.is_empty() => TEXTS.text("registers.no_bit"),
             DecodedValue::Bits(set) => {
                 let named = |(bit, name): (u8, Option<_>)| {
-                    name.map_or_else(|| literal_text(format!("b{bit}")), explained::name)
+                    name.map_or_else(|| literal_text(format!("b{bit}")), explained::name_text)
                 };
                 Text::new("plain.words").with_list("words", set.into_iter().map(named))
             }
-            DecodedValue::Choice(_, Some(name)) => explained::name(name),
+            DecodedValue::Choice(_, Some(name)) => explained::name_text(name),
             DecodedValue::Choice(_, None) => TEXTS.text("registers.unknown_value"),
             DecodedValue::Text(text) => literal_text(text),
         })
@@ -42,7 +42,7 @@ impl Encoder {
         match (role, bytes) {
             (Role::BankSelect | Role::EdsBank, [bank]) => {
                 let group = self.table.position(Some(*bank)).and_then(|at| self.table.groups().get(at));
-                group.and_then(|group| group.name.as_ref()).map(explained::name)
+                group.and_then(|group| group.name.as_ref()).map(explained::name_text)
             }
             (Role::Profile, [high, low]) => {
                 let is_standard = ProfileId::new(u16::from_be_bytes([*high, *low])).is_standard_encoder_profile();

@@ -129,7 +129,7 @@ impl SessionEvents for Encoder {
             }
             BissOutput::LedBack(mode) => {
                 self.mark_returned_to_operation();
-                let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode(mode));
+                let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode_text(mode));
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }

@@ -13,13 +13,15 @@ mod write;
 use crate::devices::biss::state::TEXTS;
 pub use check::check_lines;
 pub use damage::damage_text;
-pub use entry::entry;
+pub use entry::entry_error_text;
 pub use guide::{
-    advice_text, blocker_text, calibration_requirements_text, mode, outcome_texts, procedure_step_text, procedure_text,
-    report_lines, task_text, wiegand_requirements_text,
+    advice_text, blocker_text, calibration_requirements_text, mode_text, outcome_texts, procedure_step_text,
+    procedure_text, report_lines, task_text, wiegand_requirements_text,
 };
-pub use plan::{other_type, plan};
-pub use write::{change_text, failure_text, operation_texts, preset, severity_of, wear_warning, written_text};
+pub use plan::{other_type, plan_error_text};
+pub use write::{
+    change_text, failure_text, operation_texts, preset_value_text, severity_of, wear_warning, written_text,
+};
 
 use crate::app::Text;
 use crate::app::explain::{self as general, link_error_text, not_started_text, syntax_error_text};
@@ -31,15 +33,15 @@ use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, Ide
 use crate::link::LinkError;
 use crate::store::StoreError;
 
-pub fn name(name: &Name) -> Text {
+pub fn name_text(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
 /// Returns the messages for a job that ended early. Each message may be shown on a separate line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
-        JobError::Device(error) => vec![encoder(error)],
-        JobError::Plan(error) => vec![plan(error)],
+        JobError::Device(error) => vec![encoder_error_text(error)],
+        JobError::Plan(error) => vec![plan_error_text(error)],
         JobError::NotStarted(why) => vec![not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption_text(interrupted, backup, *planned, *kind)
@@ -60,7 +62,7 @@ fn lost_link(error: &Error) -> Option<&LinkError> {
     }
 }
 
-pub fn encoder(error: &Error) -> Text {
+pub fn encoder_error_text(error: &Error) -> Text {
     match error {
         Error::Link(error) => link_error_text(error),
         Error::Adapter(error) => adapter_error_text(error),
@@ -88,16 +90,16 @@ pub fn encoder(error: &Error) -> Text {
         Error::NotWatched { address } => TEXTS.text("biss.not_watched").with("address", address),
         Error::Refused { address, value, reads } => {
             let id = if reads.is_some() { "biss.refused_reads" } else { "biss.refused" };
-            let reads = reads.map(byte).unwrap_or_default();
-            TEXTS.text(id).with("address", address).with("value", byte(*value)).with("reads", reads)
+            let reads = reads.map(format_byte).unwrap_or_default();
+            TEXTS.text(id).with("address", address).with("value", format_byte(*value)).with("reads", reads)
         }
         Error::Unclear { address, value, cause } => TEXTS
             .text("biss.unclear")
             .with("address", address)
-            .with("value", byte(*value))
-            .with_text("cause", encoder(cause)),
+            .with("value", format_byte(*value))
+            .with_text("cause", encoder_error_text(cause)),
         Error::Cancelled => Text::new("encoder.cancelled"),
-        Error::OrderUnknown { answer } => TEXTS.text("biss.order_unknown").with("answer", byte(*answer)),
+        Error::OrderUnknown { answer } => TEXTS.text("biss.order_unknown").with("answer", format_byte(*answer)),
         Error::TooWide { word, multiturn, singleturn } => TEXTS
             .text("biss.too_wide")
             .with("word", format!("0x{word:X}"))
@@ -112,8 +114,8 @@ pub fn encoder(error: &Error) -> Text {
         Error::OtherReply { requested, reply } => {
             TEXTS.text("biss.other_reply").with_text("asked", self::item_text(*requested)).with("reply", reply)
         }
-        Error::FrameStatus { status } => TEXTS.text("biss.frame_status").with("status", byte(*status)),
-        Error::Layout(error) => layout(error),
+        Error::FrameStatus { status } => TEXTS.text("biss.frame_status").with("status", format_byte(*status)),
+        Error::Layout(error) => layout_error_text(error),
         Error::TooFew { start, expected, got } => {
             TEXTS.text("biss.too_few").with("start", start).with("expected", expected).with("got", got)
         }
@@ -121,7 +123,7 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-fn layout(error: &LayoutError) -> Text {
+fn layout_error_text(error: &LayoutError) -> Text {
     let hex = |number: u64| format!("{number:#X}");
     match *error {
         LayoutError::Field { field, bits } => TEXTS.text("biss.layout_field").with("field", field).with("bits", bits),
@@ -161,7 +163,7 @@ pub fn unsaved_profile_text_for_mode(mode: DeviceMode) -> Text {
 }
 
 fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
-    TEXTS.text(id).with_text("mode", self::mode(mode))
+    TEXTS.text(id).with_text("mode", self::mode_text(mode))
 }
 
 fn moving_text(rpm: Option<f64>) -> Text {
@@ -174,7 +176,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
     match requested {
         RequestedItem::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
         RequestedItem::Write(address, value) => {
-            TEXTS.text("biss.asked_write").with("address", address).with("value", byte(value))
+            TEXTS.text("biss.asked_write").with("address", address).with("value", format_byte(value))
         }
         RequestedItem::Position => TEXTS.text("biss.asked_position"),
     }
@@ -218,7 +220,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     }
 }
 
-fn byte(byte: u8) -> String {
+fn format_byte(byte: u8) -> String {
     format!("0x{byte:02X}")
 }
 
@@ -265,12 +267,15 @@ mod tests {
         ];
         for (error, facts) in cases {
             for language in [English, German] {
-                let words = encoder(&error).to_string_in(language);
+                let words = encoder_error_text(&error).to_string_in(language);
                 assert!(facts.iter().all(|fact| words.contains(fact)), "{words}");
                 assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
                 assert!(!words.contains('{') && words.ends_with('.'), "{words}");
             }
-            assert_ne!(encoder(&error).to_string_in(English), encoder(&error).to_string_in(German));
+            assert_ne!(
+                encoder_error_text(&error).to_string_in(English),
+                encoder_error_text(&error).to_string_in(German)
+            );
         }
     }
 

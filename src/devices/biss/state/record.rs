@@ -255,7 +255,7 @@ impl Watchable for Register {
     }
 
     fn create_series(&self, group: GroupId) -> Series {
-        let name = if self.name.is_empty() { literal_text(self.address) } else { words::name(&self.name) };
+        let name = if self.name.is_empty() { literal_text(self.address) } else { words::name_text(&self.name) };
         let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { literal_text(&self.unit) };
         let decimals = if self.is_whole() { 0 } else { 1 };
         let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();

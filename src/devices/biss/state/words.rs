@@ -21,7 +21,7 @@ pub(super) fn job_name(job: &BissJob) -> Text {
         BissJob::Read(range) => Text::new("job.read").with("item", range),
         BissJob::ReadDirect => TEXTS.text("job.read_direct"),
         BissJob::ReadBank(bank) => TEXTS.text("job.read_bank").with("bank", format!("0x{bank:02X}")),
-        BissJob::ReadArea(area) => Text::new("job.read").with_text("item", words::name(&area.name)),
+        BissJob::ReadArea(area) => Text::new("job.read").with_text("item", words::name_text(&area.name)),
         BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
         BissJob::Commit(_) => Text::new("job.write"),
@@ -98,7 +98,7 @@ pub(super) fn explained_value_text(value: EdsValue) -> Option<Text> {
 pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::in_bank(bank.kit_number(), field.offset);
     let described = at.zip(KIT_DESCRIPTION.as_ref()).and_then(|(at, kit)| kit.register_at(at));
-    described.map_or_else(|| literal_text(field.name), |register| words::name(&register.name))
+    described.map_or_else(|| literal_text(field.name), |register| words::name_text(&register.name))
 }
 
 /// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages, and these

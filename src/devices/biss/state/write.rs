@@ -166,7 +166,7 @@ impl HasProfile for Encoder {
             };
             match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
                 Some(banks) => data.push(DataImage::new(area, banks)),
-                None => missing.push(words::name(&area.name)),
+                None => missing.push(words::name_text(&area.name)),
             }
         }
         if !missing.is_empty() {

@@ -161,14 +161,14 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             row(ui, theme, &translate(theme, "biss_status.temperature"), theme.monospace(words));
         }
         if let Some(mode) = status.mode {
-            row(ui, theme, &translate(theme, "biss_status.mode"), theme.format_text(&explained::mode(mode)));
+            row(ui, theme, &translate(theme, "biss_status.mode"), theme.format_text(&explained::mode_text(mode)));
         }
         if let Some(filter) = status.filter {
             row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
-            let words = theme.format_text(&explained::preset(value, layout.singleturn_bits()));
+            let words = theme.format_text(&explained::preset_value_text(value, layout.singleturn_bits()));
             row(ui, theme, &translate(theme, "biss_status.preset"), theme.monospace(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {
@@ -196,7 +196,7 @@ fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&FlagRegister>, icon: &str, col
             ui.label(theme.monospace(format!("b{bit}")));
             let name = name.as_ref().map_or_else(
                 || translate(theme, "biss_status.unknown_bit"),
-                |own| theme.format_text(&explained::name(own)),
+                |own| theme.format_text(&explained::name_text(own)),
             );
             paragraph(ui, name);
         });

@@ -75,7 +75,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions:
             let name = if register.name.is_empty() {
                 register.address.to_string()
             } else {
-                theme.format_text(&words::name(&register.name))
+                theme.format_text(&words::name_text(&register.name))
             };
             if ui.checkbox(&mut on, name).changed() {
                 actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(register), on)));

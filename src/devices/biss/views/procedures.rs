@@ -50,7 +50,7 @@ pub(super) fn page_ui(
         return;
     }
     left_state_ui(ui, theme, encoder, actions);
-    let form = view.preset.get_or_insert_with(|| stored(encoder));
+    let form = view.preset.get_or_insert_with(|| stored_preset_form(encoder));
     let mut mounting = Mounting {
         motor: &mut view.motor,
         calibrate: &mut view.calibrate,
@@ -89,7 +89,7 @@ struct Mounting<'v> {
     form: &'v mut PresetForm,
 }
 
-fn stored(encoder: &Encoder) -> PresetForm {
+fn stored_preset_form(encoder: &Encoder) -> PresetForm {
     let value = encoder.survey.as_ref().and_then(|survey| survey.preset);
     let layout = encoder.identity().map(|identity| &identity.layout);
     value.zip(layout).map(|(value, layout)| PresetForm::from_value(value, layout)).unwrap_or_default()
@@ -102,7 +102,7 @@ fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Ve
         return;
     }
     card(ui, theme, TEXTS.text("lead_back_card.title"), |ui| {
-        let mode = explained::mode(status.mode.unwrap_or_default());
+        let mode = explained::mode_text(status.mode.unwrap_or_default());
         let text = TEXTS.text("lead_back_card.words").with_text("mode", mode);
         paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         super::return_to_operation_ui(ui, theme, encoder, actions);
@@ -245,7 +245,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         });
         ui.add_space(theme.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
-            let words = theme.format_text(&explained::preset(stored, layout.singleturn_bits()));
+            let words = theme.format_text(&explained::preset_value_text(stored, layout.singleturn_bits()));
             row(ui, theme, &translate(theme, "preset_card.stored"), theme.monospace(words));
         }
         let fire_words = if is_saved { "preset_card.fire_words" } else { "preset_card.save_first" };

@@ -23,8 +23,8 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
         Some(url) => UdpBroadcast::new(query_addresses(url)?, clock.clone()),
     };
     let mut shout = shout.map_err(|error| to_failure(&explain::link_error_text(&error)))?;
-    let found =
-        discover(&mut shout, &*clock, &CancelToken::default()).map_err(|error| to_failure(&words::device(&error)))?;
+    let found = discover(&mut shout, &*clock, &CancelToken::default())
+        .map_err(|error| to_failure(&words::device_error_text(&error)))?;
     let (drives, others): (Vec<DiscoveredDevice>, Vec<DiscoveredDevice>) =
         found.into_iter().partition(DiscoveredDevice::is_hiperdrive);
     let list: Vec<Json> = drives.iter().map(discovered_device_json).collect();

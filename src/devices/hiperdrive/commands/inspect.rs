@@ -172,7 +172,7 @@ fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
 }
 
 pub(super) fn error_text(code: ErrorCode) -> String {
-    let words = words::error(code);
+    let words = words::error_code_explanation(code);
     format!("{}: {} {}", words.name.terminal_text(), words.cause.terminal_text(), words.remedy.terminal_text())
 }
 
@@ -214,7 +214,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     for drive in &status.drives {
         let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
         let (word, celsius) = (drive.status.to_u16(), drive.temperature);
-        let state = words::state(drive.status.state()).terminal_text();
+        let state = words::state_text(drive.status.state()).terminal_text();
         lines.add_line(
             format!("drive {}", drive.number.get()),
             format!("{state} (0x{word:04X}), {celsius} °C{requested}"),
@@ -229,7 +229,7 @@ fn number_text(item: Item, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (base, word, unit.strip_prefix("0.1 ")) {
         (STATUS, Some(word), _) => {
-            let state = words::state(StatusWord::new(word).state());
+            let state = words::state_text(StatusWord::new(word).state());
             format!("0x{word:04X} ({})", state.terminal_text())
         }
         (NEWEST_ERROR..=OLDEST_ERROR, Some(0), _) => "0x0000 (no error)".to_owned(),

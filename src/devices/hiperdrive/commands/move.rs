@@ -115,7 +115,8 @@ fn read_permit(
     identity: &Identity,
     drive: DriveNumber,
 ) -> Result<(Permit, Option<PositionScale>)> {
-    let variant = identity.drive_identity(drive).map_err(|error| to_failure(&words::device(&error)))?.variant;
+    let variant =
+        identity.drive_identity(drive).map_err(|error| to_failure(&words::device_error_text(&error)))?.variant;
     let mut values = Vec::new();
     for base in [REQUESTED_BY_BUS, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT] {
         let Some(number) = ParameterNumber::for_drive(base, drive) else { continue };

@@ -29,7 +29,7 @@ pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change)
         output.print_message(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal_text());
     }
     for warning in plan_warnings(&prepared.plan) {
-        output.print_message(&words::warning(&warning).terminal_text());
+        output.print_message(&words::warning_text(&warning).terminal_text());
     }
     if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
         output.print_message(&TEXTS.text("hd_cli.address_lost").terminal_text());

@@ -96,7 +96,7 @@ fn show(output: &Output, reading: &DriveReading, place: Option<TurnPosition>) ->
         Some(place) => format!("turn {}, step {}, {:.3}°", place.turns, place.steps, place.degrees),
         None => "its scaling (154, 156) is not valid".to_owned(),
     };
-    let state = explained::state(state).terminal_text();
+    let state = explained::state_text(state).terminal_text();
     output.show(&json, &format!("{t:10.3} s  {:>11}  {words}  ({state})\n", actual.position))
 }
 

@@ -42,7 +42,7 @@ impl CliDevice for Hiperdrive {
                 write_stderr(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal_text()))
             }
             DeviceMessage::RulesUnread(error) => {
-                let why = words::device(error).terminal_text();
+                let why = words::device_error_text(error).terminal_text();
                 write_stderr(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal_text()));
             }
             DeviceMessage::RulesRead => {}

@@ -47,7 +47,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
 /// Parses a new parameter value. Values that no device accepts are rejected before a connection is opened.
 fn parse_change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
-    let refused = |error: PlanError| to_failure(&words::plan(&error));
+    let refused = |error: PlanError| to_failure(&words::plan_error_text(&error));
     let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
     match (row.number, row.access) {
         (CONTROL..=TARGET, ..) => return Err(refused(PlanError::Moves { item })),

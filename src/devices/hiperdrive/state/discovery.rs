@@ -117,7 +117,7 @@ impl Finder for DiscoveryFinder {
                 services.tasks.run("discover", move || {
                     let found = given.map_or_else(broadcast_discovery, |discover| (discover.0)());
                     let found = found.map(|found| found.iter().map(FoundDevice::from_reply).collect());
-                    let found = found.map_err(|error| words::device(&error));
+                    let found = found.map_err(|error| words::device_error_text(&error));
                     Action::Done(TaskResult::from_finder::<DiscoveryFinder>(
                         HiperdriveDevice::TAB,
                         DiscoveryReplies { number, found },

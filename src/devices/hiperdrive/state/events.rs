@@ -199,7 +199,7 @@ impl SessionEvents for HiperdriveDevice {
             DeviceMessage::ControlLost => self.handle_control_loss(services),
             DeviceMessage::RulesUnread(why) => {
                 self.moves.stop();
-                let texts = vec![TEXTS.text(LIMITS_UNREADABLE_ID), words::device(&why)];
+                let texts = vec![TEXTS.text(LIMITS_UNREADABLE_ID), words::device_error_text(&why)];
                 services.notify(Severity::Error, texts, Some(&self.session.name()));
             }
             DeviceMessage::RulesRead => {

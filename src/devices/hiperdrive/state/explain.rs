@@ -12,15 +12,19 @@ mod status;
 mod tests;
 mod write;
 
-pub use check::{check_lines, source, switch_text};
-pub use entry::entry;
-pub use error::{damage_text, device, out_of_range, range_text, wrong_length};
+pub use check::{check_lines, source_text, switch_text};
+pub use entry::entry_error_text;
+pub use error::{damage_text, device_error_text, out_of_range, range_text, wrong_length};
 pub use motion::{
-    CONNECTION_LOSS_IDS, MOTION_ENDS, cyclic_loss_text, end_severity, end_text, lock, parameter_words, phase,
+    CONNECTION_LOSS_IDS, MOTION_ENDS, cyclic_loss_text, end_severity, end_text, lock_text, parameter_words, phase_text,
     refusal_text, target_state_text,
 };
-pub use names::{ErrorExplanation, control_bit, error, parameter, state, status_bit, variant_text};
-pub use write::{change_text, item_text, operation_texts, other_type, plan, service_text, warning, written_text};
+pub use names::{
+    ErrorExplanation, control_bit, error_code_explanation, parameter_name_text, state_text, status_bit, variant_text,
+};
+pub use write::{
+    change_text, item_text, operation_texts, other_type, plan_error_text, service_text, warning_text, written_text,
+};
 
 use crate::app::Text;
 use crate::app::explain::{link_error_text, literal_text};
@@ -31,8 +35,8 @@ use crate::devices::hiperdrive::procedures::Error;
 /// line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
-        JobError::Device(error) => vec![device(error)],
-        JobError::Plan(error) => vec![plan(error)],
+        JobError::Device(error) => vec![device_error_text(error)],
+        JobError::Plan(error) => vec![plan_error_text(error)],
         JobError::NotStarted(why) => vec![crate::app::explain::not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption_text(interrupted, backup, *planned, *kind)
@@ -55,7 +59,7 @@ pub fn is_no_response(error: &JobError) -> bool {
 
 pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
-        JobStep::Parameter(number) => parameter(*number),
+        JobStep::Parameter(number) => parameter_name_text(*number),
         JobStep::Step(own) => check::check_step_text(*own),
         JobStep::Operation(item) => literal_text(item),
     }

@@ -12,7 +12,7 @@ pub(super) fn job_name(job: &HiperdriveJob) -> Text {
         HiperdriveJob::Status => Text::new("job.status"),
         HiperdriveJob::Check => Text::new("job.check"),
         HiperdriveJob::Position(drive) => TEXTS.text("hd_job.position").with("drive", drive.get()),
-        HiperdriveJob::Read(number) => Text::new("job.read").with_text("item", words::parameter(*number)),
+        HiperdriveJob::Read(number) => Text::new("job.read").with_text("item", words::parameter_name_text(*number)),
         HiperdriveJob::Network => TEXTS.text("hd_job.network"),
         HiperdriveJob::Save => Text::new("job.save"),
         HiperdriveJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),

@@ -31,7 +31,7 @@ impl HiperdriveDevice {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.moves.is_open() => Err(TEXTS.text("hd_said.in_control")),
-            None if self.survey.is_none() => Err(words::lock(MotionLock::Unread)),
+            None if self.survey.is_none() => Err(words::lock_text(MotionLock::Unread)),
             None => Ok(()),
         }
     }
@@ -63,7 +63,7 @@ impl HiperdriveDevice {
             return Err(why);
         }
         if let Some(lock) = self.moves.motion_locks(drive).first() {
-            return Err(words::lock(*lock));
+            return Err(words::lock_text(*lock));
         }
         match self.state(drive) {
             Some(State::Fault) => Err(TEXTS.text("hd_refused.fault")),
@@ -250,7 +250,7 @@ impl HiperdriveDevice {
     pub fn current_or_last_request(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
-            return Some(RequestState { words: words::phase(view.phase), is_well: true });
+            return Some(RequestState { words: words::phase_text(view.phase), is_well: true });
         }
         let (_, ended) = view.ended?;
         let words = words::end_text(ended, |steps| self.position_text(drive, steps));

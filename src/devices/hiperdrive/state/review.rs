@@ -48,7 +48,7 @@ impl Reviewable for Hiperdrive {
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut texts: Vec<Text> = prepared.other_types.iter().map(explained::other_type).collect();
-        texts.extend(plan_warnings(&prepared.plan).iter().map(explained::warning));
+        texts.extend(plan_warnings(&prepared.plan).iter().map(explained::warning_text));
         texts.extend(prepared.wear_to_report().map(|after| TEXTS.text("hd_review.wear").with("after", after)));
         if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
             texts.push(TEXTS.text("hd_review.factory_all"));

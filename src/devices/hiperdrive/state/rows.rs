@@ -91,7 +91,7 @@ impl HiperdriveDevice {
         };
         Row {
             number,
-            name: explained::parameter(number),
+            name: explained::parameter_name_text(number),
             kind,
             shown: value.as_ref().map(|value| words::value_text(number, value)).unwrap_or_default(),
             meaning: meant.and_then(|value| self.value_meaning(number, &value)),

@@ -93,11 +93,11 @@ impl HiperdriveDevice {
     /// Returns why the known parameters of a drive are not sufficient to move it, or `None` if they are.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
-            Some(words::lock(MotionLock::Unread))
+            Some(words::lock_text(MotionLock::Unread))
         } else if self.moves.is_open() && self.marks != SettingsReadState::Read {
             Some(TEXTS.text("hd_lock.settings"))
         } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
-            Some(words::lock(MotionLock::Outdated))
+            Some(words::lock_text(MotionLock::Outdated))
         } else {
             None
         }
@@ -116,7 +116,7 @@ impl HiperdriveDevice {
     fn displayed_limits_to_confirm(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::displayed_limits);
-        seen.ok_or_else(|| words::lock(MotionLock::Unread))
+        seen.ok_or_else(|| words::lock_text(MotionLock::Unread))
     }
 
     /// Confirms the displayed limits. Returns whether this took effect. Otherwise a message is reported.
@@ -127,7 +127,7 @@ impl HiperdriveDevice {
         self.handle_limit_change();
         let counts = self.displayed_limits_to_confirm(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
-            counts.then_some(()).ok_or_else(|| words::lock(MotionLock::Unread))
+            counts.then_some(()).ok_or_else(|| words::lock_text(MotionLock::Unread))
         });
         if let Err(why) = &counts {
             self.report_drive_message(drive, Severity::Warning, vec![why.clone()], services);

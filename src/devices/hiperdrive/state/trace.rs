@@ -107,7 +107,7 @@ fn request_texts(request: &Request) -> Vec<Text> {
     };
     let is_set = request.service == Service::SET;
     let id = if is_set { "hd_asked.set" } else { "hd_asked.parameter" };
-    let heading = TEXTS.text(id).with("number", number).with_text("name", explained::parameter(number));
+    let heading = TEXTS.text(id).with("number", number).with_text("name", explained::parameter_name_text(number));
     let value = is_set.then(|| value_texts(number, &request.data)?.ok()).flatten();
     [vec![heading], value.unwrap_or_default()].concat()
 }

@@ -55,9 +55,9 @@ pub fn value_meaning(number: ParameterNumber, value: i64) -> Option<Text> {
             None => TEXTS.text("hd_check.unknown_switch").with("number", value),
         },
         SERVICE => TEXTS.text(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
-        STATUS => hiperdrive::state(StatusWord::new(word()?).state()),
+        STATUS => hiperdrive::state_text(StatusWord::new(word()?).state()),
         NEWEST_ERROR..=OLDEST_ERROR if value == 0 => TEXTS.text("hd_meaning.no_error"),
-        NEWEST_ERROR..=OLDEST_ERROR => hiperdrive::error(ErrorCode::new(word()?)).name,
+        NEWEST_ERROR..=OLDEST_ERROR => hiperdrive::error_code_explanation(ErrorCode::new(word()?)).name,
         116..=118 => TEXTS.text(match value {
             0 => "hd_meaning.word_well",
             0xFFFF => "hd_meaning.word_none",
@@ -103,5 +103,5 @@ pub fn finding_text(mark: &EditFinding) -> Text {
 }
 
 fn text_about(id: &'static str, number: ParameterNumber) -> Text {
-    TEXTS.text(id).with("number", number).with_text("name", words::parameter(number))
+    TEXTS.text(id).with("number", number).with_text("name", words::parameter_name_text(number))
 }

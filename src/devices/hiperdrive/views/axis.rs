@@ -247,7 +247,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
         row(ui, theme, &translate(theme, "hd_axis.position"), theme.value(position));
         let state = shown.seen.actual.map_or_else(
             || translate(theme, "hd_axis.none"),
-            |actual| theme.format_text(&explain::state(actual.status.state())),
+            |actual| theme.format_text(&explain::state_text(actual.status.state())),
         );
         let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
         let state = match (shown.seen.has_failed(), code) {

@@ -107,8 +107,8 @@ fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, (drive, 
         Some(State::NotReady) => (icons::PLUGS, palette.muted),
         None => (icons::QUESTION, palette.muted),
     };
-    let words =
-        state.map_or_else(|| translate(theme, "hd_bar.unknown"), |state| theme.format_text(&explain::state(state)));
+    let words = state
+        .map_or_else(|| translate(theme, "hd_bar.unknown"), |state| theme.format_text(&explain::state_text(state)));
     let name = TEXTS.text("hd_bar.named").with("drive", drive.get());
     let name = theme.format_text(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
     let is_shown = drive == unit.drive();

@@ -48,7 +48,7 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
         let mut none = true;
         for code in codes {
             none = false;
-            let words = explain::error(*code);
+            let words = explain::error_code_explanation(*code);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad));
                 ui.label(theme.monospace(format!("{:04X}", code.code())));

@@ -46,7 +46,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
         State::Moving | State::Enabled => palette.good,
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
-    let word = theme.format_text(&explain::state(state));
+    let word = theme.format_text(&explain::state_text(state));
     // The text fits on one line beside the widest state, so the rows below do not move.
     let told_below = TEXTS.text("hd_outside.beside_state").with("state", &word);
     let word = if is_told_below { theme.format_text(&told_below) } else { word };

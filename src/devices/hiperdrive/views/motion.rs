@@ -103,7 +103,7 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut V
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
-                paragraph(ui, theme.format_text(&explain::lock(lock)));
+                paragraph(ui, theme.format_text(&explain::lock_text(lock)));
             });
             if lock == MotionLock::LimitsUnconfirmed
                 && let Some((low, high)) = unit.limits_to_confirm(drive)
@@ -147,7 +147,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
         let drive = unit.drive();
         let actual = unit.actual_values(drive);
         let present = actual.map(|actual| actual.status.state());
-        let names = State::ALL.map(|state| theme.format_text(&explain::state(state)));
+        let names = State::ALL.map(|state| theme.format_text(&explain::state_text(state)));
         let open = unit.moves.is_open();
         let reachable: Vec<State> = if open { unit.reachable_states(drive) } else { Vec::new() };
         let hints = State::ALL.map(|state| unit.transition_hint(drive, state).map(|hint| theme.format_text(&hint)));
@@ -174,7 +174,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
         }
         let newest = unit.drive_status(drive).and_then(|own| own.buffer.first().copied());
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
-            let words = explain::error(code);
+            let words = explain::error_code_explanation(code);
             let text = format!("{:04X}  {}", code.code(), theme.format_text(&words.name));
             message_label(ui, theme, text, theme.palette.bad.into()).on_hover_text(theme.format_text(&words.remedy));
             return;

@@ -145,7 +145,7 @@ impl Encoder {
     fn record_unreadable_fields(&mut self, fields: &[UnreadableField], services: &mut Services) {
         let why = |own: &UnreadableField| {
             let text = Text::new("session.field_unreadable").with("field", own.number);
-            text.with_text("why", words::encoder(&own.why))
+            text.with_text("why", words::encoder_error_text(&own.why))
         };
         let before = std::mem::take(&mut self.unreadable);
         self.unreadable = fields.iter().map(|own| (own.number, why(own))).collect();

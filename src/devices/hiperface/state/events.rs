@@ -34,7 +34,7 @@ impl Kind for Hiperface {
     }
 
     fn open_error(error: &OpenError) -> Text {
-        explained::open(error)
+        explained::open_error_text(error)
     }
 
     fn job_text(job: &HiperfaceJob) -> Text {
@@ -84,7 +84,7 @@ impl Encoder {
     }
 
     fn add_announced_codes(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
-        let texts = codes.iter().map(|code| explained::status(*code)).collect();
+        let texts = codes.iter().map(|code| explained::status_code_name(*code)).collect();
         services.notify(Severity::Warning, texts, Some(&self.session.name()));
         self.codes.get_or_insert_default().extend(codes);
     }

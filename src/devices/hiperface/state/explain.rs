@@ -20,17 +20,17 @@ use crate::devices::hiperface::state::TEXTS;
 
 pub use change::{change_text, edit_error_text};
 pub use check::{check_lines, line_quality};
-pub use command::command;
+pub use command::command_text;
 pub use damage::damage_text;
 pub use frame::detail_text;
 pub use items::{field_range, item_text, plan_item_text, read_back, rejection_text};
 pub use job_step::step_text;
-pub use label::{LabelRow, label};
+pub use label::{LabelRow, label_rows};
 pub use op::operation_texts;
-pub use types::{open, table_error_text};
+pub use types::{open_error_text, table_error_text};
 pub use words::{
-    field_access, field_code_required, field_status, geometry_text, line_settings, position, raw_position_text, status,
-    status_with_number,
+    field_access, field_code_required, field_status, geometry_text, line_settings, position_text, raw_position_text,
+    status_code_name, status_with_number,
 };
 
 use crate::app::Text;
@@ -44,8 +44,8 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 /// Returns the messages for a job that ended early. There is at least one message.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
-        JobError::Device(error) => vec![encoder(error)],
-        JobError::Plan(error) => vec![plan(error)],
+        JobError::Device(error) => vec![encoder_error_text(error)],
+        JobError::Plan(error) => vec![plan_error_text(error)],
         JobError::NotStarted(why) => vec![not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             interruption_text(interrupted, backup, *planned, *kind)
@@ -60,7 +60,7 @@ pub fn interruption_text(interrupted: &InterruptedWrite, backup: &Path, planned:
         Error::Cancelled => Text::new("write.cancelled").with("done", done.ops).with("planned", planned),
         cause => {
             let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
-            text.with_text("cause", encoder(cause))
+            text.with_text("cause", encoder_error_text(cause))
         }
     }];
     if !interrupted.end_state.unlocked.is_empty() {
@@ -101,7 +101,7 @@ pub fn verified_text(written: &WrittenChanges) -> Text {
     }
 }
 
-pub fn encoder(error: &Error) -> Text {
+pub fn encoder_error_text(error: &Error) -> Text {
     match error {
         Error::Link(error) => link_error_text(error),
         Error::NoReply { address, command, tries, echo_heard } => {
@@ -109,12 +109,14 @@ pub fn encoder(error: &Error) -> Text {
             TEXTS
                 .text(id)
                 .with("address", format!("{address:02X}h"))
-                .with_text("command", command::command(*command))
+                .with_text("command", command::command_text(*command))
                 .with("tries", tries)
         }
         Error::Damaged { command, tries, cause } => {
-            let text =
-                TEXTS.text("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
+            let text = TEXTS
+                .text("encoder.damaged")
+                .with_text("command", command::command_text(*command))
+                .with("tries", tries);
             text.with_text("why", damage_text(cause))
         }
         Error::NeverSilent => TEXTS.text("encoder.never_silent"),
@@ -122,12 +124,12 @@ pub fn encoder(error: &Error) -> Text {
             let code_needed = codes.contains(&StatusCode::WRONG_CODE);
             let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
             let codes = codes.iter().copied().map(status_with_number);
-            TEXTS.text(id).with_text("command", command::command(*command)).with_list("codes", codes)
+            TEXTS.text(id).with_text("command", command::command_text(*command)).with_list("codes", codes)
         }
         Error::Unclear { command, cause } => TEXTS
             .text("encoder.unclear")
-            .with_text("command", command::command(*command))
-            .with_text("cause", encoder(cause)),
+            .with_text("command", command::command_text(*command))
+            .with_text("cause", encoder_error_text(cause)),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::Moving { readings } => {
             let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
@@ -151,7 +153,7 @@ pub fn encoder(error: &Error) -> Text {
             .with("expected", expected)
             .with_text("got", read_back(got)),
         Error::OtherReply { command, reply } => {
-            TEXTS.text("encoder.other_reply").with_text("command", command::command(*command)).with("reply", reply)
+            TEXTS.text("encoder.other_reply").with_text("command", command::command_text(*command)).with("reply", reply)
         }
         Error::PositionUnchanged => TEXTS.text("encoder.position_unchanged"),
         Error::CodeGuardsNothing { number } => TEXTS.text("encoder.code_guards_nothing").with("number", number),
@@ -162,7 +164,7 @@ pub fn encoder(error: &Error) -> Text {
 }
 
 /// Returns the name of a value that must be set up again.
-pub fn redo(redo: &RequiredSetup) -> Text {
+pub fn required_setup_text(redo: &RequiredSetup) -> Text {
     match redo {
         RequiredSetup::Commutation => TEXTS.text("redo.commutation"),
         RequiredSetup::Value(range) => field_range(range),
@@ -199,7 +201,7 @@ fn type_name(code: u8) -> String {
     }
 }
 
-pub fn plan(error: &PlanError) -> Text {
+pub fn plan_error_text(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
             let named = |number: &str| if number.is_empty() { "–".to_owned() } else { number.to_owned() };

@@ -50,7 +50,7 @@ impl Reviewable for Hiperface {
     }
 
     fn redo(prepared: &Prepared) -> Vec<Text> {
-        prepared.redo().iter().map(words::redo).collect()
+        prepared.redo().iter().map(words::required_setup_text).collect()
     }
 
     fn questions(prepared: &Prepared) -> Vec<Question> {

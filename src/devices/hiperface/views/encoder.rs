@@ -133,7 +133,9 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                 ui.horizontal_top(|ui| {
                     ui.label(RichText::new(icon).color(colour));
                     ui.label(theme.monospace(format!("{:02X}h", code.byte())));
-                    ui.add(egui::Label::new(theme.format_text(&words::status(*code))).wrap().selectable(true));
+                    ui.add(
+                        egui::Label::new(theme.format_text(&words::status_code_name(*code))).wrap().selectable(true),
+                    );
                 });
             }
             ui.label(theme.caption(translate(theme, "status_card.queue")));
@@ -159,7 +161,7 @@ fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
     theme.add_gap(ui);
     folding_card(ui, theme, TEXTS.text("label_card.title"), |ui| {
-        for part in words::label(bytes) {
+        for part in words::label_rows(bytes) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().interact_size.y = 18.0;
                 let addresses = ui.label(theme.monospace(&part.addresses).color(theme.palette.muted));

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::setup::plan;
+use super::setup::submit_plan;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::protocol::Geometry;
@@ -64,7 +64,7 @@ pub(super) fn card_ui(
             let synchronise = view.synchronise && encoder.identity.as_ref().is_some_and(|own| own.kit != Some(false));
             let wanted = view.entry.steps(geometry);
             let change = wanted.map(|wanted| Change::SetPosition { wanted, exact, synchronise, kit });
-            plan(encoder, change, &mut view.problem, actions);
+            submit_plan(encoder, change, &mut view.problem, actions);
         }
         show_error_below(ui, theme, view.problem.as_ref());
         undo_ui(ui, theme, encoder, geometry, actions);

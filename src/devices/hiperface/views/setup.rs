@@ -67,7 +67,7 @@ pub(super) fn page_ui(
 }
 
 /// Submits a valid change, or stores the reason why it is invalid.
-pub(super) fn plan(
+pub(super) fn submit_plan(
     encoder: &Encoder,
     change: Result<Change, Text>,
     problem: &mut Option<Text>,
@@ -115,7 +115,7 @@ fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut Set
                 clear_secret(ui, &new, &mut view.new_code);
                 clear_secret(ui, &again, &mut view.new_again);
                 let change = code.map(|new| Change::ChangeCode { number, new });
-                plan(encoder, change, &mut view.code_problem, actions);
+                submit_plan(encoder, change, &mut view.code_problem, actions);
             }
         });
         show_error_below(ui, theme, view.code_problem.as_ref());
@@ -138,7 +138,7 @@ fn address_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiS
             .clicked()
             {
                 let change = forms::address(&view.address).map(Change::SetAddress);
-                plan(encoder, change, &mut view.address_problem, actions);
+                submit_plan(encoder, change, &mut view.address_problem, actions);
             }
         });
         show_error_below(ui, theme, view.address_problem.as_ref());
@@ -160,7 +160,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
         });
         entry(ui, theme, &theme.translate("settings_card.parity"), |ui| {
             let parities = [Parity::Even, Parity::Odd, Parity::None];
-            let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity(parity))));
+            let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity_text(parity))));
             dropdown(ui, &theme.translate("settings_card.parity"), &mut chosen.format.parity, parities);
         });
         entry(ui, theme, &translate(theme, "settings_card.timeout"), |ui| {
@@ -176,7 +176,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             let wanted = || forms::settings(stored, chosen.format, chosen.long_timeout, chosen.bus);
             let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &translate(theme, "settings_card.plan"));
             if store.on_hover_text(translate(theme, "settings_card.plan_hint")).clicked() {
-                plan(encoder, wanted().map(Change::Configure), &mut view.settings_problem, actions);
+                submit_plan(encoder, wanted().map(Change::Configure), &mut view.settings_problem, actions);
             }
             let now = enabled_button(ui, ready, icons::LIGHTNING, &translate(theme, "settings_card.now"));
             if now.on_hover_text(translate(theme, "settings_card.now_hint")).clicked() {

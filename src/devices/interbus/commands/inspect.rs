@@ -37,7 +37,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
 fn identity_text(identity: &Identity) -> String {
     let kind = if identity.flags.counts_turns() { "multiturn" } else { "single turn" };
     let less = if identity.flags.steps_minus_one() { ", steps minus one" } else { "" };
-    let direction = words::direction(identity.direction).terminal_text();
+    let direction = words::direction_text(identity.direction).terminal_text();
     let mut lines = Lines::default();
     lines
         .add_line("encoder", format!("INTERBUS K3, {kind}{less}"))

@@ -275,7 +275,7 @@ impl Encoder {
             Command::Cams(program) => self.select(now, program),
             Command::Activate(mask) => self.set_cams(now, |program, _| program.set_active_cams(mask)),
             Command::CamStart(cam, value) => self.set_cams(now, |program, gear| program.start(cam, value, gear)),
-            Command::CamStop(cam, value) => self.set_cams(now, |program, gear| program.stop(cam, value, gear)),
+            Command::CamStop(cam, value) => self.set_cams(now, |program, gear| program.set_stop(cam, value, gear)),
             Command::Shift(shift) => {
                 self.memory.shift = shift;
                 self.set_cams(now, |_, _| Ok(()));

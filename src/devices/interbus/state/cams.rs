@@ -110,7 +110,7 @@ impl Chart {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
 
-    pub const fn last(&self) -> u32 {
+    pub const fn last_position(&self) -> u32 {
         self.range.saturating_sub(1)
     }
 

@@ -10,10 +10,10 @@ mod write;
 
 use crate::devices::interbus::state::TEXTS;
 pub use check::check_lines;
-pub use entry::entry;
+pub use entry::entry_error_text;
 pub use gateway::{damage_text, exception_text};
-pub use item::{direction, parameter, read_out, startup_mode_text};
-pub use write::{change_text, operation_texts, other_type, plan, severity_of, wear_warning, written_text};
+pub use item::{direction_text, parameter_text, read_out, startup_mode_text};
+pub use write::{change_text, operation_texts, other_type, plan_error_text, severity_of, wear_warning, written_text};
 
 use crate::app::Text;
 use crate::app::explain::{link_error_text, literal_text};
@@ -25,8 +25,8 @@ use crate::link::LinkError;
 /// Returns the sentences that describe why a job ended early. Each may be on a separate line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
-        JobError::Device(error) => vec![encoder(error)],
-        JobError::Plan(error) => vec![plan(error)],
+        JobError::Device(error) => vec![encoder_error_text(error)],
+        JobError::Plan(error) => vec![plan_error_text(error)],
         JobError::NotStarted(why) => vec![write::not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption_text(interrupted, backup, *planned, *kind)
@@ -52,7 +52,7 @@ fn lost_link(error: &Error) -> Option<&LinkError> {
     }
 }
 
-pub fn encoder(error: &Error) -> Text {
+pub fn encoder_error_text(error: &Error) -> Text {
     match error {
         Error::Link(error) => link_error_text(error),
         Error::NoReply { requested, tries } => {
@@ -111,7 +111,7 @@ pub fn encoder(error: &Error) -> Text {
         Error::Changed { item } => TEXTS.text("interbus.changed").with("item", item),
         Error::NotLedBack { cause, standing } => TEXTS
             .text("interbus.not_led_back")
-            .with_text("cause", encoder(cause))
+            .with_text("cause", encoder_error_text(cause))
             .with_text("standing", self::left_state_text(standing)),
     }
 }

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{
     EncoderMode, Flags, Interface, LedRow, Parameter, ReadOutNumber, ReadOutValue, Value,
 };
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::explain::{direction, startup_mode_text};
+use crate::devices::interbus::state::explain::{direction_text, startup_mode_text};
 
 pub fn parameter(parameter: Parameter) -> Text {
     TEXTS.text(match parameter {
@@ -22,7 +22,7 @@ pub fn parameter(parameter: Parameter) -> Text {
 
 pub fn setting(parameter: Parameter, number: u32) -> Text {
     match (parameter, Direction::from_code(number)) {
-        (Parameter::Direction, Some(own)) => direction(own),
+        (Parameter::Direction, Some(own)) => direction_text(own),
         _ => literal_text(number),
     }
 }
@@ -97,7 +97,7 @@ pub fn range_text(steps: u32, turns: u32) -> Text {
 /// Formats the value of a read-out.
 pub fn read_value(what: ReadOutNumber, value: Value) -> Text {
     match (what.to_u16(), Direction::from_code(value.get())) {
-        (0x3, Some(own)) => direction(own),
+        (0x3, Some(own)) => direction_text(own),
         // These values are counted numbers or identifiers, so their bits need no explanation.
         (0x0..=0x7, _) => literal_text(value.get()),
         _ => read_out_value(what.value(value)),

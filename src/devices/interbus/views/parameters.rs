@@ -86,7 +86,7 @@ fn table_ui(
                 if parameter == Parameter::Direction {
                     let mut direction = new.direction;
                     let both = [Direction::Clockwise, Direction::Counterclockwise];
-                    let both = both.map(|own| (own, theme.format_text(&explain::direction(own))));
+                    let both = both.map(|own| (own, theme.format_text(&explain::direction_text(own))));
                     if dropdown(ui, &word, &mut direction, both) {
                         actions.push(Action::device(id, Interbus::Edit(Box::new(Edit::Direction(direction)))));
                     }

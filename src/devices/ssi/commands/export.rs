@@ -52,7 +52,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
                 }
             };
             for warning in timing.warnings {
-                output.print_message(&words::timing(&warning).terminal_text());
+                output.print_message(&words::timing_warning_text(&warning).terminal_text());
             }
             timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english_text).to_svg()
         }

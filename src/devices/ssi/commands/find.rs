@@ -57,7 +57,7 @@ fn json(search: &Search, families: &Families) -> Json {
         "frames": search.frames,
         "layouts": layouts,
         "ambiguous": search.doubt.is_some(),
-        "next": next(search).filter(|_| search.doubt.is_some()),
+        "next": next_motion(search).filter(|_| search.doubt.is_some()),
     })
 }
 
@@ -80,7 +80,7 @@ fn text(search: &Search, families: &Families) -> String {
         }
     }
     let verdict = words::uncertainty_text(search.doubt).terminal_text();
-    let next = next(search).map_or_else(String::new, |next| next + "\n");
+    let next = next_motion(search).map_or_else(String::new, |next| next + "\n");
     format!("{}{verdict}\n{next}", lines.text())
 }
 
@@ -96,11 +96,11 @@ fn evidence_text(class: &Class) -> String {
 }
 
 /// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
-fn next(search: &Search) -> Option<String> {
+fn next_motion(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::SearchUncertainty::Open);
     let doubt = doubt.map(|doubt| words::uncertainty_text(Some(doubt)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
-    let open = open.map(|open| words::open(*open).terminal_text());
+    let open = open.map(|open| words::open_question_text(*open).terminal_text());
     let all: Vec<String> = doubt.into_iter().chain(open).collect();
     (!all.is_empty()).then(|| all.join(" "))
 }

@@ -143,7 +143,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncodeArgs) -> Result {
         };
         flags = flags.union(Flags::error(index));
     }
-    let last = layout.position_code().last();
+    let last = layout.position_code().last_position();
     let frame =
         layout.encode(position, flags).ok_or_else(|| out_of_range_failure("position", &position.to_string(), last))?;
     if layout.loses_lowest_bit() && position % 2 == 1 {
@@ -162,7 +162,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncodeArgs) -> Result {
 
 /// Returns the position given by `--position`, or by `--turns` and `--steps`. If both are given, they must agree.
 fn position(layout: &Layout, arguments: &SsiEncodeArgs) -> Result<u64> {
-    let last = layout.position_code().last();
+    let last = layout.position_code().last_position();
     let range = layout.descriptor().range;
     let SsiEncodeArgs { position, turns, steps, .. } = arguments;
     let named = position.as_deref().map(|text| parse_up_to("position", text, last)).transpose()?;

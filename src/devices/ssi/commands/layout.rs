@@ -72,7 +72,7 @@ fn choose_frame_layout(spec: &str, frame: std::result::Result<FrameDescriptor, S
 
 fn from_file(output: &Output, spec: &str, families: &Families) -> Result<SelectedLayout> {
     let path = Path::new(spec);
-    let failure = |error| to_failure(&explain::profile(path, &error, KindRegistry::NONE));
+    let failure = |error| to_failure(&explain::profile_file_error_text(path, &error, KindRegistry::NONE));
     let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(failure)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;

@@ -17,7 +17,7 @@ use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
 /// Returns the layout given by the user, or an error if there is none.
-fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<SelectedLayout> {
+fn required_layout(output: &Output, command: &str, given: &LayoutOption) -> Result<SelectedLayout> {
     let Some(spec) = given.layout.clone() else {
         let why = "ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";
         return Err(Failure::Usage(format!("{command} {why}")));
@@ -26,7 +26,7 @@ fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Select
 }
 
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
-    let chosen = layout(output, "position", &position.own.read()?)?;
+    let chosen = required_layout(output, "position", &position.own.read()?)?;
     let mut runner = open_runner(common, output, &chosen)?;
     if position.csv {
         output.write_stdout("t_s,raw,turns,steps,degrees,millimetres,valid\n")?;
@@ -141,7 +141,7 @@ fn row(at: Moment, decoded: &DecodedFrame<'_>) -> String {
 }
 
 pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> Result {
-    let chosen = layout(output, "status", &status.own.read()?)?;
+    let chosen = required_layout(output, "status", &status.own.read()?)?;
     let mut runner = open_runner(common, output, &chosen)?;
     let words = words_from_output(runner.run(SsiJob::Read)?)?;
     let Some((_, word)) = words.iter_with_times().next() else {

@@ -53,7 +53,7 @@ pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &Selecte
             ..chosen.profile.read_conditions()
         };
         for warning in times.calculate_timing(&reads).warnings {
-            output.print_message(&words::timing(&warning).terminal_text());
+            output.print_message(&words::timing_warning_text(&warning).terminal_text());
         }
     }
     Ok(runner)

@@ -166,7 +166,7 @@ fn check_supply(identity: &Identity) -> SsiStepResult {
 
 /// Evaluates the change of position from word to word. Distances are measured in the shorter direction.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
-    let all = u128::from(layout.position_code().last()) + 1;
+    let all = u128::from(layout.position_code().last_position()) + 1;
     let apart = |one: u64, other: u64| {
         let apart = u128::from(one.abs_diff(other));
         u64::try_from(apart.min(all - apart)).unwrap_or(u64::MAX)

@@ -37,7 +37,7 @@ impl Profile for SsiProfile {
         let layout = Layout::new(descriptor.clone()).map_err(refused)?;
         let direction = take_keyword(entries, "direction")?.unwrap_or_default();
         let preset = entries.take_optional("preset", AllowedValues::Whole)?.unwrap_or(0);
-        let last = layout.position_code().last();
+        let last = layout.position_code().last_position();
         if preset > last {
             return Err(ProfileError::invalid_entry(entries.entry_path("preset"), EntryError::Preset { preset, last }));
         }
@@ -203,7 +203,7 @@ fn take_unknown_by_name(kept: &mut VecDeque<&(String, UnknownValues)>, name: &st
 
 /// Returns the number of clocks of the position without zeros after it.
 fn default_area_clocks(frame: &FrameDescriptor) -> u8 {
-    let coding = frame.range.last().ok().and_then(|last| PositionCode::new(frame.code, last).ok());
+    let coding = frame.range.last_position().ok().and_then(|last| PositionCode::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());
     bits.saturating_add(frame.lead).saturating_add(frame.between)
 }

@@ -90,7 +90,7 @@ impl PositionCode {
     }
 
     /// Returns the last position.
-    pub const fn last(&self) -> u64 {
+    pub const fn last_position(&self) -> u64 {
         self.last
     }
 

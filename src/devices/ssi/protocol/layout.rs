@@ -134,7 +134,7 @@ impl Layout {
     /// # Errors
     /// [`LayoutError`] if the frame is impossible.
     pub fn new(descriptor: FrameDescriptor) -> Result<Self, LayoutError> {
-        check::layout(descriptor)
+        check::build_layout(descriptor)
     }
 
     /// Returns the descriptor from which the layout was created.

@@ -104,7 +104,7 @@ impl Range {
     ///
     /// # Errors
     /// [`RangeError`] if the range is impossible.
-    pub fn last(&self) -> Result<u64, RangeError> {
+    pub fn last_position(&self) -> Result<u64, RangeError> {
         match *self {
             Range::Bits { multiturn, singleturn } => {
                 for (field, bits) in [("multiturn", multiturn), ("singleturn", singleturn)] {
@@ -167,7 +167,7 @@ impl Range {
     /// Returns the position for a turn and a step within the turn. Returns `None` if the range has no such turn or
     /// step, and for a length.
     pub fn position(&self, turns: u64, steps: u64) -> Option<u64> {
-        let last = self.last().ok()?;
+        let last = self.last_position().ok()?;
         let position = match *self {
             Range::Bits { singleturn, .. } if steps <= low_bits_mask(singleturn) => {
                 turns.checked_mul(1 << singleturn)? | steps
@@ -198,7 +198,7 @@ impl Range {
     /// Returns the position for a counting direction and a preset, which is the position at the zero point of the
     /// shaft. A preset after the last position wraps. See reference section 5, "Direction" and "preset".
     pub fn position_with_preset(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
-        let last = self.last().unwrap_or(0);
+        let last = self.last_position().unwrap_or(0);
         let position = u128::from(self.count_from_zero(raw, per_turn, direction)) + u128::from(preset);
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
@@ -207,7 +207,7 @@ impl Range {
     /// directions.
     fn count_from_zero(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
-        let last = self.last().unwrap_or(0);
+        let last = self.last_position().unwrap_or(0);
         let (steps, numerator, denominator) = match *self {
             Range::Bits { multiturn, .. } => (u128::from(last) + 1, 1_u128 << multiturn, 1),
             Range::Steps { turns, .. } => (u128::from(last) + 1, u128::from(turns), 1),
@@ -239,7 +239,7 @@ impl Range {
     /// # Errors
     /// [`RangeError`] if the range is impossible.
     pub fn bits(&self) -> Result<u8, RangeError> {
-        self.last().map(bit_width)
+        self.last_position().map(bit_width)
     }
 }
 

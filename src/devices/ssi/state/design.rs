@@ -67,7 +67,7 @@ impl Design {
     /// # Errors
     /// Returns the reason why the layout is impossible.
     fn from_profile(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
-        let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
+        let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout_error_text(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.find_by_key(key));
         let sends = |family: &Family, settings: &Settings| {
             settings.resolve(family).is_ok_and(|resolved| *resolved.layout.descriptor() == profile.descriptor)
@@ -223,8 +223,8 @@ impl LayoutDesigner {
             }
             Edit::Frame(descriptor) => profile.descriptor = *descriptor,
             Edit::Position(range, code) => {
-                profile.descriptor =
-                    reshape::with_positions(&profile.descriptor, range, code).map_err(|error| words::layout(&error))?;
+                profile.descriptor = reshape::with_positions(&profile.descriptor, range, code)
+                    .map_err(|error| words::layout_error_text(&error))?;
             }
             Edit::Direction(direction) => profile.direction = direction,
             Edit::Preset(preset) => profile.preset = preset,
@@ -238,7 +238,7 @@ impl LayoutDesigner {
             }
         }
         // A preset beyond the new range is invalid.
-        let last = profile.descriptor.range.last().unwrap_or(0);
+        let last = profile.descriptor.range.last_position().unwrap_or(0);
         if profile.preset > last {
             return Err(TEXTS.text("ssi.preset_range").with("preset", profile.preset).with("most", last));
         }
@@ -322,7 +322,7 @@ fn parse_profile(text: &str, families: &Families) -> SsiProfile {
 /// Returns the profile with the frame that a family sends with these settings. Direction and preset are kept.
 fn resolved_profile(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
     let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
-    let resolved = settings.resolve(family).map_err(|error| words::settings(&error))?;
+    let resolved = settings.resolve(family).map_err(|error| words::settings_error_text(&error))?;
     profile.descriptor = resolved.layout.descriptor().clone();
     profile.family = Some(family.key.clone());
     Ok(profile)

@@ -38,7 +38,7 @@ impl Encoder {
     pub(super) fn from_session(session: Session<Ssi>, designer: LayoutDesigner) -> Self {
         let mut trial = TrialFrame::default();
         // The bits of this position differ from each other.
-        trial.set_position(designer.layout(), designer.layout().position_code().last() / 3);
+        trial.set_position(designer.layout(), designer.layout().position_code().last_position() / 3);
         Encoder {
             record: Record::new(designer.layout().clone()),
             session,

@@ -18,9 +18,12 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 
 pub use check::check_lines;
-pub use export::export;
+pub use export::export_text;
 pub use family::{family_error_text, note_text};
-pub use refused::{burst_error_text, entry, format_error_text, frame_text, layout, settings, too_wide_text};
+pub use refused::{
+    burst_error_text, entry_error_text, format_error_text, frame_text, layout_error_text, settings_error_text,
+    too_wide_text,
+};
 
 /// Returns texts that explain why a job ended early. Each may be shown on its own line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
@@ -73,7 +76,7 @@ pub fn advice_text(advice: &SettingAdvice) -> Text {
     }
 }
 
-pub fn timing(warning: &Warning) -> Text {
+pub fn timing_warning_text(warning: &Warning) -> Text {
     let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
     let kilohertz = |hz: f64| hz / 1000.0;
     match warning {
@@ -122,7 +125,7 @@ pub fn layout_summary(layout: &Layout) -> Text {
         .text("ssi.frame_line")
         .with("clocks", layout.clock_count())
         .with_text("range", range)
-        .with_text("code", code(descriptor.code))
+        .with_text("code", code_text(descriptor.code))
         .with("lead", descriptor.lead)
         .with("errors", errors);
     unusual_step_cost(layout)
@@ -142,7 +145,7 @@ fn unusual_step_cost(layout: &Layout) -> Vec<Text> {
     [between, over, parity, repeat, inverted].into_iter().flatten().collect()
 }
 
-pub fn code(code: Code) -> Text {
+pub fn code_text(code: Code) -> Text {
     TEXTS.text(match code {
         Code::Binary => "ssi_form.binary",
         Code::Gray => "ssi_form.gray",
@@ -151,7 +154,7 @@ pub fn code(code: Code) -> Text {
     })
 }
 
-pub fn open(open: OpenQuestion) -> Text {
+pub fn open_question_text(open: OpenQuestion) -> Text {
     match open {
         OpenQuestion::TurnOnce => TEXTS.text("ssi_find.turn_once"),
         OpenQuestion::TurnFarther { from, to } if from == to => {

@@ -88,7 +88,7 @@ impl LayoutDesigner {
         }
         let layout = self.layout();
         let title = self.title();
-        let say = |text: &ExportText| words::export(text).to_string_in(language);
+        let say = |text: &ExportText| words::export_text(text).to_string_in(language);
         Ok(match format {
             ExportFormat::C => generate_c99(layout, &title),
             ExportFormat::StructuredText => structured_text(layout, &title),
@@ -103,7 +103,7 @@ impl LayoutDesigner {
     /// Returns the layout as a picture, or `None` if the format is text.
     pub fn layout_picture(&self, format: ExportFormat, language: Language) -> Option<Picture> {
         let (layout, title) = (self.layout(), self.title());
-        let say = |text: &ExportText| words::export(text).to_string_in(language);
+        let say = |text: &ExportText| words::export_text(text).to_string_in(language);
         match format {
             ExportFormat::Frame => Some(frame_picture(layout, None, &title, &say)),
             ExportFormat::Timing => {

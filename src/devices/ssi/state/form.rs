@@ -250,7 +250,7 @@ const CODES: [Code; 4] = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd]
 const GRAY_COVERAGES: [GrayCoverage; 3] = [GrayCoverage::Position, GrayCoverage::Area, GrayCoverage::AreaAndErrors];
 
 fn code_row(own: Code) -> Row {
-    let all = CODES.map(|code| (code, words::code(code)));
+    let all = CODES.map(|code| (code, words::code_text(code)));
     Row::with_choice(Field::Code, "ssi_form.code", &all, &own)
 }
 

@@ -31,7 +31,7 @@ impl DeviceType for Encoder {
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
-        explain::entry(cause)
+        explain::entry_error_text(cause)
     }
 
     fn load_tables(_store: &Store) -> Self::Tables {}

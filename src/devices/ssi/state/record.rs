@@ -257,7 +257,7 @@ fn descriptor_without_names(layout: &Layout) -> FrameDescriptor {
 /// Returns the meaning of a layout's positions.
 fn position_scales(layout: &Layout) -> PositionScales {
     let range = layout.descriptor().range;
-    let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
+    let all = range.last_position().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
     match range {
         Range::Bits { singleturn, .. } => PositionScales::for_steps_per_turn(all, f64::from(singleturn).exp2()),
         Range::Steps { per_turn, .. } => PositionScales::for_steps_per_turn(all, per_turn.into()),

@@ -55,7 +55,7 @@ impl TrialFrame {
         match layout.encode(position, errors) {
             Some(frame) => self.set_frame(frame),
             None => {
-                let most = layout.position_code().last();
+                let most = layout.position_code().last_position();
                 self.problem = Some(TEXTS.text("ssi_trial.range").with("position", position).with("most", most));
             }
         }
@@ -90,7 +90,7 @@ impl TrialFrame {
     /// Switches to another layout. The position is kept if the new layout contains it.
     pub(super) fn switch_layout(&mut self, before: &Layout, now: &Layout) {
         let reading = before.decode(self.frame);
-        let position = reading.position.min(now.position_code().last());
+        let position = reading.position.min(now.position_code().last_position());
         let frame = now.encode(position, Flags::NONE).unwrap_or(0);
         self.set_frame(frame);
     }

@@ -199,7 +199,7 @@ fn class_ui(
             for open in &class.open {
                 ui.horizontal_top(|ui| {
                     ui.label(RichText::new(icons::QUESTION).color(theme.palette.accent));
-                    paragraph(ui, theme.format_text(&words::open(*open)));
+                    paragraph(ui, theme.format_text(&words::open_question_text(*open)));
                 });
             }
             paragraph(ui, theme.caption(theme.format_text(&words::evidence_for(evidence))));

@@ -33,7 +33,7 @@ pub(super) fn page_ui(
     view: &mut Tab,
     actions: &mut Vec<Action>,
 ) {
-    layout(ui, theme, encoder, &mut view.frame, actions);
+    layout_ui(ui, theme, encoder, &mut view.frame, actions);
     theme.add_gap(ui);
     let form = encoder.designer.form_groups();
     let (left, right) = columns(&form);
@@ -66,7 +66,7 @@ fn columns(form: &[Group]) -> (&[Group], &[Group]) {
     form.split_at(form.len().min(2))
 }
 
-fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
+fn layout_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let designer = &encoder.designer;
     let id = encoder.session.id;
     let aside = |ui: &mut Ui| {

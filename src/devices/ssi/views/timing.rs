@@ -78,7 +78,7 @@ fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
         warning_ui(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));
     }
     for warning in &timing.warnings {
-        warning_ui(ui, theme, (icons::WARNING, theme.palette.warn), &words::timing(warning));
+        warning_ui(ui, theme, (icons::WARNING, theme.palette.warn), &words::timing_warning_text(warning));
     }
 }
 

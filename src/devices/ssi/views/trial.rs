@@ -74,7 +74,7 @@ fn numbers_ui(
     put: &mut dyn FnMut(TrialInput),
 ) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
-    let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().position_code().last());
+    let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().position_code().last_position());
     paragraph(ui, theme.caption(theme.format_text(&most)));
     let word = translate(theme, "ssi_trial.position");
     entry(ui, theme, &word, |ui| {

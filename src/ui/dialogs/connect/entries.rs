@@ -83,7 +83,7 @@ pub(crate) fn recording_file_ui(ui: &mut Ui, theme: &Theme, file: &mut String, a
 
 pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     let parities = [Parity::Even, Parity::Odd, Parity::None];
-    let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity(parity))));
+    let parities = parities.map(|parity| (parity, theme.format_text(&explain::parity_text(parity))));
     ui.label(theme.label(theme.translate("settings_card.parity")));
     dropdown(ui, &theme.translate("settings_card.parity"), own, parities);
 }

@@ -1,7 +1,7 @@
 //! Labels and messages of the device check.
 
-use super::guide::mode;
-use super::{mismatch_text, name};
+use super::guide::mode_text;
+use super::{mismatch_text, name_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::literal_text;
@@ -36,7 +36,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Error(bit, name) => bit_text("check.error", *bit, name.as_ref()),
         CheckFinding::Warning(bit, name) => bit_text("check.warning", *bit, name.as_ref()),
         CheckFinding::NotTold => TEXTS.text("check.not_told"),
-        CheckFinding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode(*found)),
+        CheckFinding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode_text(*found)),
         CheckFinding::Open => TEXTS.text("check.open"),
         CheckFinding::Position(reading) if !reading.is_split_known => {
             TEXTS.text("check.place_raw").with("raw", reading.position_word())
@@ -78,6 +78,6 @@ fn finding_text(finding: &CheckFinding) -> Text {
 }
 
 fn bit_text(id: &'static str, bit: u8, own: Option<&Name>) -> Text {
-    let name = own.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name);
+    let name = own.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name_text);
     TEXTS.text(id).with("bit", bit).with_text("name", name)
 }

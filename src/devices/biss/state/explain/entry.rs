@@ -5,7 +5,7 @@ use crate::devices::biss::profile::EntryError;
 use crate::devices::biss::state::TEXTS;
 use crate::profile::Cause;
 
-pub fn entry(cause: &Cause) -> Option<Text> {
+pub fn entry_error_text(cause: &Cause) -> Option<Text> {
     let hex = |bank: &u8| format!("0x{bank:02X}");
     Some(match cause.get()? {
         EntryError::Twice(bank) => TEXTS.text("biss_entry.twice").with("bank", hex(bank)),

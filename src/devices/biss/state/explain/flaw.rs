@@ -1,6 +1,6 @@
 //! Messages for errors in a description file.
 
-use super::layout;
+use super::layout_error_text;
 use crate::app::{Text, explain as general};
 use crate::devices::biss::protocol::{DescriptionErrorKind, Register, UniqueItem};
 use crate::devices::biss::state::TEXTS;
@@ -8,9 +8,9 @@ use crate::devices::biss::state::TEXTS;
 pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
     match flaw {
         DescriptionErrorKind::Form(words) => general::literal_text(words),
-        DescriptionErrorKind::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", byte(*address)),
+        DescriptionErrorKind::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", format_byte(*address)),
         DescriptionErrorKind::Banked { bank, offset } => {
-            TEXTS.text("biss_flaw.banked").with("bank", byte(*bank)).with("offset", byte(*offset))
+            TEXTS.text("biss_flaw.banked").with("bank", format_byte(*bank)).with("offset", format_byte(*offset))
         }
         DescriptionErrorKind::Width { name, width } => {
             let text = TEXTS.text("biss_flaw.width").with("name", name).with("width", width);
@@ -27,10 +27,12 @@ pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
         }
         DescriptionErrorKind::Endless(name) => TEXTS.text("biss_flaw.endless").with("name", name),
         DescriptionErrorKind::SavesNothing(name) => TEXTS.text("biss_flaw.saves_nothing").with("name", name),
-        DescriptionErrorKind::Banks { name, first, last } => {
-            TEXTS.text("biss_flaw.banks").with("name", name).with("first", byte(*first)).with("last", byte(*last))
-        }
-        DescriptionErrorKind::Layout(error) => layout(error),
+        DescriptionErrorKind::Banks { name, first, last } => TEXTS
+            .text("biss_flaw.banks")
+            .with("name", name)
+            .with("first", format_byte(*first))
+            .with("last", format_byte(*last)),
+        DescriptionErrorKind::Layout(error) => layout_error_text(error),
         DescriptionErrorKind::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::item_text(claim)),
         DescriptionErrorKind::GermanEmpty(name) => TEXTS.text("biss_flaw.german_empty").with("name", name),
         DescriptionErrorKind::GermanNeedless(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
@@ -41,13 +43,13 @@ fn item_text(claim: &UniqueItem) -> Text {
     match claim {
         UniqueItem::Register(address) => TEXTS.text("biss_flaw.register").with("address", address),
         UniqueItem::Role(role) => TEXTS.text("biss_flaw.role").with("role", format!("{role:?}")),
-        UniqueItem::Bank(bank) => TEXTS.text("biss_flaw.bank").with("bank", byte(*bank)),
+        UniqueItem::Bank(bank) => TEXTS.text("biss_flaw.bank").with("bank", format_byte(*bank)),
         UniqueItem::Procedure(kind) => TEXTS.text("biss_flaw.procedure").with("procedure", format!("{kind:?}")),
         UniqueItem::Name(name) => TEXTS.text("biss_flaw.name").with("name", name),
     }
 }
 
-fn byte(byte: u8) -> String {
+fn format_byte(byte: u8) -> String {
     format!("0x{byte:02X}")
 }
 

@@ -30,7 +30,7 @@ pub fn procedure_step_text(step: ProcedureStep) -> Text {
             MotorRun::WiegandClockwise => with_revolutions(TEXTS.text("guide.run_wiegand_cw")),
             MotorRun::WiegandCounterclockwise => with_revolutions(TEXTS.text("guide.run_wiegand_ccw")),
         },
-        ProcedureStep::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode(mode)),
+        ProcedureStep::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode_text(mode)),
         ProcedureStep::Conditions => TEXTS.text("guide.conditions"),
         ProcedureStep::Open => TEXTS.text("guide.open"),
         ProcedureStep::Write => TEXTS.text("guide.write"),
@@ -43,7 +43,7 @@ pub fn procedure_step_text(step: ProcedureStep) -> Text {
     }
 }
 
-pub fn mode(mode: DeviceMode) -> Text {
+pub fn mode_text(mode: DeviceMode) -> Text {
     let id = match mode {
         DeviceMode::OPERATION => "biss_mode.operation",
         DeviceMode::CALIBRATION => "biss_mode.calibration",
@@ -142,7 +142,11 @@ pub fn outcome_texts(outcome: &Outcome) -> Vec<Text> {
         })],
         Outcome::Stored { registers } => vec![TEXTS.text("guide.stored").with("count", registers)],
         Outcome::PresetStored { value, singleturn_bits } => {
-            vec![TEXTS.text("guide.preset_stored").with_text("value", super::preset(*value, *singleturn_bits))]
+            vec![
+                TEXTS
+                    .text("guide.preset_stored")
+                    .with_text("value", super::preset_value_text(*value, *singleturn_bits)),
+            ]
         }
         Outcome::PresetFired { parts, from, to } => {
             let id = match parts {
@@ -194,8 +198,8 @@ fn pulse_severity(lowest: PulseVoltage) -> Severity {
 fn calibration_summary(report: &CalibrationReport) -> Vec<Text> {
     let mut texts = vec![TEXTS.text("guide.calibrated")];
     texts.extend(report.celsius.map(|celsius| TEXTS.text("guide.at_temperature").with("celsius", celsius)));
-    texts.extend(motion("guide.motion_ccw", report.counterclockwise));
-    texts.extend(motion("guide.motion_cw", report.clockwise));
+    texts.extend(motion_text("guide.motion_ccw", report.counterclockwise));
+    texts.extend(motion_text("guide.motion_cw", report.clockwise));
     texts
 }
 
@@ -215,13 +219,13 @@ fn wiegand_summary(report: &WiegandReport) -> Vec<Text> {
         direction("guide.pulses_cw", result.average_cw, result.lowest_cw),
         direction("guide.pulses_ccw", result.average_ccw, result.lowest_ccw),
     ];
-    texts.extend(motion("guide.motion_cw", report.clockwise));
-    texts.extend(motion("guide.motion_ccw", report.counterclockwise));
+    texts.extend(motion_text("guide.motion_cw", report.clockwise));
+    texts.extend(motion_text("guide.motion_ccw", report.counterclockwise));
     texts.push(TEXTS.text(if report.saved { "guide.result_saved" } else { "guide.result_not_saved" }));
     texts
 }
 
-fn motion(id: &'static str, motion: Option<ShaftMotion>) -> Option<Text> {
+fn motion_text(id: &'static str, motion: Option<ShaftMotion>) -> Option<Text> {
     let motion = motion?;
     Some(TEXTS.text(id).with_number("rpm", motion.rpm.abs(), 1).with_number("spread", motion.spread, 1))
 }
@@ -236,8 +240,8 @@ mod tests {
     fn modes_have_protocol_names_and_german_names() {
         for byte in 0..=255 {
             let own = DeviceMode::new(byte);
-            assert_eq!(mode(own).to_string_in(English), own.to_string());
-            assert_ne!(mode(own).to_string_in(German), own.to_string());
+            assert_eq!(mode_text(own).to_string_in(English), own.to_string());
+            assert_ne!(mode_text(own).to_string_in(German), own.to_string());
         }
     }
 

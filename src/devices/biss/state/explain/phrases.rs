@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::app::explain::{assert_in_both_languages, profile_error_text, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, url_error_text};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::biss::procedures::{Station, Transport};
 use crate::devices::biss::profile::BissProfile;
@@ -17,7 +17,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in ["order=x", "echo=x", "timeout=0", "margin=x", "clock=1", "voltage=24"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Transport::Adapter, Duration::ZERO).unwrap_err();
-        assert_in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url_error_text(&error), &error);
     }
 }
 

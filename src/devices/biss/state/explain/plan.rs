@@ -17,7 +17,7 @@ fn type_mismatch_text(types: &TypeMismatch, kind: &'static str, width: &'static 
     }
 }
 
-pub fn plan(error: &PlanError) -> Text {
+pub fn plan_error_text(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)

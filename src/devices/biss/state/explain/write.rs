@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use super::encoder;
-use super::guide::{blocker_text, mode, procedure_step_text, speed_range_text, task_text, temperature_range_text};
+use super::encoder_error_text;
+use super::guide::{blocker_text, mode_text, procedure_step_text, speed_range_text, task_text, temperature_range_text};
 use super::plan::procedure_kind_text;
 use crate::app::explain::literal_text;
 use crate::app::review::{ChangeTexts, OperationTexts};
@@ -36,15 +36,17 @@ pub fn operation_texts(op: &Op, layout: &Layout) -> OperationTexts {
     let bits = layout.singleturn_bits();
     match op {
         Op::StoreData { area, registers } => OperationTexts {
-            item: TEXTS.text("biss_op.data").with_text("area", super::name(&area.name)),
+            item: TEXTS.text("biss_op.data").with_text("area", super::name_text(&area.name)),
             changes: register_run_texts(registers),
         },
-        Op::StorePreset { from, to } => {
-            OperationTexts::single(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
-        }
+        Op::StorePreset { from, to } => OperationTexts::single(
+            TEXTS.text("biss_op.preset"),
+            preset_value_text(*from, bits),
+            preset_value_text(*to, bits),
+        ),
         Op::FirePreset { parts, value } => {
             let new = match parts {
-                PresetParts::Both => preset(*value, bits),
+                PresetParts::Both => preset_value_text(*value, bits),
                 PresetParts::Singleturn => preset_text("biss_op.singleturn", *value, bits),
                 PresetParts::Multiturn => preset_text("biss_op.multiturn", *value, bits),
             };
@@ -82,7 +84,7 @@ fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
 }
 
 /// Returns a preset value as angle, step and turn, for a singleturn position of the given width.
-pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
+pub fn preset_value_text(value: PresetValue, singleturn_bits: u8) -> Text {
     preset_text("biss_op.preset_value", value, singleturn_bits)
 }
 
@@ -170,8 +172,8 @@ pub fn severity_of(text: &Text) -> Severity {
 /// Returns the messages for an encoder that could not be returned to operation.
 fn left_state_texts(standing: &LeftState) -> Vec<Text> {
     let mut texts = vec![match standing.mode.as_slice() {
-        [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),
-        several => TEXTS.text("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
+        [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode_text(*certain)),
+        several => TEXTS.text("biss_left.modes").with_list("modes", several.iter().map(|own| mode_text(*own))),
     }];
     if standing.password.may_equal(true) {
         texts.push(TEXTS.text("biss_left.password"));
@@ -191,13 +193,14 @@ fn left_state_texts(standing: &LeftState) -> Vec<Text> {
 
 pub fn failure_text(failure: &Failure) -> Text {
     match failure {
-        Failure::Device(error) => encoder(error),
+        Failure::Device(error) => encoder_error_text(error),
         Failure::Calibration { run, status } => calibration_text(*run, *status),
         Failure::Wiegand { status, code, .. } => wiegand_text(*status, *code),
         Failure::NotBalanced { .. } => TEXTS.text("biss_plan.not_balanced"),
-        Failure::Mode { wanted, found } => {
-            TEXTS.text("biss_failure.mode").with_text("wanted", mode(*wanted)).with_text("found", mode(*found))
-        }
+        Failure::Mode { wanted, found } => TEXTS
+            .text("biss_failure.mode")
+            .with_text("wanted", mode_text(*wanted))
+            .with_text("found", mode_text(*found)),
         Failure::Status { kind, expected, found } => TEXTS
             .text("biss_failure.status")
             .with_text("what", procedure_kind_text(*kind))

@@ -92,7 +92,7 @@ impl ParameterWords {
             _ => {}
         }
         match self.phase {
-            Phase::Reading { number, .. } => read(number),
+            Phase::Reading { number, .. } => read_request(number),
             _ => Pkw::default(),
         }
     }
@@ -102,7 +102,7 @@ impl ParameterWords {
             Phase::Clearing { .. } if words.answer_to(Pkw::default()).is_some() => self.phase = Phase::Ready,
             Phase::Reading { number, .. } => {
                 if let Some(result) =
-                    words.answer_to(read(number)).and_then(|answer| parameter_result(number, words, answer))
+                    words.answer_to(read_request(number)).and_then(|answer| parameter_result(number, words, answer))
                 {
                     self.finish(number, ParameterReading { at: now, result });
                 }
@@ -119,7 +119,7 @@ impl ParameterWords {
     }
 }
 
-fn read(number: ParameterNumber) -> Pkw {
+fn read_request(number: ParameterNumber) -> Pkw {
     Pkw::request(Task::Read, number.get(), 0, 0)
 }
 

@@ -163,7 +163,7 @@ impl Axis {
             _ => {}
         }
         match seen.locks.first() {
-            Some(lock) => Err(explained::lock(*lock)),
+            Some(lock) => Err(explained::lock_text(*lock)),
             None => Ok(()),
         }
     }

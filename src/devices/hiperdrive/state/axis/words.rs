@@ -163,7 +163,7 @@ pub fn fault_text(seen: &DriveFacts) -> Option<Text> {
     let Some(code) = seen.error.filter(|code| *code != ErrorCode::NONE) else {
         return Some(TEXTS.text("hd_axis.fault_unread"));
     };
-    let words = words::error(code);
+    let words = words::error_code_explanation(code);
     let text = TEXTS.text("hd_axis.fault").with("code", format!("{:04X}", code.code()));
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }

@@ -1,6 +1,6 @@
 //! Texts for the device check.
 
-use super::names::{error, state, variant_text};
+use super::names::{error_code_explanation, state_text, variant_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::literal_text;
@@ -43,7 +43,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Temperature(celsius) => TEXTS.text("hd_check.celsius").with("celsius", celsius),
         CheckFinding::Switch(switch) => self::switch_text(*switch),
         CheckFinding::UnknownSwitch(number) => TEXTS.text("hd_check.unknown_switch").with("number", number),
-        CheckFinding::Source(source) => self::source(*source),
+        CheckFinding::Source(source) => self::source_text(*source),
         CheckFinding::Saved => TEXTS.text("hd_check.saved"),
         CheckFinding::NotSaved(number) => TEXTS.text("hd_check.not_saved").with("number", number),
         CheckFinding::Drive { number, variant: own, serial_number } => TEXTS
@@ -57,17 +57,17 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::LookAtS3 => TEXTS.text("hd_check.look_at_s3"),
         CheckFinding::LineGood => TEXTS.text("hd_check.line_good"),
         CheckFinding::LineWord(0xFFFF) => TEXTS.text("hd_check.line_none"),
-        CheckFinding::LineWord(word) => TEXTS.text("hd_check.line_word").with("word", hex(*word)),
+        CheckFinding::LineWord(word) => TEXTS.text("hd_check.line_word").with("word", format_hex(*word)),
         CheckFinding::Timeout(tenths) => {
             TEXTS.text("hd_check.timeout").with_number("seconds", *tenths as f64 / 10.0, 1)
         }
         CheckFinding::NoTimeout => TEXTS.text("hd_lock.no_timeout"),
-        CheckFinding::State(own) => state(*own),
-        CheckFinding::StrayStatus(word) => TEXTS.text("hd_check.stray").with("word", hex(*word)),
-        CheckFinding::DriveWord(word) => TEXTS.text("hd_check.drive_word").with("word", hex(*word)),
-        CheckFinding::MotionWord(word) => TEXTS.text("hd_check.motion_word").with("word", hex(*word)),
+        CheckFinding::State(own) => state_text(*own),
+        CheckFinding::StrayStatus(word) => TEXTS.text("hd_check.stray").with("word", format_hex(*word)),
+        CheckFinding::DriveWord(word) => TEXTS.text("hd_check.drive_word").with("word", format_hex(*word)),
+        CheckFinding::MotionWord(word) => TEXTS.text("hd_check.motion_word").with("word", format_hex(*word)),
         CheckFinding::Error(code) => {
-            let words = error(*code);
+            let words = error_code_explanation(*code);
             TEXTS
                 .text("hd_check.error")
                 .with("code", format!("{:04X}", code.code()))
@@ -108,7 +108,7 @@ pub fn switch_text(switch: AddressSwitch) -> Text {
     }
 }
 
-pub fn source(source: AddressSource) -> Text {
+pub fn source_text(source: AddressSource) -> Text {
     match source {
         AddressSource::Stored => TEXTS.text("hd_switch.source_stored"),
         AddressSource::Bootp => TEXTS.text("hd_switch.source_bootp"),
@@ -117,6 +117,6 @@ pub fn source(source: AddressSource) -> Text {
     }
 }
 
-fn hex(word: u16) -> String {
+fn format_hex(word: u16) -> String {
     format!("0x{word:04X}")
 }

@@ -1,6 +1,6 @@
 //! Messages for errors of an adapter, a hub or a drive: what happened and what to do.
 
-use super::names::parameter;
+use super::names::parameter_name_text;
 use super::status;
 use crate::app::Text;
 use crate::app::explain::{link_error_text, literal_text};
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::procedures::{
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, ParameterRange, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
-pub fn device(error: &Error) -> Text {
+pub fn device_error_text(error: &Error) -> Text {
     match error {
         Error::Link(error) => link_error_text(error),
         Error::Cancelled => Text::new("encoder.cancelled"),
@@ -63,7 +63,7 @@ pub fn device(error: &Error) -> Text {
         Error::Refuses(error) => out_of_range_text("hd_said.refuses", error),
         Error::Length(error) => wrong_length(error),
         Error::Value { number, cause } => {
-            parameter_text("hd_said.value", *number).with_text("why", status::value(cause))
+            parameter_text("hd_said.value", *number).with_text("why", status::value_error_text(cause))
         }
         Error::ReadOnly { number, .. } => parameter_text("hd_said.read_only", *number),
         Error::WriteOnly { number, .. } => parameter_text("hd_said.write_only", *number),
@@ -110,7 +110,7 @@ fn out_of_range_text(id: &'static str, error: &OutOfRange) -> Text {
 
 /// Returns a message about a parameter, with its number and name.
 pub(super) fn parameter_text(id: &'static str, number: ParameterNumber) -> Text {
-    TEXTS.text(id).with("number", number).with_text("name", parameter(number))
+    TEXTS.text(id).with("number", number).with_text("name", parameter_name_text(number))
 }
 
 fn item_text(requested: RequestedItem) -> Text {
@@ -130,7 +130,7 @@ fn item_text(requested: RequestedItem) -> Text {
 pub fn damage_text(damage: &ReplyDamage) -> Text {
     match damage {
         ReplyDamage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet_error_text(why)),
-        ReplyDamage::Value(why) => TEXTS.text("hd_damage.value").with_text("why", status::value(why)),
+        ReplyDamage::Value(why) => TEXTS.text("hd_damage.value").with_text("why", status::value_error_text(why)),
         ReplyDamage::Empty => TEXTS.text("hd_damage.empty"),
         ReplyDamage::Service { .. } => TEXTS.text("hd_damage.service"),
         ReplyDamage::Cut { bytes } => TEXTS.text("hd_damage.cut").with("bytes", bytes),

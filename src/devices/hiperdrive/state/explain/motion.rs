@@ -1,6 +1,6 @@
 //! Messages about motion: why a drive may not move, why a request was rejected, how a motion ended.
 
-use super::names::{parameter, state};
+use super::names::{parameter_name_text, state_text};
 use crate::app::explain::link_error_text;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::MotionSnapshot;
@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
 /// Explains why motion is locked, and what to do.
-pub fn lock(lock: MotionLock) -> Text {
+pub fn lock_text(lock: MotionLock) -> Text {
     TEXTS.text(match lock {
         MotionLock::Unread => "hd_lock.unread",
         MotionLock::NoTimeout => "hd_lock.no_timeout",
@@ -24,7 +24,7 @@ pub fn lock(lock: MotionLock) -> Text {
 /// Explains why a request was rejected, and what to do. `place` formats steps in the user's unit.
 pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
-        MotionRefusal::Locked(own) => lock(own),
+        MotionRefusal::Locked(own) => lock_text(own),
         MotionRefusal::NoEffort => TEXTS.text("hd_refused.no_effort"),
         MotionRefusal::Outside { target, low, high } => TEXTS
             .text("hd_refused.outside")
@@ -62,11 +62,11 @@ pub fn end_text(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
         ActionEnd::Deaf => TEXTS.text("hd_end.deaf"),
         ActionEnd::Lost => TEXTS.text("hd_end.lost"),
         ActionEnd::Fault => TEXTS.text("hd_end.fault"),
-        ActionEnd::Locked(own) => lock(own),
+        ActionEnd::Locked(own) => lock_text(own),
         ActionEnd::Refused(why) => refusal_text(why, place),
-        ActionEnd::NoAnswer(own) => TEXTS.text("hd_end.no_answer").with_text("state", state(own)),
+        ActionEnd::NoAnswer(own) => TEXTS.text("hd_end.no_answer").with_text("state", state_text(own)),
         ActionEnd::NotStarted => TEXTS.text("hd_end.not_started"),
-        ActionEnd::Left(own) => TEXTS.text("hd_end.left").with_text("state", state(own)),
+        ActionEnd::Left(own) => TEXTS.text("hd_end.left").with_text("state", state_text(own)),
         ActionEnd::Short => TEXTS.text("hd_end.short"),
         ActionEnd::Beyond { position } => TEXTS.text("hd_end.beyond").with_text("position", place(position)),
         ActionEnd::WrongWay { position } => TEXTS.text("hd_end.wrong_way").with_text("position", place(position)),
@@ -103,7 +103,7 @@ pub const fn end_severity(ended: ActionEnd) -> Severity {
 }
 
 pub fn target_state_text(goal: TargetState) -> Text {
-    state(match goal {
+    state_text(match goal {
         TargetState::Off => State::NotReady,
         TargetState::Ready => State::Ready,
         TargetState::Operational => State::Operational,
@@ -111,7 +111,7 @@ pub fn target_state_text(goal: TargetState) -> Text {
     })
 }
 
-pub fn phase(phase: Phase) -> Text {
+pub fn phase_text(phase: Phase) -> Text {
     match phase {
         Phase::Idle => TEXTS.text("hd_phase.idle"),
         Phase::Leading(own) => TEXTS.text("hd_phase.leading").with_text("goal", target_state_text(own)),
@@ -156,11 +156,11 @@ fn parameter_reading(number: ParameterNumber, reading: &ParameterReading) -> Opt
     let unit = number.row().map_or("", |row| row.unit);
     match reading.result {
         ParameterResult::Number(value) => {
-            let text = TEXTS.text("hd_link.words_value").with_text("parameter", parameter(number));
+            let text = TEXTS.text("hd_link.words_value").with_text("parameter", parameter_name_text(number));
             Some(text.with("value", value).with("unit", unit))
         }
         ParameterResult::Refused(why) => {
-            let text = TEXTS.text("hd_link.words_refused").with_text("parameter", parameter(number));
+            let text = TEXTS.text("hd_link.words_refused").with_text("parameter", parameter_name_text(number));
             Some(text.with("code", why.code()))
         }
         ParameterResult::NoReply => None,

@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{NEWEST_ERROR, OLDEST
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 use crate::devices::hiperdrive::state::TEXTS;
 
-pub fn state(state: State) -> Text {
+pub fn state_text(state: State) -> Text {
     TEXTS.text(match state {
         State::NotReady => "hd_state.not_ready",
         State::Ready => "hd_state.ready",
@@ -67,7 +67,7 @@ pub struct ErrorExplanation {
 }
 
 /// Returns the name, cause and remedy of an error in the error buffer.
-pub fn error(code: ErrorCode) -> ErrorExplanation {
+pub fn error_code_explanation(code: ErrorCode) -> ErrorExplanation {
     let (name, cause, remedy) = match code {
         ErrorCode::OVER_CURRENT => ("hd_error.over_current", "hd_cause.over_current", "hd_remedy.over_current"),
         ErrorCode::UNDER_VOLTAGE => ("hd_error.under_voltage", "hd_cause.under_voltage", "hd_remedy.under_voltage"),
@@ -94,7 +94,7 @@ pub fn error(code: ErrorCode) -> ErrorExplanation {
     ErrorExplanation { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
 }
 
-pub fn parameter(number: ParameterNumber) -> Text {
+pub fn parameter_name_text(number: ParameterNumber) -> Text {
     match number.drive1_number() {
         base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),
         base @ (NEWEST_ERROR..=OLDEST_ERROR) => {
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn each_parameter_has_a_name_and_each_name_a_parameter() {
-        let other = |number| parameter(number).id() == "hd_parameter.other";
+        let other = |number| parameter_name_text(number).id() == "hd_parameter.other";
         for row in PARAMETERS {
             assert!(!other(ParameterNumber::new(row.number).unwrap()), "{}", row.number);
         }

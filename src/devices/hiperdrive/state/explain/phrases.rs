@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{assert_in_both_languages, profile_error_text, setting, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, setting_error_text, url_error_text};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
@@ -19,7 +19,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in ["rpi=1", "timeout=1", "order=middle", "udp=0"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, None, Duration::ZERO).unwrap_err();
-        assert_in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url_error_text(&error), &error);
     }
 }
 
@@ -28,7 +28,7 @@ fn virtual_drive_setting_errors_are_explained_in_both_languages() {
     for text in ["sed=1", "s3=10", "switch=100", "hub=2", "variant=x", "drives=1,1", "speed=1", "load=x", "name=ä"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
-        assert_in_both_languages(&setting(&error), &error);
+        assert_in_both_languages(&setting_error_text(&error), &error);
     }
 }
 

@@ -114,7 +114,7 @@ pub(super) fn packet_error_text(error: &PacketError) -> Text {
         PacketError::Value { what, field, got } => TEXTS
             .text("hd_packet.value")
             .with_text("what", structure_text(what))
-            .with_text("field", self::field(field))
+            .with_text("field", self::packet_field_text(field))
             .with("got", format!("0x{got:X}")),
     }
 }
@@ -145,7 +145,7 @@ fn structure_text(structure: Structure) -> Text {
     })
 }
 
-fn field(field: PacketField) -> Text {
+fn packet_field_text(field: PacketField) -> Text {
     TEXTS.text(match field {
         PacketField::Service => "hd_field.service",
         PacketField::Length => "hd_field.length",
@@ -156,7 +156,7 @@ fn field(field: PacketField) -> Text {
 }
 
 /// Explains why a value does not match the type of its parameter.
-pub(super) fn value(error: &ValueError) -> Text {
+pub(super) fn value_error_text(error: &ValueError) -> Text {
     match *error {
         ValueError::Length { expected, got } => {
             TEXTS.text("hd_value.length").with("expected", expected).with("got", got)
@@ -226,7 +226,7 @@ mod tests {
             ValueError::TextForNumber,
         ];
         for error in values {
-            assert_in_both_languages(&value(&error), &error);
+            assert_in_both_languages(&value_error_text(&error), &error);
         }
     }
 }

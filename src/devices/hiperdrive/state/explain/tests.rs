@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{device, end_severity, end_text, lock, plan, warning, wrong_length};
+use super::{device_error_text, end_severity, end_text, lock_text, plan_error_text, warning_text, wrong_length};
 use crate::app::explain::literal_text;
 use crate::app::{Language, Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
@@ -36,20 +36,25 @@ fn invalid_input_names_cause_and_remedy() {
     let out =
         OutOfRange { number: number(166), name: "maximum speed", value: 351, range: ParameterRange::Within(5, 350) };
     assert_eq!(
-        english(&device(&Error::OutOfRange(out))),
+        english(&device_error_text(&Error::OutOfRange(out))),
         "Parameter 166 (Maximum speed) cannot be set to 351. Allowed: 5 to 350."
     );
     let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
-    assert!(english(&plan(&outside)).starts_with("Drive 1 is at 5000 and would reject the limits 0 to 4000"));
+    assert!(
+        english(&plan_error_text(&outside)).starts_with("Drive 1 is at 5000 and would reject the limits 0 to 4000")
+    );
     let read_only = PlanError::ReadOnly { item: Item(number(107)) };
-    assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) is read-only. Choose another parameter.");
     assert_eq!(
-        english(&device(&Error::NotRequested { drive: ONE })),
+        english(&plan_error_text(&read_only)),
+        "Parameter 107 (Actual position) is read-only. Choose another parameter."
+    );
+    assert_eq!(
+        english(&device_error_text(&Error::NotRequested { drive: ONE })),
         "Drive 1 rejected the request because its parameter 152 (Requested) is 0. Set this parameter to 1 first."
     );
     let switch = end_text(ActionEnd::NotStarted, literal_text);
     assert!(english(&switch).contains("S3 of the hub is at 0"), "{}", english(&switch));
-    let master = device(&Error::OtherMaster { extended: 0x0106 });
+    let master = device_error_text(&Error::OtherMaster { extended: 0x0106 });
     assert!(
         english(&master).starts_with("Another master already controls these drives (0x0106). Close its connection"),
         "{}",
@@ -92,7 +97,7 @@ fn errors_name_cause_and_remedy() {
         Error::Changed { item: "158".to_owned() },
     ];
     for error in errors {
-        assert_complete(&device(&error), 2);
+        assert_complete(&device_error_text(&error), 2);
     }
     // Issue 21.9: both lengths, in both languages.
     for (language, said) in [
@@ -113,12 +118,12 @@ fn errors_name_cause_and_remedy() {
     }
     // If more time may help, the command line tells how to set it, and the window does not mention a link.
     for late in [None, Some(late)] {
-        let text = device(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
+        let text = device_error_text(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
         assert!(text.terminal_text().contains("timeout=2000 in the link"), "{}", text.terminal_text());
         assert!(!text.to_string_in(Language::English).contains("timeout="));
     }
     for status in 0..=0x30 {
-        assert_complete(&device(&Error::Refused { requested, refusal: refusal(status) }), 2);
+        assert_complete(&device_error_text(&Error::Refused { requested, refusal: refusal(status) }), 2);
     }
 }
 
@@ -140,7 +145,7 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
         PlanError::Address(AddressError::None),
         PlanError::Source(7),
     ];
-    plans.iter().for_each(|error| assert_complete(&plan(error), 2));
+    plans.iter().for_each(|error| assert_complete(&plan_error_text(error), 2));
     let turns = (-511.0, 511.0);
     let warnings = [
         Warning::LimitsMove { drive: ONE, now: turns, then: (-83_722.24, 83_722.24) },
@@ -148,7 +153,7 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
         Warning::NoTimeout(ONE),
         Warning::NotRequested(ONE),
     ];
-    warnings.iter().for_each(|own| assert_complete(&warning(own), 2));
+    warnings.iter().for_each(|own| assert_complete(&warning_text(own), 2));
     let locks = [MotionLock::Unread, MotionLock::NoTimeout, MotionLock::LimitsUnconfirmed, MotionLock::NotRequested];
     let refusals = [
         MotionRefusal::NoEffort,
@@ -171,7 +176,7 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
         ActionEnd::Left(State::Fault),
         ActionEnd::Short,
     ];
-    locks.iter().for_each(|own| assert_complete(&lock(*own), 2));
+    locks.iter().for_each(|own| assert_complete(&lock_text(*own), 2));
     for own in bad.into_iter().chain(refusals.map(ActionEnd::Refused)).chain(locks.map(ActionEnd::Locked)) {
         assert_complete(&end_text(own, literal_text), 2);
         assert!(end_severity(own) >= Severity::Warning, "{own:?}");

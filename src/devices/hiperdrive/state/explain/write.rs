@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::check::{source, switch_text};
-use super::error::{device, out_of_range};
-use super::names::{parameter, variant_text};
+use super::check::{source_text, switch_text};
+use super::error::{device_error_text, out_of_range};
+use super::names::{parameter_name_text, variant_text};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::review::OperationTexts;
@@ -57,15 +57,17 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
             };
             OperationTexts::single(service_text(*own), TEXTS.text(before), TEXTS.text(after))
         }
-        Op::Network { from, to } => OperationTexts::single(TEXTS.text("hd_op.network"), network(from), network(to)),
+        Op::Network { from, to } => {
+            OperationTexts::single(TEXTS.text("hd_op.network"), network_text(from), network_text(to))
+        }
     }
 }
 
-fn network(settings: &NetworkSettings) -> Text {
+fn network_text(settings: &NetworkSettings) -> Text {
     let NetworkSettings { source: own, interface } = settings;
     TEXTS
         .text("hd_op.addresses")
-        .with_text("source", source(*own))
+        .with_text("source", source_text(*own))
         .with("address", interface.address)
         .with("mask", interface.mask)
         .with("gateway", interface.gateway)
@@ -73,7 +75,7 @@ fn network(settings: &NetworkSettings) -> Text {
 
 /// Returns the name of a parameter with its number and drive.
 pub fn item_text(item: Item) -> Text {
-    TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
+    TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter_name_text(item.0))
 }
 
 pub fn other_type(types: &TypeMismatch) -> Text {
@@ -94,7 +96,7 @@ fn type_mismatch_text(types: &TypeMismatch, whole: &'static str, of_drive: &'sta
 }
 
 /// Explains why a plan cannot be made. Nothing was written.
-pub fn plan(error: &PlanError) -> Text {
+pub fn plan_error_text(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
             TEXTS.text("hd_plan.other_device").with("profile", profile).with("device", device)
@@ -133,10 +135,10 @@ pub fn plan(error: &PlanError) -> Text {
 }
 
 fn text_about(id: &'static str, item: Item) -> Text {
-    TEXTS.text(id).with("number", item).with_text("name", parameter(item.0))
+    TEXTS.text(id).with("number", item).with_text("name", parameter_name_text(item.0))
 }
 
-pub fn warning(warning: &Warning) -> Text {
+pub fn warning_text(warning: &Warning) -> Text {
     match warning {
         Warning::LimitsMove { drive, now, then } => TEXTS
             .text("hd_warning.limits_move")
@@ -169,7 +171,7 @@ pub(super) fn interruption_text(
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
-        text.with_text("cause", device(cause))
+        text.with_text("cause", device_error_text(cause))
     }];
     if let Some(item) = &unclear {
         texts.push(TEXTS.text("hd_left.unclear").with("item", item));

@@ -1,7 +1,7 @@
 //! Texts for the device check.
 
-use super::encoder;
-use super::words::{field_status, position, raw_position_text, status_with_number};
+use super::encoder_error_text;
+use super::words::{field_status, position_text, raw_position_text, status_with_number};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::literal_text;
@@ -39,7 +39,7 @@ pub fn line_quality(quality: &LineQuality) -> Text {
 fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Code(code) => status_with_number(*code),
-        CheckFinding::Position(found) => position(*found),
+        CheckFinding::Position(found) => position_text(*found),
         CheckFinding::RawPosition(raw) => raw_position_text(*raw),
         CheckFinding::Name(name) => literal_text(name),
         CheckFinding::SerialNumber(number) => literal_text(number),
@@ -60,9 +60,9 @@ fn finding_text(finding: &CheckFinding) -> Text {
             .with("number", number)
             .with_list("codes", codes.iter().copied().map(status_with_number)),
         CheckFinding::FieldUnreadable { number, why } => {
-            TEXTS.text("check.field_unreadable").with("number", number).with_text("why", encoder(why))
+            TEXTS.text("check.field_unreadable").with("number", number).with_text("why", encoder_error_text(why))
         }
-        CheckFinding::Unreadable(why) => encoder(why),
+        CheckFinding::Unreadable(why) => encoder_error_text(why),
         CheckFinding::Line(quality) => line_quality(quality),
     }
 }

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::devices::hiperface::protocol::Command;
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn command(command: Command) -> Text {
+pub fn command_text(command: Command) -> Text {
     TEXTS.text(match command {
         Command::ReadPosition => "command.read_position",
         Command::SetPosition => "command.set_position",
@@ -38,8 +38,8 @@ mod tests {
     #[test]
     fn commands_have_their_protocol_names() {
         for row in COMMANDS {
-            assert_eq!(command(row.command).to_string_in(Language::English), row.name);
-            assert_ne!(command(row.command).to_string_in(Language::German), row.name);
+            assert_eq!(command_text(row.command).to_string_in(Language::English), row.name);
+            assert_ne!(command_text(row.command).to_string_in(Language::German), row.name);
         }
     }
 }

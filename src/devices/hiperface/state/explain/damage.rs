@@ -8,7 +8,7 @@ use crate::devices::hiperface::state::TEXTS;
 
 pub fn damage_text(damage: &ReplyDamage) -> Text {
     match damage {
-        ReplyDamage::Reply(error) => reply(error),
+        ReplyDamage::Reply(error) => reply_error_text(error),
         ReplyDamage::Unreadable => TEXTS.text("damage.unreadable"),
         ReplyDamage::Trailing => TEXTS.text("damage.trailing"),
         ReplyDamage::Late => TEXTS.text("damage.late"),
@@ -18,7 +18,7 @@ pub fn damage_text(damage: &ReplyDamage) -> Text {
     }
 }
 
-fn reply(error: &ReplyError) -> Text {
+fn reply_error_text(error: &ReplyError) -> Text {
     let byte = |byte: &u8| format!("{byte:02X}h");
     match error {
         ReplyError::Frame(FrameError::Short { got }) => TEXTS.text("damage.short").with("got", got),

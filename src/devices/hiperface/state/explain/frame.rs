@@ -1,6 +1,6 @@
 //! Description of a frame for the trace and for `decode`.
 
-use super::{command, field_status, line_settings, status_with_number};
+use super::{command_text, field_status, line_settings, status_with_number};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::bits::hex;
@@ -13,7 +13,7 @@ use crate::devices::hiperface::state::TEXTS;
 pub fn detail_text(fact: &FrameDetail) -> Text {
     match fact {
         FrameDetail::Heading { address, command } => heading_text(*address, *command),
-        FrameDetail::Request(arguments) => request(arguments),
+        FrameDetail::Request(arguments) => request_text(arguments),
         FrameDetail::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", request_error_text(*error)),
         FrameDetail::Refused(code) => TEXTS.text("frame.refused").with_text("code", status_code_text(*code)),
         FrameDetail::Code(code) => status_code_text(*code),
@@ -26,7 +26,7 @@ fn heading_text(address: u8, byte: u8) -> Text {
         BROADCAST => TEXTS.text("frame.broadcast"),
         address => TEXTS.text("frame.address").with("address", format_byte(address)),
     };
-    let what = Command::from_byte(byte).map_or_else(|| TEXTS.text("command.unknown"), command);
+    let what = Command::from_byte(byte).map_or_else(|| TEXTS.text("command.unknown"), command_text);
     let flagged = byte & Frame::ERROR_BIT != 0;
     TEXTS
         .text(if flagged { "frame.heading_error" } else { "frame.heading" })
@@ -35,7 +35,7 @@ fn heading_text(address: u8, byte: u8) -> Text {
         .with("number", format_byte(byte & !Frame::ERROR_BIT))
 }
 
-fn request(arguments: &Arguments) -> Text {
+fn request_text(arguments: &Arguments) -> Text {
     match arguments {
         Arguments::None => TEXTS.text("frame.request"),
         Arguments::Position(position) => {

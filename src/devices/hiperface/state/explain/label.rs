@@ -15,7 +15,7 @@ pub struct LabelRow {
 }
 
 /// Returns the rows of an extended type label, or an empty list if the bytes are no label. Invalid limits are left out.
-pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
+pub fn label_rows(bytes: &[u8]) -> Vec<LabelRow> {
     let Ok(parts) = ExtendedLabel::parse_parts(bytes) else { return Vec::new() };
     let flags = bytes.get(1).copied().unwrap_or(0);
     let linear = flags & ExtendedLabel::LINEAR != 0;

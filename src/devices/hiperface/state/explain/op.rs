@@ -14,7 +14,7 @@ pub fn operation_texts(op: &Op, geometry: Option<Geometry>) -> OperationTexts {
     match op {
         Op::Define { field, from, to } => define_texts(*field, *from, *to),
         Op::Store { field, address, old, new, .. } => OperationTexts::single(
-            bytes(*field, usize::from(*address), new.len()),
+            byte_range_text(*field, usize::from(*address), new.len()),
             old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| literal_text(hex(old))),
             literal_text(hex(new)),
         ),
@@ -42,7 +42,7 @@ pub fn operation_texts(op: &Op, geometry: Option<Geometry>) -> OperationTexts {
     }
 }
 
-fn bytes(field: u8, first: usize, count: usize) -> Text {
+fn byte_range_text(field: u8, first: usize, count: usize) -> Text {
     match count {
         1 => TEXTS.text("op.byte").with("field", field).with("first", first),
         _ => TEXTS

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{assert_in_both_languages, profile_error_text, setting, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, setting_error_text, url_error_text};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperface::procedures::{ReadBackValue, Station};
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, PlanItem};
@@ -32,7 +32,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in queries {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
-        assert_in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url_error_text(&error), &error);
     }
 }
 
@@ -62,7 +62,7 @@ fn virtual_encoder_setting_errors_are_explained_in_both_languages() {
     for text in queries {
         let query: UrlQuery = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
-        assert_in_both_languages(&setting(&error), &error);
+        assert_in_both_languages(&setting_error_text(&error), &error);
     }
 }
 

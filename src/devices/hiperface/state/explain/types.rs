@@ -21,10 +21,10 @@ pub fn table_error_text(error: &StoreError) -> Text {
     }
 }
 
-pub fn open(error: &OpenError) -> Text {
+pub fn open_error_text(error: &OpenError) -> Text {
     match error {
         OpenError::Store(error) => table_error_text(error),
-        other => general::open(other),
+        other => general::open_error_text(other),
     }
 }
 
@@ -68,7 +68,7 @@ mod tests {
         let broken = TypeTableFileError { path: "own.ron".into(), cause };
         let error = StoreError::Refused(Cause::new(broken)).into();
         assert_eq!(
-            open(&error).to_string_in(English),
+            open_error_text(&error).to_string_in(English),
             "The table of encoder types in own.ron cannot be used: type 01h: periods must be between 1 and 134217728. \
              Correct or remove the file."
         );

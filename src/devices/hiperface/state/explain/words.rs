@@ -34,14 +34,14 @@ const STATUS: [(u8, &str); 27] = [
     (0x23, "status.code_23"),
 ];
 
-pub fn status(code: StatusCode) -> Text {
+pub fn status_code_name(code: StatusCode) -> Text {
     let id = STATUS.iter().find(|(byte, _)| *byte == code.byte()).map_or("status.unknown", |(_, id)| id);
     TEXTS.text(id)
 }
 
 /// Returns a status code with its number, such as "0Fh wrong access code".
 pub fn status_with_number(code: StatusCode) -> Text {
-    TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
+    TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status_code_name(code))
 }
 
 /// Describes the status byte of a data field, such as "48 bytes, write protected, code 2, code required".
@@ -81,7 +81,7 @@ pub fn geometry_text(geometry: Geometry) -> Text {
 }
 
 /// Describes a position by turns and degrees, or in millimetres.
-pub fn position(position: Position) -> Text {
+pub fn position_text(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {
             TEXTS.text("position.rotary").with("turn", turn).with_number("degrees", degrees, 3)
@@ -112,14 +112,14 @@ pub fn line_settings(settings: LineSettings) -> Text {
 mod tests {
     use super::*;
     use crate::app::Language;
-    use crate::app::explain::parity;
+    use crate::app::explain::parity_text;
     use crate::units::Parity;
 
     #[test]
     fn codes_have_their_protocol_names() {
         for byte in 0..=0xFF {
             let code = StatusCode::new(byte);
-            assert_eq!(status(code).to_string_in(Language::English), code.text());
+            assert_eq!(status_code_name(code).to_string_in(Language::English), code.text());
             assert_eq!(status_with_number(code).terminal_text(), code.to_string());
         }
         let code = status_with_number(StatusCode::TEMPERATURE);
@@ -138,12 +138,12 @@ mod tests {
         for shape in [rotary(128, 1), rotary(128, 4096), linear(4_000_000), linear(1_500_000), linear(820)] {
             assert_eq!(geometry_text(shape).to_string_in(Language::English), shape.to_string());
             assert_eq!(
-                position(shape.position(919_857)).to_string_in(Language::English),
+                position_text(shape.position(919_857)).to_string_in(Language::English),
                 shape.position(919_857).to_string()
             );
         }
         for known in Parity::ALL {
-            assert_eq!(parity(known).to_string_in(Language::English), known.keyword());
+            assert_eq!(parity_text(known).to_string_in(Language::English), known.keyword());
         }
     }
 
@@ -155,9 +155,12 @@ mod tests {
                 "48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel erforderlich",
             ),
             (geometry_text(Geometry::Linear { period_nm: 1_500_000, periods: 0 }), "linear, Periode 1,5 mm"),
-            (position(Geometry::Rotary { periods: 128, turns: 4096 }.position(0x000E_0531)), "Umdrehung 224, 116,807°"),
+            (
+                position_text(Geometry::Rotary { periods: 128, turns: 4096 }.position(0x000E_0531)),
+                "Umdrehung 224, 116,807°",
+            ),
             (line_settings(LineSettings::from_byte(0x64)), "9600 8E1, Zeitüberschreitung 44 Bit, Bus"),
-            (parity(Parity::Odd), "ungerade"),
+            (parity_text(Parity::Odd), "ungerade"),
         ];
         for (text, german) in cases {
             assert_eq!(text.to_string_in(Language::German), german);

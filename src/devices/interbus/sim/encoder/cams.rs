@@ -15,7 +15,7 @@ impl Setting<'_> {
         Ok(())
     }
 
-    pub(super) fn stop(&mut self, cam: CamNumber, value: Value, gear: Gear) -> Result<(), WordFault> {
+    pub(super) fn set_stop(&mut self, cam: CamNumber, value: Value, gear: Gear) -> Result<(), WordFault> {
         if let Some(cam) = cam_mut(self.0, cam) {
             cam.stop = check_in_range(value, gear)?;
         }

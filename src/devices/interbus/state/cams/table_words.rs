@@ -11,7 +11,7 @@ use crate::devices::interbus::state::TEXTS;
 const MAX_DECIMALS: usize = 6;
 
 /// Describes the delimiter of a table and whether its columns have names.
-pub fn layout(table: &CamTable) -> Text {
+pub fn layout_text(table: &CamTable) -> Text {
     let delimiter = match table.delimiter {
         Some(Delimiter::Tab) => "camtable.tab",
         Some(Delimiter::Semicolon) => "camtable.semicolon",
@@ -121,7 +121,7 @@ mod tests {
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
         let says = |text: Text| text.to_string_in(Language::English);
         assert_eq!(
-            says(layout(&table)),
+            says(layout_text(&table)),
             "Pulses read: 3. The columns are separated by semicolons, and the first line contains their names."
         );
         assert_eq!(says(problem_text(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");

@@ -60,7 +60,7 @@ pub fn lane_text(own: &Lane, scale: &Scale, range: u32) -> Text {
 }
 
 pub fn lane_problems(chart: &Chart, lane: &Lane) -> Vec<Text> {
-    let beyond = lane.beyond.then(|| TEXTS.text("cams.beyond").with("last", chart.last()));
+    let beyond = lane.beyond.then(|| TEXTS.text("cams.beyond").with("last", chart.last_position()));
     let clash = lane.clashes.then(|| TEXTS.text("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));
     beyond.into_iter().chain(clash).collect()
 }

@@ -1,6 +1,6 @@
 //! Texts of the device check.
 
-use super::{encoder, error_word_text, format_word, implausible_value_text, startup_mode_text};
+use super::{encoder_error_text, error_word_text, format_word, implausible_value_text, startup_mode_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult};
@@ -52,7 +52,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::ReadOuts { requested, each_ms } => {
             TEXTS.text("ib_check.read_outs").with("asked", requested).with("each", each_ms)
         }
-        CheckFinding::Failed(error) => encoder(error),
+        CheckFinding::Failed(error) => encoder_error_text(error),
         CheckFinding::Temperature(tenths) => {
             TEXTS.text("ib_check.celsius").with_number("celsius", f64::from(*tenths) / 10.0, 1)
         }

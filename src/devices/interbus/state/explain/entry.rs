@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{Program, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::profile::Cause;
 
-pub fn entry(cause: &Cause) -> Option<Text> {
+pub fn entry_error_text(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::ProgramTwice(program) => TEXTS.text("ib_entry.program_twice").with("program", program.get()),
         EntryError::CamTwice(cam) => TEXTS.text("ib_entry.cam_twice").with("cam", cam.get()),

@@ -6,7 +6,7 @@ use crate::devices::interbus::profile::{Direction, Edge};
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ReadOutNumber, StartupMode};
 use crate::devices::interbus::state::TEXTS;
 
-pub fn parameter(parameter: Parameter) -> Text {
+pub fn parameter_text(parameter: Parameter) -> Text {
     TEXTS.text(match parameter {
         Parameter::Steps => "ib_item.steps",
         Parameter::Turns => "ib_item.revolutions",
@@ -20,19 +20,19 @@ pub fn parameter(parameter: Parameter) -> Text {
 /// Formats the value of a parameter. A direction is written as a word.
 pub(super) fn parameter_value_text(parameter: Parameter, number: u32) -> Text {
     match Direction::from_code(number) {
-        Some(own) if parameter == Parameter::Direction => direction(own),
+        Some(own) if parameter == Parameter::Direction => direction_text(own),
         _ => literal_text(number),
     }
 }
 
-pub fn direction(direction: Direction) -> Text {
+pub fn direction_text(direction: Direction) -> Text {
     TEXTS.text(match direction {
         Direction::Clockwise => "ib_item.clockwise",
         Direction::Counterclockwise => "ib_item.counterclockwise",
     })
 }
 
-pub(super) fn cams(mask: u8) -> Text {
+pub(super) fn cam_mask_text(mask: u8) -> Text {
     let on: Vec<String> =
         CamNumber::all().map(CamNumber::get).filter(|cam| mask >> cam & 1 != 0).map(|cam| cam.to_string()).collect();
     if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { literal_text(on.join(", ")) }

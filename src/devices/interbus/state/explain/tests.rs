@@ -93,7 +93,7 @@ fn encoder_errors_name_a_remedy() {
         (Error::NotLedBack { cause: Box::new(Error::NeverSilent), standing: standing(None, None) }, vec!["0x20800003"]),
     ];
     for (error, facts) in cases {
-        assert_explains(&encoder(&error), &facts);
+        assert_explains(&encoder_error_text(&error), &facts);
     }
 }
 
@@ -103,7 +103,7 @@ fn gateway_exceptions_are_explained_with_their_code() {
     let requested = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
     for code in [1, 2, 3, 4, 5, 6, 8, 0xA, 0xB, 0x7F] {
         let exception = Exception::new(code);
-        let text = encoder(&Error::Exception { requested, exception });
+        let text = encoder_error_text(&Error::Exception { requested, exception });
         assert_explains(&text, &[&format!("0x{code:02X}"), "2048", "0x40000000"]);
         assert!(
             text.to_string_in(English).contains(exception.name())
@@ -118,7 +118,7 @@ fn error_words_are_explained() {
     for word in [0x8200_0000, 0x8400_0000, 0x8600_0000, 0x9800_0004, 0x9800_0005, 0x8000_0000] {
         let sent = Command::Shift(WindowShift::default());
         assert_explains(
-            &encoder(&Error::Refused { sent, error: error_word(word) }),
+            &encoder_error_text(&Error::Refused { sent, error: error_word(word) }),
             &[&format!("0x{word:08X}"), "0x20100000"],
         );
     }
@@ -149,7 +149,7 @@ fn plan_refusals_name_both_limits() {
         (PlanError::NotRead { item: Item::Shift }, vec!["shift"], None),
     ];
     for (error, facts, option) in cases {
-        let text = plan(&error);
+        let text = plan_error_text(&error);
         assert_explains(&text, &facts);
         assert!(option.is_none_or(|option| text.terminal_text().contains(option)), "{}", text.terminal_text());
         assert!(option.is_none_or(|option| !text.to_string_in(English).contains(option)), "no options in the window");

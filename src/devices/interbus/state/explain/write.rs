@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::encoder;
-use super::item::{cams, edge_text, parameter, parameter_value_text};
+use super::encoder_error_text;
+use super::item::{cam_mask_text, edge_text, parameter_text, parameter_value_text};
 use crate::app::explain::{self, literal_text};
 use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
@@ -35,7 +35,7 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
             changes: changes
                 .iter()
                 .map(|ParameterChange { parameter: own, from, to }| ChangeTexts {
-                    part: Some(parameter(*own)),
+                    part: Some(parameter_text(*own)),
                     old: parameter_value_text(*own, *from),
                     new: parameter_value_text(*own, *to),
                 })
@@ -43,7 +43,7 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
         },
         Op::Program(change) => OperationTexts {
             item: TEXTS.text("ib_op.program").with("program", change.program.get()),
-            changes: program(change),
+            changes: program_change_texts(change),
         },
         Op::FirePreset { value } => {
             OperationTexts::single(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), literal_text(value))
@@ -56,7 +56,7 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
     }
 }
 
-fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
+fn program_change_texts(change: &ProgramChange) -> Vec<ChangeTexts> {
     let words = |part: Text, old: Text, new: Text| ChangeTexts { part: Some(part), old, new };
     // Both edges of a cam are on one line.
     let of_cam = |own: &[CamChange]| match own {
@@ -73,7 +73,7 @@ fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
         }
     };
     let of_cams = change.cams.chunk_by(|one, other| one.cam == other.cam).flat_map(of_cam);
-    let mask = change.mask.map(|(old, new)| words(TEXTS.text("ib_item.mask"), cams(old), cams(new)));
+    let mask = change.mask.map(|(old, new)| words(TEXTS.text("ib_item.mask"), cam_mask_text(old), cam_mask_text(new)));
     let shift = change
         .shift
         .map(|(old, new)| words(TEXTS.text("ib_item.shift"), literal_text(old.get()), literal_text(new.get())));
@@ -96,7 +96,7 @@ fn type_mismatch_text(id: &'static str, types: TypeMismatch) -> Text {
 }
 
 /// Explains why a change cannot be planned.
-pub fn plan(error: &PlanError) -> Text {
+pub fn plan_error_text(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
@@ -108,13 +108,13 @@ pub fn plan(error: &PlanError) -> Text {
         }
         PlanError::OutOfRange(error) => TEXTS
             .text("ib_plan.range")
-            .with_text("item", parameter(error.parameter))
+            .with_text("item", parameter_text(error.parameter))
             .with("value", error.value)
             .with("low", error.low)
             .with("high", error.high),
         PlanError::MountingLeft { item, value, low, high } => TEXTS
             .text("ib_plan.mounting_left")
-            .with_text("item", item.parameter().map_or_else(|| literal_text(item), parameter))
+            .with_text("item", item.parameter().map_or_else(|| literal_text(item), parameter_text))
             .with("value", value)
             .with("low", low)
             .with("high", high),
@@ -176,7 +176,7 @@ pub(super) fn interruption_text(
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
-        text.with_text("cause", encoder(cause))
+        text.with_text("cause", encoder_error_text(cause))
     }];
     let untouched = done.write_cycles == 0 && done.written == 0;
     let state = match left {

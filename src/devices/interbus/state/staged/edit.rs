@@ -111,8 +111,8 @@ pub(super) fn apply_edit(wanted: &EditedValues, edit: &Edit, ground: BaseSource)
         Edit::Revolutions(revolutions) => set_gear(&mut after, wanted.step_count(), revolutions)?,
         Edit::Gear { steps, revolutions } => set_gear(&mut after, steps, revolutions)?,
         Edit::Direction(direction) => parameters.direction = direction,
-        Edit::Preset(to) => parameters.preset = check_in_range(Parameter::Preset, to, last(wanted))?,
-        Edit::ZeroShift(to) => parameters.zero_shift = check_in_range(Parameter::ZeroShift, to, last(wanted))?,
+        Edit::Preset(to) => parameters.preset = check_in_range(Parameter::Preset, to, last_step(wanted))?,
+        Edit::ZeroShift(to) => parameters.zero_shift = check_in_range(Parameter::ZeroShift, to, last_step(wanted))?,
         Edit::Shift(shift) => {
             if ground == BaseSource::Encoder && wanted.image.shift.is_none() {
                 return Err(EditError::ShiftNotRead);
@@ -154,7 +154,7 @@ pub(super) fn apply_edit(wanted: &EditedValues, edit: &Edit, ground: BaseSource)
             }
         }
         Edit::Mirror(program) => {
-            let last = last(wanted);
+            let last = last_step(wanted);
             move_cams(&mut after, program, |cam| Cam {
                 start: Value::from_word(last.saturating_sub(cam.stop.get())),
                 stop: Value::from_word(last.saturating_sub(cam.start.get())),
@@ -187,12 +187,12 @@ fn check_in_range(parameter: Parameter, value: u32, high: u32) -> Result<u32, Ed
     if value <= high { Ok(value) } else { Err(OutOfRange { parameter, value, low: 0, high }.into()) }
 }
 
-const fn last(wanted: &EditedValues) -> u32 {
+const fn last_step(wanted: &EditedValues) -> u32 {
     wanted.step_count().saturating_sub(1)
 }
 
 fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditError> {
-    let last = last(wanted);
+    let last = last_step(wanted);
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
@@ -210,7 +210,7 @@ pub(super) fn program_mut(
 }
 
 fn move_cams(after: &mut EditedValues, program: ProgramNumber, to: impl Fn(Cam) -> Cam) -> Result<(), EditError> {
-    let last = last(after);
+    let last = last_step(after);
     let own = after.image.program_mut(program).and_then(Option::as_mut).ok_or(EditError::NotRead(program))?;
     let mask = own.mask;
     for (number, cam) in CamNumber::all().zip(&mut own.cams) {

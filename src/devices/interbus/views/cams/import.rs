@@ -36,7 +36,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
             .with("rows", table.rows.len())
             .with("programs", programs);
         paragraph(ui, theme.format_text(&text));
-        paragraph(ui, theme.caption(theme.format_text(&table_words::layout(table))));
+        paragraph(ui, theme.caption(theme.format_text(&table_words::layout_text(table))));
         egui::ScrollArea::vertical().id_salt("table").max_height(MAX_LIST_HEIGHT).show(ui, |ui| {
             for problem in &table.problems {
                 line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.format_text(&table_words::problem_text(problem)));

@@ -169,7 +169,7 @@ impl CamChart<'_> {
     ) -> Option<CamEvent> {
         let DragTarget::Edge(cam, edge) = hold else { return None };
         let at = self.chart.edge_position(cam, edge)?;
-        let last = self.chart.last();
+        let last = self.chart.last_position();
         response.widget_info(|| {
             let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), theme.format_text(label));
             info.role = Role::Slider;

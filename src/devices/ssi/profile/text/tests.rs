@@ -169,7 +169,7 @@ proptest! {
         let word = if bits % 2 == 0 { Word::Ones } else { Word::Bits(bits) };
         descriptor.patterns = vec![Pattern { name: name.clone(), word, meaning: BitMeaning::Warning }];
         let direction = if synchronous { Direction::CounterClockwise } else { Direction::Clockwise };
-        let preset = layout.position_code().last().checked_add(1).map_or(preset, |count| preset % count);
+        let preset = layout.position_code().last_position().checked_add(1).map_or(preset, |count| preset % count);
         let reading = ReadingSettings { clock_hz, pause_us, cable_metres, synchronous };
         let profile = SsiProfile { name, direction, preset, reading, ..SsiProfile::new(descriptor) };
         let document = document(profile);

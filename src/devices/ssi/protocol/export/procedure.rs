@@ -212,8 +212,8 @@ impl<D: Dialect> Writer<'_, D> {
                 }
             }
         }
-        if coding.last() < low_bits_mask(coding.bits()) || coding.code() == Code::Bcd {
-            self.add_flag(&format!("position > {}", coding.last()), Flags::CODE);
+        if coding.last_position() < low_bits_mask(coding.bits()) || coding.code() == Code::Bcd {
+            self.add_flag(&format!("position > {}", coding.last_position()), Flags::CODE);
             let none = d.assignment("position", "0");
             self.lines.push(d.if_statement(&self.any_bit_set("flags", Flags::CODE.0.into()), &none));
         }

@@ -150,9 +150,9 @@ impl Settings {
     pub fn resolve(&self, family: &Family) -> Result<ResolvedFrame, SettingsError> {
         let range = self.position_range(family)?;
         let preset = self.preset.unwrap_or(0);
-        check_limit(family, SettingName::Preset, (0, range.last()?), preset)?;
+        check_limit(family, SettingName::Preset, (0, range.last_position()?), preset)?;
         let code = self.code.unwrap_or_else(|| family.code());
-        let bits = PositionCode::new(code, range.last()?)?.bits();
+        let bits = PositionCode::new(code, range.last_position()?)?.bits();
         let frame = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
         let Some(frame) = frame else {
             return Err(SettingsError::None { family: family.name.clone(), field: SettingName::Frame });

@@ -197,7 +197,7 @@ fn wrong_padding_is_reported() {
 fn a_round_axis_divides_into_turns() {
     let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;
     let range = layout.descriptor().range;
-    assert_eq!(layout.position_code().last(), 99);
+    assert_eq!(layout.position_code().last_position(), 99);
     assert_eq!(range.locate(48), Location::Shaft { turns: 6, steps: 0, degrees: 0.0 });
     assert_eq!(range.locate(99), Location::Shaft { turns: 12, steps: 3, degrees: 135.0 });
     assert_eq!(range.position(12, 3), Some(99));

@@ -70,7 +70,7 @@ impl<'a> LayoutProbe<'a> {
             layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == BitMeaning::Invalid);
         let wrong = invalid.fold(form, |all, (at, _)| all.union(Flags::error(at)));
         let lost = u32::from(layout.loses_lowest_bit());
-        let round = layout.position_code().last().wrapping_add(1) >> lost;
+        let round = layout.position_code().last_position().wrapping_add(1) >> lost;
         let most = self.pairs.len() * MAX_MISFIT_PERCENT / 100;
         let most_ends = self.pairs.iter().filter(|(_, end)| *end).count() / 5;
         let (mut misfits, mut at_ends, mut scale) = (0, 0, None);

@@ -17,7 +17,7 @@ fn layout(text: &str) -> Layout {
 /// Returns 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
 fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     let mut rng = Rng::with_seed(7);
-    let last = layout.position_code().last();
+    let last = layout.position_code().last_position();
     let round = u128::from(last) + 1;
     let start = last / 4;
     let frames = (0..2000).map(|index| {
@@ -138,7 +138,11 @@ fn encoders_of_no_family_are_found() {
     })
     .unwrap();
     let search = find(&turning(&excess, 0.7), 12, &families);
-    assert_eq!((search.doubt, search.classes[0].members[0].layout.position_code().last()), (None, 359), "{search:?}");
+    assert_eq!(
+        (search.doubt, search.classes[0].members[0].layout.position_code().last_position()),
+        (None, 359),
+        "{search:?}"
+    );
 
     let parity = crate::devices::ssi::protocol::Parity { clock: 21, even: true };
     let with_parity =

@@ -127,7 +127,7 @@ pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> 
     for group in groups.into_iter().take(CLASSES) {
         let evidence = evidence_for(words, &group, last);
         last = evidence.score;
-        let open = open(words, &group);
+        let open = open_questions(words, &group);
         let members = group.members.into_iter().take(MEMBERS);
         let members = members.map(|LayoutCandidate { family, layout, .. }| LayoutProposal { family, layout }).collect();
         classes.push(Class { members, evidence, open });
@@ -157,7 +157,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
 }
 
 /// Returns the motions of the shaft that would distinguish or confirm the members.
-fn open(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
+fn open_questions(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;
     let differ = |what: fn(&LayoutCandidate) -> Vec<u8>| {

@@ -147,7 +147,7 @@ struct Clocks {
     taken: Vec<(u8, ClockUse)>,
 }
 
-pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError> {
+pub(super) fn build_layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError> {
     let (clocks, word) = (descriptor.clocks, descriptor.clocks_per_word());
     if clocks == 0 || clocks > 64 {
         return Err(LayoutError::Clocks(clocks));
@@ -161,7 +161,7 @@ pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError>
     if descriptor.area > word {
         return Err(LayoutError::Area { area: descriptor.area, clocks: word });
     }
-    let last = descriptor.range.last()?;
+    let last = descriptor.range.last_position()?;
     let code = match (descriptor.coded, descriptor.code) {
         (GrayCoverage::Position, code) => code,
         (GrayCoverage::Area | GrayCoverage::AreaAndErrors, Code::Gray) => Code::Binary,

@@ -23,7 +23,7 @@ pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
     (range, code, coded, zeros, more).prop_filter_map(
         "cannot work",
         |(range, code, coded, (lead, between, tail), (errors, shift_right, inverted, active_low, even, twice))| {
-            let bits = PositionCode::new(code, range.last().ok()?).ok()?.bits();
+            let bits = PositionCode::new(code, range.last_position().ok()?).ok()?.bits();
             let area = lead + between + tail + bits;
             let parity = even.map(|even| Parity { clock: area + errors + 1, even });
             let word = area + errors + u8::from(parity.is_some());
@@ -61,7 +61,7 @@ proptest! {
 
     #[test]
     fn encoded_frames_decode(layout in layouts(), position in any::<u64>(), raised in 0..4_u32) {
-        let last = layout.position_code().last();
+        let last = layout.position_code().last_position();
         let position = last.checked_add(1).map_or(position, |count| position % count);
         let errors = layout.descriptor().errors.len();
         let flags = (0..errors).filter(|index| raised >> index & 1 == 1);
@@ -76,7 +76,7 @@ proptest! {
     /// A parity bit finds every single flipped bit, a repetition every one in either word.
     #[test]
     fn flipped_bits_are_detected_by_parity_and_repetition(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
-        let last = layout.position_code().last();
+        let last = layout.position_code().last_position();
         let position = last.checked_add(1).map_or(position, |count| position % count);
         let clocks = layout.clock_count();
         let frame = layout.encode(position, Flags::NONE).unwrap() ^ 1 << (at % clocks);
@@ -92,7 +92,7 @@ proptest! {
     #[test]
     fn any_bits_decode_without_panic(layout in layouts(), frame in any::<u64>()) {
         let reading = layout.decode(frame);
-        prop_assert!(reading.position <= layout.position_code().last());
+        prop_assert!(reading.position <= layout.position_code().last_position());
         prop_assert_eq!(layout.to_cells(frame).len(), usize::from(layout.clock_count()));
         let _ = layout.to_findings(reading);
     }

@@ -49,7 +49,7 @@ pub(super) fn with_positions(
 }
 
 fn bits(range: &Range, code: Code) -> Result<u8, LayoutError> {
-    Ok(PositionCode::new(code, range.last()?)?.bits())
+    Ok(PositionCode::new(code, range.last_position()?)?.bits())
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Texts of the exports in both languages. The English texts are the same as on the command line.
 
-use super::code;
+use super::code_text;
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Code, ExportText, ModuleObstacle, SettingMeaning};
 use crate::devices::ssi::state::TEXTS;
 
-pub fn export(text: &ExportText) -> Text {
+pub fn export_text(text: &ExportText) -> Text {
     let own = |id| TEXTS.text(id);
     match text {
         ExportText::SheetTitle(title) => own("ssi_sheet.title").with("title", title),
@@ -14,7 +14,7 @@ pub fn export(text: &ExportText) -> Text {
         ExportText::Bits(bits) => own("ssi_sheet.bits").with("bits", bits),
         ExportText::Code => own("ssi_form.code"),
         ExportText::CodeName(Code::Binary) => own("ssi_sheet.dual"),
-        ExportText::CodeName(other) => code(*other),
+        ExportText::CodeName(other) => code_text(*other),
         ExportText::LowestBit => own("ssi_sheet.lowest"),
         ExportText::HighestBit => own("ssi_sheet.highest"),
         ExportText::BitNumber(bit) => own("ssi_sheet.bit").with("bit", bit),
@@ -152,8 +152,8 @@ mod tests {
         let obstacles = obstacles.map(ExportText::Obstacle);
         let values = values.map(|value| ExportText::Setting(2, value));
         for text in others.iter().chain(&codes).chain(&obstacles).chain(&values) {
-            assert_eq!(export(text).to_string_in(English), english_text(text));
-            let german = export(text).to_string_in(German);
+            assert_eq!(export_text(text).to_string_in(English), english_text(text));
+            let german = export_text(text).to_string_in(German);
             assert!(!german.contains('{') && !german.is_empty(), "{german}");
         }
     }

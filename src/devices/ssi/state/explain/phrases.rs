@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{assert_in_both_languages, profile_error_text, url};
+use crate::app::explain::{assert_in_both_languages, profile_error_text, url_error_text};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{ClockUse, LayoutError, RepeatedPart};
 use crate::devices::ssi::state::Encoder;
-use crate::devices::ssi::state::explain::layout;
+use crate::devices::ssi::state::explain::layout_error_text;
 use crate::link::UrlQuery;
 use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
@@ -20,7 +20,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in ["margin=x", "clock=1", "pause=0", "voltage=48"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
-        assert_in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url_error_text(&error), &error);
     }
 }
 
@@ -85,7 +85,7 @@ fn nested_phrases_are_translated_to_german() {
         ),
     ];
     for (error, german) in cases {
-        let words = layout(&error).to_string_in(German);
+        let words = layout_error_text(&error).to_string_in(German);
         assert!(words.contains(german), "{words}");
     }
 }

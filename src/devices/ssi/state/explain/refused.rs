@@ -10,11 +10,11 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
-pub fn layout(error: &LayoutError) -> Text {
+pub fn layout_error_text(error: &LayoutError) -> Text {
     rejection_text(layout_reason(error))
 }
 
-pub fn settings(error: &SettingsError) -> Text {
+pub fn settings_error_text(error: &SettingsError) -> Text {
     rejection_text(settings_reason(error))
 }
 
@@ -208,7 +208,7 @@ fn clock_use_text(taker: &ClockUse) -> Text {
     }
 }
 
-pub fn entry(cause: &Cause) -> Option<Text> {
+pub fn entry_error_text(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::Layout(error) => layout_reason(error),
         EntryError::Preset { preset, last } => TEXTS.text("ssi_entry.preset").with("preset", preset).with("last", last),

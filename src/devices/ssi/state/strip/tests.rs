@@ -51,7 +51,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
     (range, code, coded, zeros, bits, rest).prop_filter_map(
         "cannot work",
         |(range, code, coded, (lead, between, tail, late), (errors, parity), (shift_right, inverted, twice))| {
-            let bits = crate::devices::ssi::protocol::PositionCode::new(code, range.last().ok()?).ok()?.bits();
+            let bits = crate::devices::ssi::protocol::PositionCode::new(code, range.last_position().ok()?).ok()?.bits();
             let between = if matches!(range, Range::Bits { multiturn: 1.., singleturn: 1.. }) { between } else { 0 };
             let needed = lead + between + bits;
             let area = needed + tail;
