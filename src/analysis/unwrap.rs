@@ -46,8 +46,8 @@ impl PositionUnwrapper {
             (None, _) => UnwrappedPosition { steps: word, broken: false },
             (Some(_), None) => UnwrappedPosition { steps: word, broken: gap },
             (Some((before, steps)), Some(range)) => {
-                // The forward distance is 0…range − 1, and the shorter way round is taken. Both ways are equally long
-                // at exactly half.
+                // The forward distance is 0…range − 1, and the shorter direction is used. At exactly half,
+                // both directions are equally long.
                 let forward = (word - before).rem_euclid(range);
                 let backward = range - forward;
                 let step = if forward <= backward { forward } else { -backward };

@@ -68,14 +68,14 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     }
     let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;
     let steps = last.position() as i64 - first.position() as i64;
-    // The shorter way is used.
+    // The shorter direction is used.
     let steps = (steps + range / 2).rem_euclid(range) - range / 2;
     let turns = steps as f64 / f64::powi(2.0, first.singleturn_bits.into());
     let minutes = last.at.duration_since(first.at).as_secs_f64() / 60.0;
     (minutes > 0.0).then(|| turns / minutes)
 }
 
-/// Returns the number of steps between two positions along the shorter way. A shaft at rest may jitter across zero.
+/// Returns the number of steps between two positions in the shorter direction. A shaft at rest may jitter across zero.
 fn shortest_distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     let straight = a.abs_diff(b);
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))

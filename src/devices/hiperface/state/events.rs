@@ -256,7 +256,7 @@ impl SessionEvents for Encoder {
             self.cancel_rest_reading();
         }
         self.handle_interrupted_write(how, texts);
-        // The caller also reports the early end.
+        // The caller also reports the interruption.
         false
     }
 

@@ -239,7 +239,7 @@ pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermissio
     if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
-/// Returns the signed distance between two positions in signal periods, the shorter way within a revolution.
+/// Returns the signed distance between two positions in signal periods, in the shorter direction within a revolution.
 fn signed_distance(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);

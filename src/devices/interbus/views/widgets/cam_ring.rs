@@ -71,7 +71,7 @@ impl Dial {
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
     }
 
-    /// Returns the signed distance from one position to another, along the shorter way around the ring.
+    /// Returns the signed distance from one position to another, in the shorter direction around the ring.
     fn signed_distance(self, from: f64, to: f64) -> f64 {
         (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
     }
@@ -190,7 +190,7 @@ impl Ring<'_> {
         Some(self.dial.point_at(f64::from(at + beyond), self.dial.circle_radius(cam)))
     }
 
-    /// Handles a drag around the ring. In every frame, the position follows the pointer along the shorter way.
+    /// Handles a drag around the ring. In every frame, the position follows the pointer in the shorter direction.
     fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
