@@ -1,35 +1,4 @@
-//! The bridge protocol, version 1. It connects a PC to a small open adapter for the clocked buses SSI and BiSS,
-//! analogue signals and a serial line. Integers are little-endian. See the project's reference `protocol/bridge.md`.
-//!
-//! ```text
-//! COBS( seq  op  body…  crc16 ) 00
-//! ```
+//! The bridge protocol. Its packets, version and limits are in the crate `bridge-codec` (`adapter/codec`), which the
+//! firmware of the adapter uses as well.
 
-#![warn(missing_docs)]
-
-mod cobs;
-mod continuity;
-mod data;
-mod fields;
-mod packet;
-mod receiver;
-mod reply;
-mod request;
-#[cfg(test)]
-mod vectors;
-
-use std::time::Duration;
-
-pub use cobs::{CobsError, decode as cobs_decode, encode as cobs_encode};
-pub use continuity::{Continuity, PacketGap};
-pub use data::{AnalogData, BissData, SsiData, StreamData};
-pub use fields::BodyError;
-pub use packet::{MAX_BODY, Packet, PacketError, crc16};
-pub use receiver::Receiver;
-pub use reply::{BissStatus, Capabilities, ErrorCode, Hello, Message, Reply};
-pub use request::{Operation, Request, SsiFlags};
-
-/// Version of the protocol that this program uses.
-pub const VERSION: u8 = 1;
-/// Time without a reply after which a request is repeated once. After the same time again, it has failed.
-pub const REPEAT_AFTER: Duration = Duration::from_millis(200);
+pub use bridge_codec::*;

@@ -1,5 +1,9 @@
 //! Encoding of the fields in a packet body. Integers are little-endian, and strings are preceded by their length.
 
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+use alloc::vec::Vec;
+
 /// The reason why a body is not valid for its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
@@ -90,12 +94,12 @@ impl<'a> FieldReader<'a> {
     pub(super) fn text(&mut self) -> Result<String, BodyError> {
         let length = self.u8()?;
         let bytes = self.bytes(length.into())?;
-        let text = std::str::from_utf8(bytes).map_err(|_| BodyError::Text { op: self.op })?;
+        let text = core::str::from_utf8(bytes).map_err(|_| BodyError::Text { op: self.op })?;
         Ok(text.to_owned())
     }
 
     pub(super) fn take_rest(&mut self) -> &'a [u8] {
-        std::mem::take(&mut self.rest)
+        core::mem::take(&mut self.rest)
     }
 
     /// Returns `value` if all bytes have been parsed.

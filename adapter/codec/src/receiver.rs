@@ -1,5 +1,7 @@
 //! Assembly of packets from received bytes. Damaged packets are dropped and counted (reference 1).
 
+use alloc::vec::Vec;
+
 use super::packet::{Packet, PacketError};
 
 /// Received bytes that do not form a complete packet yet.
@@ -68,6 +70,7 @@ impl Receiver {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::vec;
 
     fn packets(receiver: &mut Receiver, bytes: &[u8]) -> Vec<Packet> {
         receiver.push(bytes);

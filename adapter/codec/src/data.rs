@@ -1,5 +1,7 @@
 //! Stream packets, which an adapter sends without a request (reference 3).
 
+use alloc::vec::Vec;
+
 use super::fields::{BodyError, FieldReader};
 use super::packet::Packet;
 use super::reply::BissStatus;

@@ -1,6 +1,8 @@
 //! Consistent overhead byte stuffing (COBS). The encoded bytes contain no 00, so a 00 can end each packet. See Cheshire
 //! & Baker, IEEE/ACM Transactions on Networking 7, 1999.
 
+use alloc::vec::Vec;
+
 /// Maximum number of bytes that follow a code byte.
 const BLOCK: usize = 254;
 
@@ -67,6 +69,8 @@ pub fn decode(stuffed: &[u8]) -> Result<Vec<u8>, CobsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::{vec, vec::Vec};
+
     use proptest::prelude::*;
 
     /// The examples from the usual description of COBS, without the terminating 00, are encoded and decoded correctly.

@@ -43,6 +43,7 @@ impl Continuity {
 mod tests {
     use super::super::data::AnalogData;
     use super::*;
+    use std::vec;
 
     fn data(first_index: u32, count: usize, lost: u16) -> StreamData {
         StreamData::Analog(AnalogData { first_index, t0_us: 0, lost, samples: vec![(0, 0); count] })

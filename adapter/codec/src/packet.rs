@@ -1,5 +1,7 @@
 //! Packets, which consist of a sequence number, an operation, a body and a checksum (reference 1).
 
+use alloc::vec::Vec;
+
 use super::cobs::{self, CobsError};
 
 /// Maximum length of a body in bytes.
@@ -111,6 +113,7 @@ const fn crc_table() -> [u16; 256] {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::vec;
 
     /// The CRC matches the check value in the catalogue of parametrised CRC algorithms.
     #[test]

@@ -1,5 +1,7 @@
 //! Requests of a host to an adapter (reference 2).
 
+use alloc::vec::Vec;
+
 use super::fields::{BodyError, FieldReader};
 use super::packet::Packet;
 

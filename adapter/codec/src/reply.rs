@@ -1,5 +1,9 @@
 //! Messages of an adapter, which are replies and unsolicited packets (reference 2 and 3).
 
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::VERSION;
 use super::data::StreamData;
 use super::fields::{BodyError, FieldReader, push_text};
