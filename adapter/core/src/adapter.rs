@@ -1,0 +1,279 @@
+//! Requests of the host, their replies, and the streams.
+//!
+//! SSI and BiSS share their wires, so a stream of one occupies both. HELLO ends the streams and leaves the supply
+//! unchanged.
+
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+
+use bridge_codec::{BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request};
+
+use crate::{
+    BissSetting, Bus, ClockedStream, Clocking, Frame, Outbox, Refusal, RegisterAccess, SsiSetting, access_register,
+};
+
+/// What an adapter tells about itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Name of the adapter.
+    pub name: &'static str,
+    /// Serial number.
+    pub serial: String,
+    /// Version of the firmware.
+    pub firmware: &'static str,
+    /// Capabilities of this build.
+    pub capabilities: Capabilities,
+}
+
+/// An adapter on a [`Bus`].
+#[derive(Debug)]
+pub struct Adapter<B> {
+    bus: B,
+    identity: Identity,
+    receiver: Receiver,
+    outbox: Outbox,
+    ssi: Option<SsiSetting>,
+    biss: Option<BissSetting>,
+    /// Bus that the hardware is set up for.
+    selected: Option<Clocking>,
+    stream: Option<ClockedStream>,
+    /// Time in microseconds before which no frame may begin.
+    free_us: u64,
+    /// Number of the next packet of a stream.
+    pushed: u8,
+    /// Number of valid packets whose content was not.
+    malformed: u32,
+}
+
+const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
+const MALFORMED: Refusal = (ErrorCode::BAD_ARGUMENT, "malformed request");
+const STREAMING: Refusal = (ErrorCode::BUSY, "a stream is running");
+const NOT_SUPPORTED: Refusal = (ErrorCode::NOT_SUPPORTED, "this adapter does not support the operation");
+
+impl<B: Bus> Adapter<B> {
+    /// Creates an adapter that has received nothing yet.
+    pub fn new(bus: B, identity: Identity) -> Self {
+        Adapter {
+            bus,
+            identity,
+            receiver: Receiver::default(),
+            outbox: Outbox::default(),
+            ssi: None,
+            biss: None,
+            selected: None,
+            stream: None,
+            free_us: 0,
+            pushed: 0,
+            malformed: 0,
+        }
+    }
+
+    /// Returns the wires.
+    pub const fn bus(&self) -> &B {
+        &self.bus
+    }
+
+    /// Returns the wires.
+    pub const fn bus_mut(&mut self) -> &mut B {
+        &mut self.bus
+    }
+
+    /// Returns the bytes for the host.
+    pub const fn outbox(&mut self) -> &mut Outbox {
+        &mut self.outbox
+    }
+
+    /// Returns whether [`receive`](Self::receive) may be called. Otherwise the host has to wait.
+    pub fn accepts_bytes(&self) -> bool {
+        self.outbox.has_room()
+    }
+
+    /// Returns whether a stream is running.
+    pub const fn is_streaming(&self) -> bool {
+        self.stream.is_some()
+    }
+
+    /// Returns the number of damaged packets and of packets with invalid content.
+    pub const fn faulty_packets(&self) -> (u64, u32) {
+        (self.receiver.dropped_count(), self.malformed)
+    }
+
+    /// Takes bytes from the host and executes the requests that are complete.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.receiver.push(bytes);
+        while let Some(packet) = self.receiver.next_packet() {
+            let message = self.answer(&packet);
+            self.send(&message, packet.seq);
+        }
+    }
+
+    /// Sends the samples that are ready. Ends the streams if the host no longer fetches them.
+    pub fn poll(&mut self) {
+        if self.outbox.is_stuck(self.bus.now_us()) {
+            self.host_left();
+        }
+        while self.outbox.has_room()
+            && let Some(data) = self.stream.as_mut().and_then(|stream| stream.packet(&self.bus))
+        {
+            self.send(&Message::Data(data), self.pushed);
+            self.pushed = self.pushed.wrapping_add(1);
+        }
+    }
+
+    /// Ends the streams and forgets what has not been sent, because the host has gone.
+    pub fn host_left(&mut self) {
+        self.stop_stream();
+        self.outbox.clear();
+        self.receiver = Receiver::default();
+    }
+
+    fn send(&mut self, message: &Message, seq: u8) {
+        self.outbox.push(&message.emit(seq).emit(), self.bus.now_us());
+    }
+
+    fn answer(&mut self, packet: &Packet) -> Message {
+        let answer = match Request::parse(packet) {
+            Ok(request) => self.execute(&request).map(Message::Reply),
+            Err(error) => {
+                self.malformed = self.malformed.saturating_add(1);
+                Err(if matches!(error, BodyError::Operation(_)) { NOT_SUPPORTED } else { MALFORMED })
+            }
+        };
+        answer.unwrap_or_else(|(code, text)| Message::Error { op: packet.op, code, text: text.to_owned() })
+    }
+
+    fn execute(&mut self, request: &Request) -> Result<Reply, Refusal> {
+        let operation = request.operation();
+        let is_stop = matches!(request, Request::SsiStream { period_us: 0 } | Request::BissStream { period_us: 0 });
+        if is_clocked(operation) && !is_stop && self.stream.is_some() {
+            return Err(STREAMING);
+        }
+        match *request {
+            Request::Hello => Ok(Reply::Hello(self.hello())),
+            Request::SsiConfig { clocks, clock_hz, pause_us, flags } => {
+                let setting = SsiSetting::new(clocks, clock_hz, pause_us, flags)?;
+                self.ssi = Some(setting);
+                Ok(Reply::SsiConfig { clock_hz: setting.clock_hz() })
+            }
+            Request::SsiRead => {
+                let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
+                let Frame { t_us, words } = self.frame(Clocking::Ssi(setting), false);
+                Ok(Reply::SsiRead { t_us, raw: words.join(setting.clocks) as u64 })
+            }
+            Request::SsiStream { period_us } => {
+                let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
+                let period_us = self.stream(Clocking::Ssi(setting), period_us, setting.least_period_us());
+                Ok(Reply::SsiStream { period_us })
+            }
+            Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {
+                let setting = BissSetting::new(clock_hz, data_bits, crc_bits, timeout_us)?;
+                self.biss = Some(setting);
+                Ok(Reply::BissConfig { clock_hz: setting.clock_hz() })
+            }
+            Request::BissRead => {
+                let setting = self.biss.ok_or(NOT_CONFIGURED)?;
+                let Frame { t_us, words } = self.frame(Clocking::Biss(setting), false);
+                let frame = setting.decode(words);
+                Ok(Reply::BissRead { t_us, status: frame.status, raw: frame.raw })
+            }
+            Request::BissRegisterRead { slave, address } => {
+                let value = self.register(RegisterAccess { slave, address, value: None })?;
+                Ok(Reply::BissRegisterRead { value })
+            }
+            Request::BissRegisterWrite { slave, address, value } => {
+                let value = self.register(RegisterAccess { slave, address, value: Some(value) })?;
+                Ok(Reply::BissRegisterWrite { value })
+            }
+            Request::BissStream { period_us } => {
+                let setting = self.biss.ok_or(NOT_CONFIGURED)?;
+                let period_us = self.stream(Clocking::Biss(setting), period_us, setting.least_period_us());
+                Ok(Reply::BissStream { period_us })
+            }
+            Request::Supply { .. }
+            | Request::AnalogConfig { .. }
+            | Request::AnalogStream { .. }
+            | Request::UartConfig { .. }
+            | Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
+        }
+    }
+
+    fn hello(&mut self) -> Hello {
+        self.stop_stream();
+        Hello {
+            capabilities: self.identity.capabilities,
+            max_clock_hz: BissSetting::MAX_HZ,
+            max_sample_hz: 0,
+            name: self.identity.name.to_owned(),
+            serial: self.identity.serial.clone(),
+            firmware: self.identity.firmware.to_owned(),
+        }
+    }
+
+    /// Clocks one frame, after the pause that the previous one requires.
+    fn frame(&mut self, clocking: Clocking, cdm: bool) -> Frame {
+        self.select(clocking);
+        let frame = self.bus.frame(cdm);
+        self.free_us = self.bus.now_us() + pause_us(clocking);
+        frame
+    }
+
+    fn select(&mut self, clocking: Clocking) {
+        self.bus.wait_until(self.free_us);
+        if self.selected != Some(clocking) {
+            self.bus.select(clocking);
+            self.selected = Some(clocking);
+        }
+    }
+
+    fn register(&mut self, access: RegisterAccess) -> Result<u8, Refusal> {
+        let setting = self.biss.ok_or(NOT_CONFIGURED)?;
+        if access.slave > 7 || access.address > 0x7F {
+            return Err((ErrorCode::BAD_ARGUMENT, "slaves 0 to 7 and addresses 00h to 7Fh"));
+        }
+        let result = access_register(access, |cdm| {
+            let frame = setting.decode(self.frame(Clocking::Biss(setting), cdm).words);
+            (frame.status == bridge_codec::BissStatus::OK).then_some(frame.cds)
+        });
+        result.map_err(|error| error.refusal())
+    }
+
+    /// Starts a stream, or ends it with a period of 0. Returns the actual period in microseconds.
+    fn stream(&mut self, clocking: Clocking, period_us: u32, least_us: u32) -> u32 {
+        if period_us == 0 {
+            let same = |stream: &ClockedStream| bus_of(stream.clocking()) == bus_of(clocking);
+            if self.stream.as_ref().is_some_and(same) {
+                self.stop_stream();
+            }
+            return 0;
+        }
+        let period_us = period_us.max(least_us);
+        self.select(clocking);
+        let start_us = self.bus.start(period_us);
+        self.stream = Some(ClockedStream::new(clocking, period_us, start_us));
+        period_us
+    }
+
+    fn stop_stream(&mut self) {
+        if let Some(stream) = self.stream.take() {
+            self.bus.stop();
+            self.free_us = self.bus.now_us() + pause_us(stream.clocking());
+        }
+    }
+}
+
+/// Returns whether an operation uses the clock and data lines.
+fn is_clocked(operation: Operation) -> bool {
+    (Operation::SsiConfig.byte()..=Operation::BissStream.byte()).contains(&operation.byte())
+}
+
+fn bus_of(clocking: Clocking) -> core::mem::Discriminant<Clocking> {
+    core::mem::discriminant(&clocking)
+}
+
+/// Returns the time in microseconds after a frame until the encoder is ready for the next one.
+fn pause_us(clocking: Clocking) -> u64 {
+    u64::from(match clocking {
+        Clocking::Ssi(setting) => setting.pause_us,
+        Clocking::Biss(setting) => setting.timeout_us,
+    }) + 2
+}

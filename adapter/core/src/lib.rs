@@ -1,0 +1,30 @@
+//! The adapter without its hardware: it answers the requests of a host, runs control frames of BiSS and puts the samples
+//! of a stream into packets. Clocks, pins and time belong to a [`Bus`], which the firmware implements with the hardware
+//! of the RP2040, and the tests with a model.
+
+#![no_std]
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+extern crate alloc;
+
+mod adapter;
+mod biss;
+mod bus;
+mod control;
+mod line;
+mod outbox;
+mod ssi;
+mod stream;
+
+pub use adapter::{Adapter, Identity};
+pub use biss::BissSetting;
+pub use bus::{Bus, Clocking, Frame};
+pub use control::{ControlError, RegisterAccess, access_register};
+pub use line::{FrameWords, MAX_WORDS};
+pub use outbox::Outbox;
+pub use ssi::SsiSetting;
+pub use stream::ClockedStream;
+
+/// Error code and message of a refused request.
+pub(crate) type Refusal = (bridge_codec::ErrorCode, &'static str);

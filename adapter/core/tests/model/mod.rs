@@ -1,0 +1,165 @@
+//! Wires with an encoder on a virtual clock, and a host.
+
+use std::collections::VecDeque;
+
+use adapter_core::{Adapter, Bus, Clocking, Frame, FrameWords, Identity};
+use bridge_codec::{Capabilities, Message, Packet, Receiver, Request};
+
+/// Wires of an encoder whose value is a function of time.
+pub(crate) struct Model {
+    pub(crate) now_us: u64,
+    pub(crate) clocking: Option<Clocking>,
+    /// Period and start of the stream.
+    pub(crate) stream: Option<(u32, u64)>,
+    /// Value of an SSI word at a time in microseconds.
+    pub(crate) ssi: fn(u64) -> u64,
+    /// Four levels before the data of a BiSS frame.
+    pub(crate) biss_head: u64,
+    pub(crate) biss: fn(u64) -> u64,
+    /// Control bits of the encoder, and those of the host.
+    pub(crate) cds: VecDeque<bool>,
+    pub(crate) cdm: Vec<bool>,
+    /// Start of each single frame in microseconds.
+    pub(crate) frames: Vec<u64>,
+}
+
+impl Model {
+    fn bits(&self) -> u8 {
+        match self.clocking.unwrap() {
+            Clocking::Ssi(setting) => setting.clocks,
+            Clocking::Biss(setting) => setting.sampled_bits(),
+        }
+    }
+
+    fn words(&self, t_us: u64, cds: bool) -> FrameWords {
+        let value = match self.clocking.unwrap() {
+            Clocking::Ssi(_) => u128::from((self.ssi)(t_us)),
+            Clocking::Biss(setting) => {
+                u128::from(self.biss_head | u64::from(cds)) << setting.bits | u128::from((self.biss)(t_us))
+            }
+        };
+        split(value, self.bits())
+    }
+}
+
+/// Splits a frame into words, first bit first.
+fn split(value: u128, bits: u8) -> FrameWords {
+    let mut words = [0; 3];
+    for at in 0..usize::from(bits) {
+        let bit = (value >> (usize::from(bits) - 1 - at)) as u32 & 1;
+        words[at / 32] = words[at / 32] << 1 | bit;
+    }
+    FrameWords(words)
+}
+
+impl Bus for Model {
+    const CAPACITY: u32 = 1024;
+
+    fn now_us(&self) -> u64 {
+        self.now_us
+    }
+
+    fn wait_until(&mut self, t_us: u64) {
+        self.now_us = self.now_us.max(t_us);
+    }
+
+    fn select(&mut self, clocking: Clocking) {
+        assert_eq!(self.stream, None, "the clock is changed during a stream");
+        self.clocking = Some(clocking);
+    }
+
+    fn frame(&mut self, cdm: bool) -> Frame {
+        assert_eq!(self.stream, None, "a frame during a stream");
+        self.cdm.push(cdm);
+        let cds = self.cds.pop_front().unwrap_or(false);
+        let (t_us, words) = (self.now_us, self.words(self.now_us, cds));
+        self.frames.push(t_us);
+        self.now_us += 40;
+        Frame { t_us, words }
+    }
+
+    fn start(&mut self, period_us: u32) -> u64 {
+        self.stream = Some((period_us, self.now_us + 100));
+        self.now_us + 100
+    }
+
+    fn stop(&mut self) {
+        self.stream = None;
+    }
+
+    fn received(&self) -> u32 {
+        let (period, start) = self.stream.unwrap();
+        let frames = if self.now_us < start { 0 } else { (self.now_us - start) / u64::from(period) + 1 };
+        (frames * u64::from(FrameWords::count(self.bits()))) as u32
+    }
+
+    fn word(&self, number: u32) -> u32 {
+        let behind = self.received().wrapping_sub(number);
+        assert!((1..=Self::CAPACITY).contains(&behind), "word {number} is not kept");
+        let (period, start) = self.stream.unwrap();
+        let words = u32::from(FrameWords::count(self.bits()));
+        // Streams of the tests are shorter than 2³² words.
+        let t_us = start + u64::from(number / words) * u64::from(period);
+        self.words(t_us, false).0[(number % words) as usize]
+    }
+}
+
+/// An adapter and its host.
+pub(crate) struct Bench {
+    pub(crate) adapter: Adapter<Model>,
+    receiver: Receiver,
+    seq: u8,
+}
+
+impl Bench {
+    pub(crate) fn new() -> Self {
+        let model = Model {
+            now_us: 1_000,
+            clocking: None,
+            stream: None,
+            ssi: |t_us| t_us & 0x1FF_FFFF,
+            biss_head: 0b1010,
+            biss: |_| 0x024_6980_00CF,
+            cds: VecDeque::new(),
+            cdm: Vec::new(),
+            frames: Vec::new(),
+        };
+        let identity = Identity {
+            name: "Model",
+            serial: "M1".to_owned(),
+            firmware: "1.2",
+            capabilities: Capabilities::SSI.union(Capabilities::BISS).union(Capabilities::BISS_REGISTERS),
+        };
+        Bench { adapter: Adapter::new(model, identity), receiver: Receiver::default(), seq: 0 }
+    }
+
+    pub(crate) fn model(&mut self) -> &mut Model {
+        self.adapter.bus_mut()
+    }
+
+    /// Lets time pass and returns what the adapter has sent.
+    pub(crate) fn run(&mut self, us: u64) -> Vec<Message> {
+        self.model().now_us += us;
+        self.adapter.poll();
+        self.fetch().iter().map(|packet| Message::parse(packet).unwrap()).collect()
+    }
+
+    pub(crate) fn fetch(&mut self) -> Vec<Packet> {
+        let now_us = self.model().now_us;
+        let bytes = self.adapter.outbox().pending().to_vec();
+        self.adapter.outbox().consume(bytes.len(), now_us);
+        self.receiver.push(&bytes);
+        std::iter::from_fn(|| self.receiver.next_packet()).collect()
+    }
+
+    /// Sends a request and returns the message with its sequence number.
+    pub(crate) fn ask(&mut self, request: &Request) -> Message {
+        self.seq = self.seq.wrapping_add(1);
+        let packet = request.emit(self.seq);
+        self.adapter.receive(&packet.emit());
+        let answers = self.fetch();
+        let [answer] = answers.as_slice() else { panic!("{request:?}: {answers:?}") };
+        assert_eq!(answer.seq, self.seq);
+        Message::parse(answer).unwrap()
+    }
+}
