@@ -24,7 +24,7 @@ fn the_adapters_codec_and_core_need_no_operating_system() {
 
 #[test]
 fn every_module_of_the_adapter_is_documented_and_short() {
-    for (path, text) in adapter_sources(&["codec/src", "core/src", "core/tests"]) {
+    for (path, text) in adapter_sources(&["codec/src", "core/src", "core/tests", "firmware/src"]) {
         assert!(text.starts_with("//!"), "{} does not open with //!", path.display());
         let length = text.lines().count();
         assert!(length <= 450, "{} has {length} lines: split it by concept", path.display());

@@ -102,7 +102,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 #[test]
 fn no_comment_has_a_forbidden_word() {
     let (mut files, mut found, mut read) = (Vec::new(), Vec::new(), 0);
-    for folder in ["src", "adapter/codec/src", "adapter/core/src"] {
+    for folder in ["src", "adapter/codec/src", "adapter/core/src", "adapter/firmware/src"] {
         sources(Path::new(folder), &mut files);
     }
     for path in files {

@@ -270,10 +270,10 @@ fn bus_of(clocking: Clocking) -> core::mem::Discriminant<Clocking> {
     core::mem::discriminant(&clocking)
 }
 
-/// Returns the time in microseconds after a frame until the encoder is ready for the next one.
+/// Returns the time in microseconds after a frame until the encoder is ready for the next one, and the clock line is high.
 fn pause_us(clocking: Clocking) -> u64 {
     u64::from(match clocking {
         Clocking::Ssi(setting) => setting.pause_us,
         Clocking::Biss(setting) => setting.timeout_us,
-    }) + 2
+    }) + 3
 }

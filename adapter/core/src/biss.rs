@@ -73,7 +73,7 @@ impl BissSetting {
     }
 
     /// Returns the longest duration of a frame in microseconds, without the time-out.
-    pub(crate) fn frame_us(self) -> u32 {
+    pub fn frame_us(self) -> u32 {
         let steps = self.search_steps();
         // Until the acknowledgement, until the start bit, start bit, control bit, data and two clocks at the end.
         let clocks = (steps / 6 + 1) + steps + 4 + u32::from(self.bits);

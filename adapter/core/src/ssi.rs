@@ -44,7 +44,7 @@ impl SsiSetting {
     }
 
     /// Returns the duration of the clock burst in microseconds, rounded up.
-    pub(crate) fn burst_us(self) -> u32 {
+    pub fn burst_us(self) -> u32 {
         // 64 clocks at the lowest frequency are 1280 µs.
         (u32::from(self.clocks) * u32::from(self.divisor)).div_ceil(12)
     }

@@ -1,0 +1,85 @@
+//! A running state machine with its FIFOs.
+
+use pio::{Instruction, InstructionOperands, JmpCondition, MovDestination, MovOperation, MovSource, SetDestination};
+use rp2040_hal as hal;
+
+use hal::pio::{Running, Rx, StateMachine, Tx, ValidStateMachine};
+
+pub(super) struct Machine<SM: ValidStateMachine> {
+    machine: StateMachine<SM, Running>,
+    rx: Rx<SM>,
+    tx: Tx<SM>,
+    /// Address of the first instruction.
+    start: u8,
+    /// Level that the machine drives while it waits, if it drives a pin.
+    idle: Option<u8>,
+}
+
+impl<SM: ValidStateMachine> Machine<SM> {
+    pub(super) fn new(machine: StateMachine<SM, Running>, rx: Rx<SM>, tx: Tx<SM>, start: u8, idle: Option<u8>) -> Self {
+        Machine { machine, rx, tx, start, idle }
+    }
+
+    /// Sets the number of system clocks in a cycle.
+    pub(super) fn set_divisor(&mut self, divisor: u16) {
+        self.machine.clock_divisor_fixed_point(divisor, 0);
+    }
+
+    /// Loads OSR. The machine must be waiting.
+    pub(super) fn load_osr(&mut self, value: u32) {
+        self.tx.write(value);
+        self.execute(InstructionOperands::PULL { if_empty: false, block: false });
+    }
+
+    /// Loads Y, by way of OSR. The machine must be waiting.
+    pub(super) fn load_y(&mut self, value: u32) {
+        self.load_osr(value);
+        self.execute(InstructionOperands::MOV {
+            destination: MovDestination::Y,
+            op: MovOperation::None,
+            source: MovSource::OSR,
+        });
+    }
+
+    pub(super) fn clear_x(&mut self) {
+        self.execute(InstructionOperands::SET { destination: SetDestination::X, data: 0 });
+    }
+
+    /// Begins the program again.
+    pub(super) fn restart(&mut self) {
+        self.execute(InstructionOperands::JMP { condition: JmpCondition::Always, address: self.start });
+    }
+
+    /// Adds a word to the input of the machine.
+    pub(super) fn send(&mut self, word: u32) {
+        self.tx.write(word);
+    }
+
+    /// Returns whether the machine has taken all words.
+    pub(super) fn has_taken_all(&self) -> bool {
+        self.tx.is_empty()
+    }
+
+    /// Returns the next word, for which it waits.
+    pub(super) fn receive(&mut self) -> u32 {
+        loop {
+            if let Some(word) = self.rx.read() {
+                return word;
+            }
+        }
+    }
+
+    /// Forgets the words that have been received.
+    pub(super) fn discard(&mut self) {
+        while self.rx.read().is_some() {}
+    }
+
+    /// Returns the address of the output, and the number of its requests to the DMA.
+    pub(super) fn output(&self) -> (*const u32, u8) {
+        (self.rx.fifo_address(), self.rx.dreq_value())
+    }
+
+    fn execute(&mut self, operands: InstructionOperands) {
+        self.machine.exec_instruction(Instruction { operands, delay: 0, side_set: self.idle });
+    }
+}

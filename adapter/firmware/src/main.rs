@@ -1,0 +1,145 @@
+//! Firmware of the adapter for the Raspberry Pi Pico (RP2040). What the adapter does is in `adapter-core`; here are the
+//! clocks, the pins, the state machines of the lines, and USB.
+
+#![no_std]
+#![no_main]
+
+extern crate alloc;
+
+mod clocks;
+mod line;
+mod pins;
+mod ring;
+mod usb;
+mod wake;
+
+use alloc::borrow::ToOwned;
+use core::mem::MaybeUninit;
+use core::panic::PanicInfo;
+
+use adapter_core::{Adapter, Bus as _, Identity};
+use bridge_codec::Capabilities;
+use embedded_alloc::LlffHeap;
+use embedded_hal::digital::{OutputPin as _, StatefulOutputPin as _};
+use rp2040_hal as hal;
+
+use hal::fugit::ExtU32 as _;
+use hal::gpio::PinState;
+use hal::pac;
+use hal::usb::UsbBus;
+use hal::{Sio, Timer, Watchdog};
+use usb_device::bus::UsbBusAllocator;
+
+use line::{Line, Pins};
+use ring::Ring;
+
+/// Second stage of the boot loader, which connects the flash.
+// Safety: the boot loader expects these bytes in this section.
+#[unsafe(link_section = ".boot2")]
+#[used]
+static BOOT2: [u8; 256] = rp2040_boot2::BOOT_LOADER_GENERIC_03H;
+
+#[global_allocator]
+static HEAP: LlffHeap = LlffHeap::empty();
+/// Bytes for packets. A packet has 516, and at most a few are in memory.
+const HEAP_BYTES: usize = 48 * 1024;
+
+const SERIAL_NUMBER: &str = "1";
+/// Longest sleep of the main loop in microseconds, with and without a stream.
+const SLEEP_US: [u32; 2] = [2_000, 100_000];
+/// Time after which the watchdog restarts an adapter that no longer runs.
+const WATCHDOG_MS: u32 = 2_000;
+
+#[hal::entry]
+fn main() -> ! {
+    // Without its peripherals, the adapter waits for the watchdog.
+    let _ = run();
+    loop {
+        cortex_m::asm::nop();
+    }
+}
+
+fn run() -> Option<()> {
+    static mut MEMORY: [MaybeUninit<u8>; HEAP_BYTES] = [MaybeUninit::uninit(); HEAP_BYTES];
+    // Safety: `run` is called once, before anything is allocated, and nothing else uses this memory.
+    unsafe { HEAP.init(&raw mut MEMORY as usize, HEAP_BYTES) };
+
+    let mut pac = pac::Peripherals::take()?;
+    let mut watchdog = Watchdog::new(pac.WATCHDOG);
+    watchdog.enable_tick_generation((clocks::CRYSTAL_HZ / 1_000_000) as u8);
+    watchdog.start(WATCHDOG_MS.millis());
+    let clocks = clocks::start(pac.XOSC, pac.CLOCKS, pac.PLL_SYS, pac.PLL_USB, &mut pac.RESETS).ok()?;
+    let mut timer = Timer::new(pac.TIMER, &mut pac.RESETS, &clocks);
+    wake::start(&mut timer);
+
+    let sio = Sio::new(pac.SIO);
+    let pins = hal::gpio::Pins::new(pac.IO_BANK0, pac.PADS_BANK0, sio.gpio_bank0, &mut pac.RESETS);
+    // The driver of the clock line stays off until the clock is high.
+    let mut driver = pins.gpio4.into_push_pull_output_in_state(PinState::Low);
+    let line = Line::new(
+        pac.PIO0,
+        pac.PIO1,
+        Pins { clock: pins.gpio2.reconfigure(), data: pins.gpio3.reconfigure(), done: pins.gpio5.reconfigure() },
+        Ring::new(pac.DMA, &mut pac.RESETS),
+        timer,
+        &mut pac.RESETS,
+    )
+    .ok()?;
+    let Ok(()) = driver.set_high();
+    let mut led = pins.gpio25.into_push_pull_output();
+
+    let bus = UsbBus::new(pac.USBCTRL_REGS, pac.USBCTRL_DPRAM, clocks.usb_clock, true, &mut pac.RESETS);
+    let bus: &'static _ = cortex_m::singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
+    if !usb::start(bus, SERIAL_NUMBER) {
+        return None;
+    }
+    let mut adapter = Adapter::new(
+        line,
+        Identity {
+            name: usb::PRODUCT,
+            serial: SERIAL_NUMBER.to_owned(),
+            firmware: env!("CARGO_PKG_VERSION"),
+            capabilities: Capabilities::SSI.union(Capabilities::BISS).union(Capabilities::BISS_REGISTERS),
+        },
+    );
+    let mut was_open = false;
+    loop {
+        watchdog.feed();
+        let is_open = usb::is_open();
+        if was_open && !is_open {
+            adapter.host_left();
+        }
+        was_open = is_open;
+
+        let mut is_idle = true;
+        let mut buffer = [0; 64];
+        if adapter.accepts_bytes() {
+            let count = usb::read(&mut buffer);
+            if let Some(bytes) = buffer.get(..count).filter(|bytes| !bytes.is_empty()) {
+                adapter.receive(bytes);
+                let Ok(()) = led.toggle();
+                is_idle = false;
+            }
+        }
+        adapter.poll();
+        let sent = usb::write(adapter.outbox().pending());
+        if sent > 0 {
+            let now_us = adapter.bus().now_us();
+            adapter.outbox().consume(sent, now_us);
+            is_idle = false;
+        }
+        if is_idle {
+            wake::after(if adapter.is_streaming() { SLEEP_US[0] } else { SLEEP_US[1] });
+            usb::sleep();
+        }
+    }
+}
+
+/// A panic stops the adapter, and the watchdog restarts it.
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    cortex_m::interrupt::disable();
+    loop {
+        cortex_m::asm::nop();
+    }
+}

@@ -1,0 +1,8 @@
+//! Pins of the Pico. The page `docs/adapter.md` has their wiring.
+
+/// Clock of SSI and MA of BiSS, to the driver.
+pub(crate) const CLOCK: u8 = 2;
+/// Data of SSI and SLO of BiSS, from the receiver.
+pub(crate) const DATA: u8 = 3;
+/// Connects the two machines of BiSS. Nothing must be wired to it.
+pub(crate) const DONE: u8 = 5;

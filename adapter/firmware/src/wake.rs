@@ -1,0 +1,42 @@
+//! The alarm that ends a sleep of the main loop.
+
+use core::cell::RefCell;
+
+use critical_section::Mutex;
+use rp2040_hal as hal;
+
+use hal::fugit::ExtU32 as _;
+use hal::pac::{Interrupt, NVIC, interrupt};
+use hal::timer::{Alarm as _, Alarm0, Timer};
+
+static ALARM: Mutex<RefCell<Option<Alarm0>>> = Mutex::new(RefCell::new(None));
+
+/// Prepares the alarm.
+pub(crate) fn start(timer: &mut Timer) {
+    if let Some(mut alarm) = timer.alarm_0() {
+        alarm.enable_interrupt();
+        critical_section::with(|section| ALARM.borrow(section).replace(Some(alarm)));
+        // Safety: the handler uses only what it locks.
+        unsafe { NVIC::unmask(Interrupt::TIMER_IRQ_0) };
+    }
+}
+
+/// Sets the time after which a sleep ends, in microseconds.
+pub(crate) fn after(us: u32) {
+    critical_section::with(|section| {
+        if let Some(alarm) = ALARM.borrow_ref_mut(section).as_mut() {
+            // An alarm that is already due rings at once.
+            let _ = alarm.schedule(us.micros());
+        }
+    });
+}
+
+#[interrupt]
+fn TIMER_IRQ_0() {
+    critical_section::with(|section| {
+        if let Some(alarm) = ALARM.borrow_ref_mut(section).as_mut() {
+            alarm.clear_interrupt();
+        }
+    });
+    crate::usb::note_event();
+}
