@@ -28,9 +28,14 @@ export class Registers {
 
   write(address, value) {
     const bank = this.direct[0x40];
-    if (address < 0x40) {
-      if (bank !== 2 && bank !== 3 && this.banks[bank]) this.banks[bank][address] = value;
-    } else if ([0x40, 0x6a, 0x6b].includes(address)) this.direct[address] = value;
+    if (address === 0x6a) {
+      // A mode needs the password; the mode 0 does not.
+      if (value === 0 || this.direct[0x6b] === 0x2a) this.direct[0x6a] = value;
+    } else if (address === 0x40 || address === 0x6b) this.direct[address] = value;
+    else if (address === 0x1a && bank === 0 && this.direct[0x6a] === 4) {
+      // Motor and OEM data, section 5.3: 1 and 2 begin to write, 3 saves, 4 cancels.
+      this.banks[0][0x1b] = value === 1 || value === 2 ? 1 : 0;
+    } else if (address < 0x40 && bank >= 4 && this.banks[bank] && this.banks[0][0x1b] === 1) this.banks[bank][address] = value;
   }
 }
 
@@ -74,11 +79,13 @@ export class Control {
     return 0;
   }
 
-  /** Takes the bit of the host at the end of a frame. */
+  /** Takes the bit of the host at the end of a frame. 14 zeros end any access. */
   cdm(bit) {
+    const mayStart = this.zeros >= 14;
+    this.zeros = bit ? 0 : this.zeros + 1;
+    if (this.zeros >= 14) this.bits = null;
     if (!this.bits) {
-      if (bit && this.zeros >= 14) this.bits = [1];
-      this.zeros = bit ? 0 : this.zeros + 1;
+      if (bit && mayStart) this.bits = [1];
       return;
     }
     this.bits.push(bit);
@@ -87,9 +94,6 @@ export class Control {
       if (this.bits[17] === 1 && crc4(data, 8) === this.number(27, 4)) this.registers.write(this.number(5, 7), data);
       this.accesses++;
     }
-    if (this.bits.length === 33) {
-      this.bits = null;
-      this.zeros = 0;
-    }
+    if (this.bits.length === 33) this.bits = null;
   }
 }
