@@ -148,6 +148,20 @@ class Biss(unittest.TestCase):
         self.assertEqual(frames["last_steps"] - frames["first_steps"], frames["frames"] - 1)
 
 
+class SineCosine(unittest.TestCase):
+    def test_the_analysis_gives_what_is_modelled(self):
+        sine, cosine, sine_offset, cosine_offset = 0.5, 0.475, 0.06, -0.045
+        # The cosine is converted 2 µs after the sine, which would be a phase error of 0.72° at 1 kHz.
+        for hz, rate, seconds in [(1000, 100_000, 0.2), (5000, 100_000, 0.1), (100, 20_000, 0.3)]:
+            with self.subTest(hz), Adapter("--sine", f"{hz},{sine},{cosine},{sine_offset},{cosine_offset}") as adapter:
+                found = json.loads("\n".join(adapter.studio("analyse", "--seconds", str(seconds), "--rate", str(rate), "--json")))
+            self.assertGreaterEqual(found["samples"], rate * seconds)
+            for name, expected in [("offset_sin_v", sine_offset), ("offset_cos_v", cosine_offset), ("frequency_hz", hz),
+                                   ("gain_ratio", cosine / sine)]:
+                self.assertLess(abs(found[name] - expected), abs(expected) / 100, f"{hz} Hz: {name} {found[name]}")
+            self.assertLess(abs(found["phase_error_deg"]), 0.05, f"{hz} Hz: the skew is corrected")
+
+
 if __name__ == "__main__":
     STUDIO, FIRMWARE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
     unittest.main(argv=[sys.argv[0], "-v", *sys.argv[3:]])

@@ -2,9 +2,9 @@
 
 use alloc::vec::Vec;
 
+use super::codes::BissStatus;
 use super::fields::{BodyError, FieldReader};
 use super::packet::Packet;
-use super::reply::BissStatus;
 
 /// Samples of a stream.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -15,6 +15,7 @@ extern crate alloc;
 extern crate std;
 
 mod cobs;
+mod codes;
 mod continuity;
 mod data;
 mod fields;
@@ -28,12 +29,13 @@ mod vectors;
 use core::time::Duration;
 
 pub use cobs::{CobsError, decode as cobs_decode, encode as cobs_encode};
+pub use codes::{BissStatus, Capabilities, ErrorCode, RestartReason, SupplyFaults};
 pub use continuity::{Continuity, PacketGap};
 pub use data::{AnalogData, BissData, SsiData, StreamData};
 pub use fields::BodyError;
 pub use packet::{MAX_BODY, Packet, PacketError, crc16};
 pub use receiver::Receiver;
-pub use reply::{BissStatus, Capabilities, ErrorCode, Hello, Message, Reply};
+pub use reply::{AdapterStatus, Hello, Message, Reply};
 pub use request::{Operation, Request, SsiFlags};
 
 /// Version of the protocol that this program uses.

@@ -5,6 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::VERSION;
+use super::codes::{BissStatus, Capabilities, ErrorCode, RestartReason, SupplyFaults};
 use super::data::StreamData;
 use super::fields::{BodyError, FieldReader, push_text};
 use super::packet::Packet;
@@ -42,6 +43,8 @@ pub enum Reply {
         /// Measured current in milliamperes.
         milliampere: u16,
     },
+    /// Condition of the adapter.
+    Status(AdapterStatus),
     /// The SSI clock has been configured.
     SsiConfig {
         /// Actual clock in hertz.
@@ -102,6 +105,11 @@ pub enum Reply {
         /// Whether the stream is running.
         on: bool,
     },
+    /// Time between the samples of sine and cosine.
+    AnalogSkew {
+        /// Time in nanoseconds by which the cosine is sampled after the sine of the same sample.
+        skew_ns: u16,
+    },
     /// The serial line has been configured.
     UartConfig {
         /// Actual baud rate.
@@ -133,101 +141,23 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// The capabilities of an adapter as a set of bits. Unknown bits are preserved.
+/// Condition of an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Capabilities(u32);
-
-/// The status of a BiSS frame. Unknown values are preserved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct BissStatus(u8);
-
-/// The reason for a rejection as a code. Unknown codes are preserved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ErrorCode(u8);
-
-impl Capabilities {
-    /// The adapter reads SSI words.
-    pub const SSI: Capabilities = Capabilities(1 << 0);
-    /// The adapter reads BiSS frames.
-    pub const BISS: Capabilities = Capabilities(1 << 1);
-    /// The adapter reads and writes BiSS registers.
-    pub const BISS_REGISTERS: Capabilities = Capabilities(1 << 2);
-    /// The adapter samples analogue signals.
-    pub const ANALOG: Capabilities = Capabilities(1 << 3);
-    /// The adapter has an RS-485 line.
-    pub const UART: Capabilities = Capabilities(1 << 4);
-    /// The adapter can switch the encoder supply.
-    pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// The encoder supply is on. This bit is a state and not a capability. Adapters that do not report the state leave
-    /// it clear.
-    pub const SUPPLY_ON: Capabilities = Capabilities(1 << 6);
-
-    /// Creates capabilities from their bits. Every value is valid.
-    pub const fn new(word: u32) -> Self {
-        Capabilities(word)
-    }
-
-    /// Returns the capabilities as bits.
-    pub const fn to_bits(self) -> u32 {
-        self.0
-    }
-
-    /// Returns whether this set contains all of `others`.
-    pub const fn contains(self, others: Capabilities) -> bool {
-        self.0 & others.0 == others.0
-    }
-
-    /// Returns the union of two sets.
-    #[must_use]
-    pub const fn union(self, others: Capabilities) -> Self {
-        Capabilities(self.0 | others.0)
-    }
-}
-
-impl BissStatus {
-    /// The frame was read.
-    pub const OK: BissStatus = BissStatus(0);
-    /// The encoder did not acknowledge the frame.
-    pub const NO_ACKNOWLEDGE: BissStatus = BissStatus(1);
-    /// The data line is stuck at 0.
-    pub const STUCK_LOW: BissStatus = BissStatus(2);
-    /// The data line is stuck at 1.
-    pub const STUCK_HIGH: BissStatus = BissStatus(3);
-
-    /// Creates a status from its byte. Every value is valid.
-    pub const fn new(byte: u8) -> Self {
-        BissStatus(byte)
-    }
-
-    /// Returns the byte of the status.
-    pub const fn byte(self) -> u8 {
-        self.0
-    }
-}
-
-impl ErrorCode {
-    /// The adapter does not support the operation.
-    pub const NOT_SUPPORTED: ErrorCode = ErrorCode(1);
-    /// The adapter does not accept a value of the request.
-    pub const BAD_ARGUMENT: ErrorCode = ErrorCode(2);
-    /// The adapter is busy with a stream.
-    pub const BUSY: ErrorCode = ErrorCode(3);
-    /// The encoder does not reply.
-    pub const NO_ANSWER: ErrorCode = ErrorCode(4);
-    /// The control frame of the encoder has a CRC error.
-    pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
-    /// The adapter was too slow.
-    pub const OVERRUN: ErrorCode = ErrorCode(6);
-
-    /// Creates an error code from its byte. Every value is valid.
-    pub const fn new(byte: u8) -> Self {
-        ErrorCode(byte)
-    }
-
-    /// Returns the byte of the error code.
-    pub const fn byte(self) -> u8 {
-        self.0
-    }
+pub struct AdapterStatus {
+    /// Time since the start of the adapter in microseconds.
+    pub t_us: u64,
+    /// Reason for the last start.
+    pub restart: RestartReason,
+    /// Faults that are present.
+    pub faults: SupplyFaults,
+    /// Voltage before the switch of the encoder supply in millivolts. Adapters without a supply have 0.
+    pub input_millivolt: u16,
+    /// Number of damaged packets that the adapter has received.
+    pub damaged: u32,
+    /// Number of packets whose content was not valid.
+    pub malformed: u32,
+    /// Number of samples that the host has not fetched in time.
+    pub lost: u32,
 }
 
 impl Message {
@@ -242,7 +172,7 @@ impl Message {
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
             let mut fields = FieldReader::new(packet.op, &packet.body);
-            let error = Message::Error { op: fields.u8()?, code: ErrorCode(fields.u8()?), text: fields.text()? };
+            let error = Message::Error { op: fields.u8()?, code: ErrorCode::new(fields.u8()?), text: fields.text()? };
             return fields.finish(error);
         }
         if let Some(data) = StreamData::parse(packet)? {
@@ -257,7 +187,7 @@ impl Message {
             Message::Reply(reply) => reply.emit(seq),
             Message::Data(data) => data.emit(seq),
             Message::Error { op, code, text } => {
-                let mut body = vec![*op, code.0];
+                let mut body = vec![*op, code.byte()];
                 push_text(&mut body, text);
                 Packet { seq, op: Self::ERROR, body }
             }
@@ -271,6 +201,7 @@ impl Reply {
         match self {
             Reply::Hello(_) => Operation::Hello,
             Reply::Supply { .. } => Operation::Supply,
+            Reply::Status(_) => Operation::Status,
             Reply::SsiConfig { .. } => Operation::SsiConfig,
             Reply::SsiRead { .. } => Operation::SsiRead,
             Reply::SsiStream { .. } => Operation::SsiStream,
@@ -281,6 +212,7 @@ impl Reply {
             Reply::BissStream { .. } => Operation::BissStream,
             Reply::AnalogConfig { .. } => Operation::AnalogConfig,
             Reply::AnalogStream { .. } => Operation::AnalogStream,
+            Reply::AnalogSkew { .. } => Operation::AnalogSkew,
             Reply::UartConfig { .. } => Operation::UartConfig,
             Reply::UartTransfer { .. } => Operation::UartTransfer,
         }
@@ -291,7 +223,7 @@ impl Reply {
         match self {
             Reply::Hello(hello) => {
                 body.push(VERSION);
-                for word in [hello.capabilities.0, hello.max_clock_hz, hello.max_sample_hz] {
+                for word in [hello.capabilities.to_bits(), hello.max_clock_hz, hello.max_sample_hz] {
                     body.extend(word.to_le_bytes());
                 }
                 for text in [&hello.name, &hello.serial, &hello.firmware] {
@@ -302,6 +234,14 @@ impl Reply {
                 body.push(u8::from(*on));
                 body.extend(millivolt.to_le_bytes());
                 body.extend(milliampere.to_le_bytes());
+            }
+            Reply::Status(status) => {
+                body.extend(status.t_us.to_le_bytes());
+                body.extend([status.restart.byte(), status.faults.bits()]);
+                body.extend(status.input_millivolt.to_le_bytes());
+                for count in [status.damaged, status.malformed, status.lost] {
+                    body.extend(count.to_le_bytes());
+                }
             }
             Reply::SsiConfig { clock_hz: word }
             | Reply::BissConfig { clock_hz: word }
@@ -314,7 +254,7 @@ impl Reply {
             }
             Reply::BissRead { t_us, status, raw } => {
                 body.extend(t_us.to_le_bytes());
-                body.push(status.0);
+                body.push(status.byte());
                 body.extend(raw.to_le_bytes());
             }
             Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value } => body.push(*value),
@@ -324,6 +264,7 @@ impl Reply {
                 body.push(*bits);
             }
             Reply::AnalogStream { on } => body.push(u8::from(*on)),
+            Reply::AnalogSkew { skew_ns } => body.extend(skew_ns.to_le_bytes()),
             Reply::UartTransfer { t_us, rx } => {
                 body.extend(t_us.to_le_bytes());
                 body.extend(rx);
@@ -344,7 +285,7 @@ impl Reply {
                     return Err(BodyError::Version { expected: VERSION, got });
                 }
                 Reply::Hello(Hello {
-                    capabilities: Capabilities(fields.u32()?),
+                    capabilities: Capabilities::new(fields.u32()?),
                     max_clock_hz: fields.u32()?,
                     max_sample_hz: fields.u32()?,
                     name: fields.text()?,
@@ -355,12 +296,21 @@ impl Reply {
             Operation::Supply => {
                 Reply::Supply { on: fields.take_switch("on")?, millivolt: fields.u16()?, milliampere: fields.u16()? }
             }
+            Operation::Status => Reply::Status(AdapterStatus {
+                t_us: fields.u64()?,
+                restart: RestartReason::new(fields.u8()?),
+                faults: SupplyFaults::new(fields.u8()?),
+                input_millivolt: fields.u16()?,
+                damaged: fields.u32()?,
+                malformed: fields.u32()?,
+                lost: fields.u32()?,
+            }),
             Operation::SsiConfig => Reply::SsiConfig { clock_hz: fields.u32()? },
             Operation::SsiRead => Reply::SsiRead { t_us: fields.u64()?, raw: fields.u64()? },
             Operation::SsiStream => Reply::SsiStream { period_us: fields.u32()? },
             Operation::BissConfig => Reply::BissConfig { clock_hz: fields.u32()? },
             Operation::BissRead => {
-                Reply::BissRead { t_us: fields.u64()?, status: BissStatus(fields.u8()?), raw: fields.u64()? }
+                Reply::BissRead { t_us: fields.u64()?, status: BissStatus::new(fields.u8()?), raw: fields.u64()? }
             }
             Operation::BissRegisterRead => Reply::BissRegisterRead { value: fields.u8()? },
             Operation::BissRegisterWrite => Reply::BissRegisterWrite { value: fields.u8()? },
@@ -371,6 +321,7 @@ impl Reply {
                 bits: fields.u8()?,
             },
             Operation::AnalogStream => Reply::AnalogStream { on: fields.take_switch("on")? },
+            Operation::AnalogSkew => Reply::AnalogSkew { skew_ns: fields.u16()? },
             Operation::UartConfig => Reply::UartConfig { baud: fields.u32()? },
             Operation::UartTransfer => Reply::UartTransfer { t_us: fields.u64()?, rx: fields.take_rest().to_vec() },
         };

@@ -13,6 +13,8 @@ pub enum Operation {
     Hello = 0x01,
     /// Switches the encoder supply and reads its state.
     Supply = 0x02,
+    /// Reads the condition of the adapter.
+    Status = 0x03,
     /// Configures the SSI clock.
     SsiConfig = 0x10,
     /// Reads an SSI word.
@@ -33,6 +35,8 @@ pub enum Operation {
     AnalogConfig = 0x30,
     /// Starts or ends a stream of analogue samples.
     AnalogStream = 0x31,
+    /// Reads the time between the samples of sine and cosine.
+    AnalogSkew = 0x33,
     /// Configures the serial line.
     UartConfig = 0x40,
     /// Sends and receives bytes on the serial line.
@@ -51,6 +55,10 @@ pub enum Request {
         /// Voltage in millivolts. It must be one that the description of the encoder allows.
         millivolt: u16,
     },
+    /// Reads the condition of the adapter. Adapters with [`STATUS`] support it.
+    ///
+    /// [`STATUS`]: crate::Capabilities::STATUS
+    Status,
     /// Configures the SSI clock.
     SsiConfig {
         /// Number of bits in a word, 1 to 64.
@@ -113,6 +121,10 @@ pub enum Request {
         /// Whether to start the stream.
         on: bool,
     },
+    /// Reads the time between the samples of sine and cosine. Adapters with [`ANALOG_SKEW`] support it.
+    ///
+    /// [`ANALOG_SKEW`]: crate::Capabilities::ANALOG_SKEW
+    AnalogSkew,
     /// Configures the serial line.
     UartConfig {
         /// Baud rate.
@@ -159,9 +171,10 @@ impl SsiFlags {
 
 impl Operation {
     /// All operations.
-    pub const ALL: [Operation; 14] = [
+    pub const ALL: [Operation; 16] = [
         Operation::Hello,
         Operation::Supply,
+        Operation::Status,
         Operation::SsiConfig,
         Operation::SsiRead,
         Operation::SsiStream,
@@ -172,6 +185,7 @@ impl Operation {
         Operation::BissStream,
         Operation::AnalogConfig,
         Operation::AnalogStream,
+        Operation::AnalogSkew,
         Operation::UartConfig,
         Operation::UartTransfer,
     ];
@@ -196,6 +210,7 @@ impl Request {
         match self {
             Request::Hello => Operation::Hello,
             Request::Supply { .. } => Operation::Supply,
+            Request::Status => Operation::Status,
             Request::SsiConfig { .. } => Operation::SsiConfig,
             Request::SsiRead => Operation::SsiRead,
             Request::SsiStream { .. } => Operation::SsiStream,
@@ -206,6 +221,7 @@ impl Request {
             Request::BissStream { .. } => Operation::BissStream,
             Request::AnalogConfig { .. } => Operation::AnalogConfig,
             Request::AnalogStream { .. } => Operation::AnalogStream,
+            Request::AnalogSkew => Operation::AnalogSkew,
             Request::UartConfig { .. } => Operation::UartConfig,
             Request::UartTransfer { .. } => Operation::UartTransfer,
         }
@@ -215,7 +231,7 @@ impl Request {
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {
-            Request::Hello | Request::SsiRead | Request::BissRead => {}
+            Request::Hello | Request::Status | Request::SsiRead | Request::BissRead | Request::AnalogSkew => {}
             Request::Supply { on, millivolt } => {
                 body.push(u8::from(*on));
                 body.extend(millivolt.to_le_bytes());
@@ -262,6 +278,7 @@ impl Request {
         let request = match operation {
             Operation::Hello => Request::Hello,
             Operation::Supply => Request::Supply { on: fields.take_switch("on")?, millivolt: fields.u16()? },
+            Operation::Status => Request::Status,
             Operation::SsiConfig => Request::SsiConfig {
                 clocks: fields.u8()?,
                 clock_hz: fields.u32()?,
@@ -284,6 +301,7 @@ impl Request {
             Operation::BissStream => Request::BissStream { period_us: fields.u32()? },
             Operation::AnalogConfig => Request::AnalogConfig { sample_hz: fields.u32()? },
             Operation::AnalogStream => Request::AnalogStream { on: fields.take_switch("on")? },
+            Operation::AnalogSkew => Request::AnalogSkew,
             Operation::UartConfig => {
                 Request::UartConfig { baud: fields.u32()?, parity: fields.u8()?, turnaround_us: fields.u16()? }
             }

@@ -14,6 +14,7 @@ fn request_vectors() -> Vec<(u8, Request, &'static str)> {
     vec![
         (1, Request::Hello, "05 01 01 1F 3E 00"),
         (2, Request::Supply { on: true, millivolt: 8000 }, "08 02 02 01 40 1F C5 61 00"),
+        (16, Request::Status, "05 10 03 1F 2E 00"),
         (
             3,
             Request::SsiConfig { clocks: 25, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE },
@@ -32,6 +33,7 @@ fn request_vectors() -> Vec<(u8, Request, &'static str)> {
         (10, Request::BissStream { period_us: 50 }, "04 0A 24 32 01 01 03 21 C8 00"),
         (11, Request::AnalogConfig { sample_hz: 100_000 }, "06 0B 30 A0 86 01 03 E1 91 00"),
         (12, Request::AnalogStream { on: true }, "06 0C 31 01 78 9F 00"),
+        (15, Request::AnalogSkew, "05 0F 33 01 0B 00"),
         (
             13,
             Request::UartConfig { baud: 9600, parity: 2, turnaround_us: 5000 },
@@ -67,6 +69,19 @@ fn message_vectors() -> Vec<(u8, Message, &'static str)> {
             Message::Reply(Reply::Supply { on: true, millivolt: 8010, milliampere: 42 }),
             "07 02 82 01 4A 1F 2A 03 54 E4 00",
         ),
+        (
+            16,
+            Message::Reply(Reply::Status(AdapterStatus {
+                t_us: 5_000_000,
+                restart: RestartReason::WATCHDOG,
+                faults: SupplyFaults::OVERLOAD,
+                input_millivolt: 8010,
+                damaged: 2,
+                malformed: 1,
+                lost: 700,
+            })),
+            "06 10 83 40 4B 4C 01 01 01 01 06 03 01 4A 1F 02 01 01 02 01 01 01 03 BC 02 01 03 38 3A 00",
+        ),
         (3, Message::Reply(Reply::SsiConfig { clock_hz: 498_000 }), "06 03 90 50 99 07 03 7E EC 00"),
         (
             4,
@@ -89,6 +104,7 @@ fn message_vectors() -> Vec<(u8, Message, &'static str)> {
             "06 0B B0 A0 86 01 04 D0 12 13 04 10 9E 53 00",
         ),
         (12, Message::Reply(Reply::AnalogStream { on: true }), "06 0C B1 01 E0 84 00"),
+        (15, Message::Reply(Reply::AnalogSkew { skew_ns: 2_000 }), "07 0F B3 D0 07 41 92 00"),
         (13, Message::Reply(Reply::UartConfig { baud: 9600 }), "05 0D C0 80 25 01 03 E5 C3 00"),
         (
             14,

@@ -6,10 +6,15 @@
 use alloc::borrow::ToOwned;
 use alloc::string::String;
 
-use bridge_codec::{BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request};
+use bridge_codec::{
+    AdapterStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
+    RestartReason, SupplyFaults,
+};
 
+use crate::analog::AnalogStream;
 use crate::{
-    BissSetting, Bus, ClockedStream, Clocking, Frame, Outbox, Refusal, RegisterAccess, SsiSetting, access_register,
+    AnalogSetting, BissSetting, Bus, ClockedStream, Clocking, Correction, Frame, Outbox, Refusal, RegisterAccess,
+    SsiSetting, access_register,
 };
 
 /// What an adapter tells about itself.
@@ -23,6 +28,10 @@ pub struct Identity {
     pub firmware: &'static str,
     /// Capabilities of this build.
     pub capabilities: Capabilities,
+    /// Reason for the last start.
+    pub restart: RestartReason,
+    /// Corrections of sine and cosine.
+    pub corrections: [Correction; 2],
 }
 
 /// An adapter on a [`Bus`].
@@ -37,12 +46,16 @@ pub struct Adapter<B> {
     /// Bus that the hardware is set up for.
     selected: Option<Clocking>,
     stream: Option<ClockedStream>,
+    analog: Option<AnalogSetting>,
+    sampled: Option<AnalogStream>,
     /// Time in microseconds before which no frame may begin.
     free_us: u64,
     /// Number of the next packet of a stream.
     pushed: u8,
     /// Number of valid packets whose content was not.
     malformed: u32,
+    /// Number of samples that the host has not fetched in time.
+    lost: u32,
 }
 
 const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
@@ -62,9 +75,12 @@ impl<B: Bus> Adapter<B> {
             biss: None,
             selected: None,
             stream: None,
+            analog: None,
+            sampled: None,
             free_us: 0,
             pushed: 0,
             malformed: 0,
+            lost: 0,
         }
     }
 
@@ -90,7 +106,7 @@ impl<B: Bus> Adapter<B> {
 
     /// Returns whether a stream is running.
     pub const fn is_streaming(&self) -> bool {
-        self.stream.is_some()
+        self.stream.is_some() || self.sampled.is_some()
     }
 
     /// Returns the number of damaged packets and of packets with invalid content.
@@ -112,17 +128,23 @@ impl<B: Bus> Adapter<B> {
         if self.outbox.is_stuck(self.bus.now_us()) {
             self.host_left();
         }
-        while self.outbox.has_room()
-            && let Some(data) = self.stream.as_mut().and_then(|stream| stream.packet(&self.bus))
-        {
-            self.send(&Message::Data(data), self.pushed);
-            self.pushed = self.pushed.wrapping_add(1);
+        while self.outbox.has_room() {
+            let clocked = self.stream.as_mut().and_then(|stream| stream.packet(&self.bus));
+            let sampled = self.sampled.as_mut().and_then(|stream| stream.packet(&mut self.bus));
+            if clocked.is_none() && sampled.is_none() {
+                return;
+            }
+            for data in [clocked, sampled].into_iter().flatten() {
+                self.lost = self.lost.saturating_add(data.sample_range().2.into());
+                self.send(&Message::Data(data), self.pushed);
+                self.pushed = self.pushed.wrapping_add(1);
+            }
         }
     }
 
     /// Ends the streams and forgets what has not been sent, because the host has gone.
     pub fn host_left(&mut self) {
-        self.stop_stream();
+        self.stop_streams();
         self.outbox.clear();
         self.receiver = Receiver::default();
     }
@@ -145,7 +167,9 @@ impl<B: Bus> Adapter<B> {
     fn execute(&mut self, request: &Request) -> Result<Reply, Refusal> {
         let operation = request.operation();
         let is_stop = matches!(request, Request::SsiStream { period_us: 0 } | Request::BissStream { period_us: 0 });
-        if is_clocked(operation) && !is_stop && self.stream.is_some() {
+        if is_clocked(operation) && !is_stop && self.stream.is_some()
+            || operation == Operation::AnalogConfig && self.sampled.is_some()
+        {
             return Err(STREAMING);
         }
         match *request {
@@ -189,24 +213,65 @@ impl<B: Bus> Adapter<B> {
                 let period_us = self.stream(Clocking::Biss(setting), period_us, setting.least_period_us());
                 Ok(Reply::BissStream { period_us })
             }
-            Request::Supply { .. }
-            | Request::AnalogConfig { .. }
-            | Request::AnalogStream { .. }
-            | Request::UartConfig { .. }
-            | Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
+            Request::Status => Ok(Reply::Status(self.status())),
+            Request::AnalogConfig { sample_hz } => {
+                self.requires(Capabilities::ANALOG)?;
+                let setting = AnalogSetting::new(sample_hz)?;
+                self.analog = Some(setting);
+                Ok(Reply::AnalogConfig {
+                    sample_hz: setting.sample_hz(),
+                    full_scale_microvolt: AnalogSetting::FULL_SCALE_MICROVOLT,
+                    bits: AnalogSetting::BITS,
+                })
+            }
+            Request::AnalogStream { on } => {
+                self.requires(Capabilities::ANALOG)?;
+                let setting = self.analog.ok_or(NOT_CONFIGURED)?;
+                match on {
+                    true if self.sampled.is_some() => return Err(STREAMING),
+                    true => {
+                        let corrections = self.identity.corrections;
+                        self.sampled = Some(AnalogStream::begin(setting, corrections, &mut self.bus));
+                    }
+                    false => self.stop_sampling(),
+                }
+                Ok(Reply::AnalogStream { on })
+            }
+            Request::AnalogSkew => {
+                self.requires(Capabilities::ANALOG_SKEW)?;
+                Ok(Reply::AnalogSkew { skew_ns: AnalogSetting::SKEW_NS })
+            }
+            Request::Supply { .. } | Request::UartConfig { .. } | Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
         }
     }
 
     fn hello(&mut self) -> Hello {
-        self.stop_stream();
+        self.stop_streams();
         Hello {
             capabilities: self.identity.capabilities,
             max_clock_hz: BissSetting::MAX_HZ,
-            max_sample_hz: 0,
+            max_sample_hz: AnalogSetting::MAX_HZ,
             name: self.identity.name.to_owned(),
             serial: self.identity.serial.clone(),
             firmware: self.identity.firmware.to_owned(),
         }
+    }
+
+    fn status(&self) -> AdapterStatus {
+        AdapterStatus {
+            t_us: self.bus.now_us(),
+            restart: self.identity.restart,
+            faults: SupplyFaults::NONE,
+            input_millivolt: 0,
+            damaged: u32::try_from(self.receiver.dropped_count()).unwrap_or(u32::MAX),
+            malformed: self.malformed,
+            lost: self.lost,
+        }
+    }
+
+    /// Refuses an operation that this build does not have.
+    fn requires(&self, capability: Capabilities) -> Result<(), Refusal> {
+        if self.identity.capabilities.contains(capability) { Ok(()) } else { Err(NOT_SUPPORTED) }
     }
 
     /// Clocks one frame, after the pause that the previous one requires.
@@ -251,6 +316,17 @@ impl<B: Bus> Adapter<B> {
         let start_us = self.bus.start(period_us);
         self.stream = Some(ClockedStream::new(clocking, period_us, start_us));
         period_us
+    }
+
+    fn stop_sampling(&mut self) {
+        if self.sampled.take().is_some() {
+            self.bus.stop_conversions();
+        }
+    }
+
+    fn stop_streams(&mut self) {
+        self.stop_stream();
+        self.stop_sampling();
     }
 
     fn stop_stream(&mut self) {

@@ -52,4 +52,23 @@ pub trait Bus {
 
     /// Returns a word of the stream by its number. It must be among the last [`CAPACITY`](Self::CAPACITY) words.
     fn word(&self, number: u32) -> u32;
+
+    /// Number of conversions that the hardware keeps.
+    const CONVERSIONS: u32;
+
+    /// Starts to convert all analogue inputs in turn, without a pause. Returns the time of the first conversion, which is
+    /// that of the sine. The cosine is the second one.
+    fn start_conversions(&mut self) -> u64;
+
+    /// Ends the conversions.
+    fn stop_conversions(&mut self);
+
+    /// Returns the number of conversions since their start, modulo 2³².
+    fn converted(&self) -> u32;
+
+    /// Returns a converted value by its number. It must be among the last [`CONVERSIONS`](Self::CONVERSIONS).
+    fn conversion(&self, number: u32) -> u16;
+
+    /// Returns whether a conversion was missed since their start.
+    fn has_overrun(&self) -> bool;
 }

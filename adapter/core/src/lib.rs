@@ -9,6 +9,7 @@
 extern crate alloc;
 
 mod adapter;
+mod analog;
 mod biss;
 mod bus;
 mod control;
@@ -18,6 +19,7 @@ mod ssi;
 mod stream;
 
 pub use adapter::{Adapter, Identity};
+pub use analog::{AnalogSetting, Correction};
 pub use biss::BissSetting;
 pub use bus::{Bus, Clocking, Frame};
 pub use control::{ControlError, RegisterAccess, access_register};

@@ -1,63 +1,62 @@
 //! Bytes that wait for the host. Samples are only added while there is room, and requests are only taken while their
 //! replies have room, so that a host that does not read cannot exhaust the memory.
 
-use alloc::vec::Vec;
+use alloc::collections::VecDeque;
 
 /// Bytes for the host in the order in which they are sent.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Outbox {
-    bytes: Vec<u8>,
-    sent: usize,
+    bytes: VecDeque<u8>,
     /// Time of the last progress in microseconds.
     progress_us: u64,
 }
 
 /// Number of bytes above which nothing is added.
-const ROOM: usize = 2048;
+const ROOM: usize = 24 * 1024;
+/// Number of bytes that replies to the requests of one USB packet may need in addition.
+const REPLIES: usize = 8 * 1024;
 /// Time in microseconds without progress after which the host counts as lost.
 const LOST_US: u64 = 2_000_000;
 
+impl Default for Outbox {
+    /// The memory is reserved once, since a small computer has none to move bytes to.
+    fn default() -> Self {
+        Outbox { bytes: VecDeque::with_capacity(ROOM + REPLIES), progress_us: 0 }
+    }
+}
+
 impl Outbox {
-    /// Returns the bytes that have not been sent yet.
+    /// Returns the first bytes that have not been sent yet. More may follow when these are consumed.
     pub fn pending(&self) -> &[u8] {
-        self.bytes.get(self.sent..).unwrap_or_default()
+        self.bytes.as_slices().0
     }
 
     /// Removes the first `count` pending bytes, which were sent at a time in microseconds.
     pub fn consume(&mut self, count: usize, now_us: u64) {
-        if count == 0 {
-            return;
-        }
-        self.progress_us = now_us;
-        self.sent = (self.sent + count).min(self.bytes.len());
-        if self.sent == self.bytes.len() {
-            self.clear();
+        if count > 0 {
+            self.progress_us = now_us;
+            self.bytes.drain(..count.min(self.bytes.len()));
         }
     }
 
     pub(crate) fn push(&mut self, bytes: &[u8], now_us: u64) {
-        if self.pending().is_empty() {
+        if self.bytes.is_empty() {
             self.progress_us = now_us;
-        }
-        if self.sent >= ROOM {
-            self.bytes.drain(..self.sent);
-            self.sent = 0;
         }
         self.bytes.extend(bytes);
     }
 
     pub(crate) fn clear(&mut self) {
         self.bytes.clear();
-        self.sent = 0;
     }
 
     pub(crate) fn has_room(&self) -> bool {
-        self.pending().len() < ROOM
+        self.bytes.len() < ROOM
     }
 
     /// Returns whether the host has not fetched anything for too long.
     pub(crate) fn is_stuck(&self, now_us: u64) -> bool {
-        !self.pending().is_empty() && now_us.saturating_sub(self.progress_us) > LOST_US
+        !self.bytes.is_empty() && now_us.saturating_sub(self.progress_us) > LOST_US
     }
 }
 
@@ -76,7 +75,20 @@ mod tests {
         assert!(!outbox.has_room());
         outbox.consume(2, 8);
         outbox.consume(ROOM, 9);
-        assert!(outbox.pending().is_empty() && outbox.has_room() && outbox.bytes.is_empty());
+        assert!(outbox.pending().is_empty() && outbox.has_room());
+        // The bytes continue at the begin of the memory.
+        for round in 0..10 {
+            outbox.push(&[round; ROOM / 4 * 3], 10);
+            let mut count = 0;
+            while !outbox.pending().is_empty() {
+                assert!(outbox.pending().iter().all(|byte| *byte == round));
+                let length = outbox.pending().len().min(1000);
+                outbox.consume(length, 11);
+                count += length;
+            }
+            assert_eq!(count, ROOM / 4 * 3);
+        }
+        assert!(outbox.bytes.capacity() < ROOM + REPLIES + 64, "the memory is not moved");
     }
 
     #[test]

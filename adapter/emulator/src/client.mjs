@@ -9,7 +9,8 @@ export const u32 = (value) => [value & 255, (value >> 8) & 255, (value >> 16) & 
 
 export const OP = {
   hello: 0x01, supply: 0x02, ssiConfig: 0x10, ssiRead: 0x11, ssiStream: 0x12,
-  bissConfig: 0x20, bissRead: 0x21, registerRead: 0x22, registerWrite: 0x23, bissStream: 0x24, ssiData: 0x93, bissData: 0xa5,
+  bissConfig: 0x20, bissRead: 0x21, registerRead: 0x22, registerWrite: 0x23, bissStream: 0x24,
+  status: 0x03, analogConfig: 0x30, analogStream: 0x31, analogSkew: 0x33, analogData: 0xb2, ssiData: 0x93, bissData: 0xa5,
 };
 
 export class Client {
@@ -70,8 +71,15 @@ export class Client {
   stream(op) {
     const { packets } = this.receiver, found = packets.filter((packet) => packet[1] === op);
     this.receiver.packets = packets.filter((packet) => packet[1] !== op);
-    return found.map((packet) => parseStream(packet.subarray(2), op === OP.bissData));
+    return found.map((packet) => (op === OP.analogData ? parseAnalog(packet.subarray(2)) : parseStream(packet.subarray(2), op === OP.bissData)));
   }
+}
+
+function parseAnalog(body) {
+  const count = body[14], values = [];
+  if (body.length !== 15 + 4 * count) throw new Error('wrong length of a packet');
+  for (let at = 15; at < body.length; at += 4) values.push([body.readInt16LE(at), body.readInt16LE(at + 2)]);
+  return { first: body.readUInt32LE(0), timeUs: Number(body.readBigUInt64LE(4)), lost: body.readUInt16LE(12), values };
 }
 
 function parseStream(body, hasStatus) {

@@ -3,8 +3,10 @@
 
 const CHAN_ABORT = 0x444;
 
-/** The round robin mask of the converter selects the next input; rp2040js computes it with the wrong mask. */
+/** The round robin mask of the converter selects the next input, and input 0 follows input 4. rp2040js computes both wrongly. */
 export function correctConverter(adc) {
+  // The number is only used for this, and one more lets the search arrive at 0.
+  adc.numChannels = 6;
   Object.defineProperty(adc, 'activeChannel', {
     get() { return (this.cs >> 12) & 7; },
     set(channel) { this.cs = (this.cs & ~(7 << 12)) | ((channel & 7) << 12); },

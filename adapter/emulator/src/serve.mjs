@@ -4,6 +4,7 @@
 //   serve.mjs FILE.uf2 --ssi BITS[:gray[:APPENDED]]     an SSI encoder. Its position counts the frames that were read;
 //                                                       APPENDED is the number of zero bits after it
 //   serve.mjs FILE.uf2 --biss                           a BiSS kit encoder. Its steps count the frames
+//   --sine HZ,SINE,COSINE,OFFSET,OFFSET                sine and cosine: frequency, amplitudes and offsets in volts
 //   --start NUMBER                                      position of the first frame
 //   --delay NANOSECONDS                                 delay of the line
 //
@@ -14,13 +15,14 @@ import { parseArgs } from 'node:util';
 import { BissEncoder, frame } from './biss-encoder.mjs';
 import { Pico } from './pico.mjs';
 import { Control, Registers } from './registers.mjs';
+import { SineCosine } from './sine-cosine.mjs';
 import { SsiEncoder } from './ssi-encoder.mjs';
 import { UsbHost } from './usb-host.mjs';
 
 const string = (value) => ({ type: 'string', default: value });
 const { values: options, positionals: [file] } = parseArgs({
   allowPositionals: true,
-  options: { ssi: string(), biss: { type: 'boolean' }, start: string('0'), delay: string('100') },
+  options: { ssi: string(), biss: { type: 'boolean' }, sine: string(), start: string('0'), delay: string('100') },
 });
 
 const pico = new Pico(file), host = new UsbHost(pico);
@@ -40,6 +42,10 @@ if (options.biss) {
     return frame(Math.floor(value / 2 ** 17), value % 2 ** 17);
   };
   new BissEncoder(pico, { word, delayNanos, control: new Control(new Registers()) });
+}
+if (options.sine) {
+  const [hz, sine, cosine, sineOffset, cosineOffset] = options.sine.split(',').map(Number);
+  new SineCosine(pico, { hz, sine, cosine, sineOffset, cosineOffset });
 }
 while (!host.isReady) {
   if (pico.nanos > 200e6) throw new Error('the adapter was not enumerated');

@@ -145,6 +145,8 @@ test('a round robin of the converter follows its mask (4.9.2.1)', () => {
   };
   assert.deepEqual(convert(0b00011, 0), [0, 1, 0, 1, 0]);
   assert.deepEqual(convert(0b00111, 0), [0, 1, 2, 0, 1]);
+  assert.deepEqual(convert(0b11111, 3), [3, 4, 0, 1, 2]);
+  assert.deepEqual(convert(0b10001, 0), [0, 4, 0, 4, 0]);
 });
 
 test('an abort of the DMA is complete at once (2.5.7)', () => {

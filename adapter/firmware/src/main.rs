@@ -7,6 +7,7 @@
 extern crate alloc;
 
 mod clocks;
+mod converter;
 mod line;
 mod pins;
 mod ring;
@@ -17,8 +18,8 @@ use alloc::borrow::ToOwned;
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 
-use adapter_core::{Adapter, Bus as _, Identity};
-use bridge_codec::Capabilities;
+use adapter_core::{Adapter, Bus as _, Correction, Identity};
+use bridge_codec::{Capabilities, RestartReason};
 use embedded_alloc::LlffHeap;
 use embedded_hal::digital::{OutputPin as _, StatefulOutputPin as _};
 use rp2040_hal as hal;
@@ -30,8 +31,8 @@ use hal::usb::UsbBus;
 use hal::{Sio, Timer, Watchdog};
 use usb_device::bus::UsbBusAllocator;
 
+use converter::Converter;
 use line::{Line, Pins};
-use ring::Ring;
 
 /// Second stage of the boot loader, which connects the flash.
 // Safety: the boot loader expects these bytes in this section.
@@ -41,8 +42,8 @@ static BOOT2: [u8; 256] = rp2040_boot2::BOOT_LOADER_GENERIC_03H;
 
 #[global_allocator]
 static HEAP: LlffHeap = LlffHeap::empty();
-/// Bytes for packets. A packet has 516, and at most a few are in memory.
-const HEAP_BYTES: usize = 48 * 1024;
+/// Bytes for packets, of which 32 KiB wait for the host.
+const HEAP_BYTES: usize = 64 * 1024;
 
 const SERIAL_NUMBER: &str = "1";
 /// Longest sleep of the main loop in microseconds, with and without a stream.
@@ -65,6 +66,7 @@ fn run() -> Option<()> {
     unsafe { HEAP.init(&raw mut MEMORY as usize, HEAP_BYTES) };
 
     let mut pac = pac::Peripherals::take()?;
+    let restart = restart_reason(&pac.WATCHDOG, &pac.VREG_AND_CHIP_RESET);
     let mut watchdog = Watchdog::new(pac.WATCHDOG);
     watchdog.enable_tick_generation((clocks::CRYSTAL_HZ / 1_000_000) as u8);
     watchdog.start(WATCHDOG_MS.millis());
@@ -76,11 +78,15 @@ fn run() -> Option<()> {
     let pins = hal::gpio::Pins::new(pac.IO_BANK0, pac.PADS_BANK0, sio.gpio_bank0, &mut pac.RESETS);
     // The driver of the clock line stays off until the clock is high.
     let mut driver = pins.gpio4.into_push_pull_output_in_state(PinState::Low);
+    let (words, conversions) = ring::rings(pac.DMA, &mut pac.RESETS);
+    let inputs = converter::Pins { sine: pins.gpio26, cosine: pins.gpio27, supply: pins.gpio28, board: pins.gpio29 };
+    let converter = Converter::new(pac.ADC, conversions, inputs, &mut pac.RESETS)?;
     let line = Line::new(
         pac.PIO0,
         pac.PIO1,
         Pins { clock: pins.gpio2.reconfigure(), data: pins.gpio3.reconfigure(), done: pins.gpio5.reconfigure() },
-        Ring::new(pac.DMA, &mut pac.RESETS),
+        words,
+        converter,
         timer,
         &mut pac.RESETS,
     )
@@ -99,7 +105,14 @@ fn run() -> Option<()> {
             name: usb::PRODUCT,
             serial: SERIAL_NUMBER.to_owned(),
             firmware: env!("CARGO_PKG_VERSION"),
-            capabilities: Capabilities::SSI.union(Capabilities::BISS).union(Capabilities::BISS_REGISTERS),
+            capabilities: Capabilities::SSI
+                .union(Capabilities::BISS)
+                .union(Capabilities::BISS_REGISTERS)
+                .union(Capabilities::ANALOG)
+                .union(Capabilities::ANALOG_SKEW)
+                .union(Capabilities::STATUS),
+            restart,
+            corrections: [Correction::NONE; 2],
         },
     );
     let mut was_open = false;
@@ -132,6 +145,21 @@ fn run() -> Option<()> {
             wake::after(if adapter.is_streaming() { SLEEP_US[0] } else { SLEEP_US[1] });
             usb::sleep();
         }
+    }
+}
+
+/// Returns the reason for this start. The chip cannot tell a low voltage from the connection of the adapter.
+fn restart_reason(watchdog: &pac::WATCHDOG, reset: &pac::VREG_AND_CHIP_RESET) -> RestartReason {
+    let cause = reset.chip_reset().read();
+    let watchdog = watchdog.reason().read();
+    if watchdog.timer().bit_is_set() || watchdog.force().bit_is_set() {
+        RestartReason::WATCHDOG
+    } else if cause.had_por().bit_is_set() {
+        RestartReason::POWER
+    } else if cause.had_run().bit_is_set() {
+        RestartReason::RESET_PIN
+    } else {
+        RestartReason::UNKNOWN
     }
 }
 

@@ -1,6 +1,7 @@
 //! Arguments of `analyse`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
@@ -10,8 +11,15 @@ use crate::analysis::quality::Family;
 #[derive(Args)]
 pub(super) struct AnalyseArgs {
     /// Table of time, sine and cosine in seconds and volts. Delimiter, decimal sign, header and units are detected.
+    /// Without a file, an adapter at --link samples the signals.
     #[arg(value_name = "FILE.csv")]
-    pub(super) file: PathBuf,
+    pub(super) file: Option<PathBuf>,
+    /// Duration of the samples from an adapter.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_duration, default_value = "1", allow_negative_numbers = true)]
+    pub(super) seconds: Duration,
+    /// Sample rate of an adapter in hertz. The adapter uses the nearest one that it has.
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(10..=1_000_000), default_value_t = 50_000, allow_negative_numbers = true)]
+    pub(super) rate: u32,
     /// Column numbers from 1: time, sine, cosine, or time, SIN, REFSIN, COS, REFCOS; optionally reference=N (mechanical
     /// degrees) and absolute=N (steps of 1/32 period).
     #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
@@ -77,6 +85,11 @@ fn parse_columns(text: &str) -> Result<Columns, String> {
         return Err("a column appears twice".to_owned());
     }
     Ok(Columns { time, sine, cosine, references, reference_angle, absolute })
+}
+
+fn parse_duration(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| (0.01..=60.0).contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "a time from 0.01 to 60 s is required".to_owned())
 }
 
 fn parse_factor(text: &str) -> Result<f64, String> {

@@ -1,7 +1,9 @@
-//! `analyse`: reports the quality of a recorded sine/cosine signal offline.
+//! `analyse`: reports the quality of a sine/cosine signal, recorded or sampled by an adapter.
 
 mod args;
+mod live;
 
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use crate::signals::state::TEXTS;
@@ -28,17 +30,28 @@ pub(crate) struct AnalyseCommand;
 
 impl CliCommand for AnalyseCommand {
     fn command(&self) -> clap::Command {
-        AnalyseArgs::augment_args(clap::Command::new("analyse"))
-            .about("Analyse a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error")
+        AnalyseArgs::augment_args(clap::Command::new("analyse")).about(
+            "Analyse a sine/cosine signal, recorded or at an adapter: amplitude, offsets, gain, phase, position error",
+        )
     }
 
-    fn run(&self, _: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
-        analyse_capture(output, &parse(matches)?)
+    fn run(&self, common: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
+        let arguments: AnalyseArgs = parse(matches)?;
+        match (&arguments.file, &common.link) {
+            (Some(file), None) => {
+                let capture = read(output, file, &arguments)?;
+                analyse_capture(output, file, &capture, &arguments)
+            }
+            (None, Some(link)) => {
+                let capture = live::sample(output, link, arguments.rate, arguments.seconds)?;
+                analyse_capture(output, Path::new(&link.to_string()), &capture, &arguments)
+            }
+            _ => Err(Failure::Usage("this command needs either a file or --link with an adapter".to_owned())),
+        }
     }
 }
 
-fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
-    let path = &arguments.file;
+fn read(output: &Output, path: &Path, arguments: &AnalyseArgs) -> std::result::Result<Capture, Failure> {
     let hints =
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
     let bar = TerminalProgressBar::default();
@@ -49,6 +62,11 @@ fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
     let (layout, capture) =
         read.map_err(|error| to_failure(&explain::signal::read_capture_error_text(path, &error)))?;
     print_remarks(output, &layout, &capture);
+    Ok(capture)
+}
+
+/// Analyses samples. `path` is the file or the link that they come from.
+fn analyse_capture(output: &Output, path: &Path, capture: &Capture, arguments: &AnalyseArgs) -> Result {
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();
     let record = Record { samples, references_v, periods: arguments.periods };
@@ -63,7 +81,7 @@ fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
     })?;
-    let revolution = analyse_revolution(output, &capture, &analysis, arguments.periods);
+    let revolution = analyse_revolution(output, capture, &analysis, arguments.periods);
     let report = CaptureReport {
         family,
         analysis: &analysis,

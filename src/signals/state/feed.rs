@@ -212,7 +212,7 @@ fn to_channels<S: Into<ChannelSamples>>(batch: Batch<S>) -> Batch<ChannelSamples
     Batch { first, time, period_ns, lost, samples: samples.into() }
 }
 
-fn bridge_error_text(error: &BridgeError) -> Text {
+pub(crate) fn bridge_error_text(error: &BridgeError) -> Text {
     match error {
         BridgeError::Open(error) => open_error_text(error),
         BridgeError::Tap(AdapterStreamError::Link(error)) => explain::link_error_text(error),
@@ -221,7 +221,7 @@ fn bridge_error_text(error: &BridgeError) -> Text {
     }
 }
 
-fn open_error_text(error: &OpenError) -> Text {
+pub(crate) fn open_error_text(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url_error_text(why)),
         OpenError::Sim(why) => TEXTS.text("adapter.link").with_text("why", explain::setting_error_text(why)),

@@ -21,6 +21,7 @@ mod table;
 mod task_guard;
 mod texts;
 
+pub(crate) use feed::{bridge_error_text, open_error_text};
 pub use texts::TEXTS;
 
 use crate::app::{Tab, Tool, ToolAction, ToolKind};

@@ -1,9 +1,11 @@
-//! Wires with an encoder on a virtual clock, and a host.
+//! Wires with an encoder on a virtual clock, and a host. Not every test uses all of it.
+
+#![allow(dead_code)]
 
 use std::collections::VecDeque;
 
-use adapter_core::{Adapter, Bus, Clocking, Frame, FrameWords, Identity};
-use bridge_codec::{Capabilities, Message, Packet, Receiver, Request};
+use adapter_core::{Adapter, Bus, Clocking, Correction, Frame, FrameWords, Identity};
+use bridge_codec::{Capabilities, ErrorCode, Message, Packet, Receiver, Request, RestartReason};
 
 /// Wires of an encoder whose value is a function of time.
 pub(crate) struct Model {
@@ -19,6 +21,11 @@ pub(crate) struct Model {
     /// Control bits of the encoder, and those of the host.
     pub(crate) cds: VecDeque<bool>,
     pub(crate) cdm: Vec<bool>,
+    /// Start of the conversions, and whether one was missed.
+    pub(crate) conversions: Option<u64>,
+    pub(crate) has_overrun: bool,
+    /// Value of an input at a time in microseconds.
+    pub(crate) input: fn(u32, u64) -> u16,
     /// Start of each single frame in microseconds.
     pub(crate) frames: Vec<u64>,
 }
@@ -93,6 +100,33 @@ impl Bus for Model {
         (frames * u64::from(FrameWords::count(self.bits()))) as u32
     }
 
+    const CONVERSIONS: u32 = 16_384;
+
+    fn start_conversions(&mut self) -> u64 {
+        assert_eq!(self.conversions, None, "the conversions run");
+        self.has_overrun = false;
+        self.conversions = Some(self.now_us);
+        self.now_us
+    }
+
+    fn stop_conversions(&mut self) {
+        self.conversions = None;
+    }
+
+    fn converted(&self) -> u32 {
+        ((self.now_us - self.conversions.unwrap()) / 2) as u32
+    }
+
+    fn conversion(&self, number: u32) -> u16 {
+        let behind = self.converted().wrapping_sub(number);
+        assert!((1..=Self::CONVERSIONS).contains(&behind), "conversion {number} is not kept");
+        (self.input)(number % 5, self.conversions.unwrap() + 2 * u64::from(number))
+    }
+
+    fn has_overrun(&self) -> bool {
+        self.has_overrun
+    }
+
     fn word(&self, number: u32) -> u32 {
         let behind = self.received().wrapping_sub(number);
         assert!((1..=Self::CAPACITY).contains(&behind), "word {number} is not kept");
@@ -122,13 +156,23 @@ impl Bench {
             biss: |_| 0x024_6980_00CF,
             cds: VecDeque::new(),
             cdm: Vec::new(),
+            conversions: None,
+            has_overrun: false,
+            input: |_, _| 2048,
             frames: Vec::new(),
         };
         let identity = Identity {
             name: "Model",
             serial: "M1".to_owned(),
             firmware: "1.2",
-            capabilities: Capabilities::SSI.union(Capabilities::BISS).union(Capabilities::BISS_REGISTERS),
+            capabilities: Capabilities::SSI
+                .union(Capabilities::BISS)
+                .union(Capabilities::BISS_REGISTERS)
+                .union(Capabilities::ANALOG)
+                .union(Capabilities::ANALOG_SKEW)
+                .union(Capabilities::STATUS),
+            restart: RestartReason::WATCHDOG,
+            corrections: [Correction::NONE; 2],
         };
         Bench { adapter: Adapter::new(model, identity), receiver: Receiver::default(), seq: 0 }
     }
@@ -146,9 +190,11 @@ impl Bench {
 
     pub(crate) fn fetch(&mut self) -> Vec<Packet> {
         let now_us = self.model().now_us;
-        let bytes = self.adapter.outbox().pending().to_vec();
-        self.adapter.outbox().consume(bytes.len(), now_us);
-        self.receiver.push(&bytes);
+        while !self.adapter.outbox().pending().is_empty() {
+            let bytes = self.adapter.outbox().pending().to_vec();
+            self.adapter.outbox().consume(bytes.len(), now_us);
+            self.receiver.push(&bytes);
+        }
         std::iter::from_fn(|| self.receiver.next_packet()).collect()
     }
 
@@ -161,5 +207,13 @@ impl Bench {
         let [answer] = answers.as_slice() else { panic!("{request:?}: {answers:?}") };
         assert_eq!(answer.seq, self.seq);
         Message::parse(answer).unwrap()
+    }
+}
+
+/// Returns the operation and the code of a refusal.
+pub(crate) fn refusal(message: Message) -> (u8, ErrorCode) {
+    match message {
+        Message::Error { op, code, .. } => (op, code),
+        other => panic!("{other:?}"),
     }
 }

@@ -13,6 +13,7 @@ use hal::pio::{InstallError, PIO, PIOBuilder, PIOExt as _, PinDir, PinState, SM0
 use hal::timer::Timer;
 
 use crate::clocks::SYSTEM_HZ;
+use crate::converter::Converter;
 use crate::pins::{CLOCK, DATA, DONE};
 use crate::ring::{self, Ring};
 use machine::Machine;
@@ -34,10 +35,11 @@ pub(crate) struct Pins<C: Function, D: Function, E: Function> {
     pub(crate) done: Pin<Gpio5, E, PullNone>,
 }
 
-/// The clock and data lines with all that drives them.
+/// The clock and data lines with all that drives them, and the analogue inputs.
 pub(crate) struct Line {
     timer: Timer,
     ring: Ring,
+    converter: Converter,
     clocking: Option<Clocking>,
     ssi_block: PIO<PIO1>,
     ssi: Machine<(PIO1, SM0)>,
@@ -56,6 +58,7 @@ impl Line {
         pio1: PIO1,
         pins: Pins<FunctionNull, FunctionNull, FunctionNull>,
         ring: Ring,
+        converter: Converter,
         timer: Timer,
         resets: &mut RESETS,
     ) -> Result<Self, InstallError> {
@@ -109,7 +112,20 @@ impl Line {
             done: pins.done.into_function::<FunctionPio0>(),
         };
         let clocking = None;
-        Ok(Line { timer, ring, clocking, ssi_block, ssi, ssi_pacer, biss_block, ma, slo, biss_pacer, _pins: pins })
+        Ok(Line {
+            timer,
+            ring,
+            converter,
+            clocking,
+            ssi_block,
+            ssi,
+            ssi_pacer,
+            biss_block,
+            ma,
+            slo,
+            biss_pacer,
+            _pins: pins,
+        })
     }
 
     /// Returns the time from the start of a frame until its first falling edge, rounded to microseconds.
@@ -161,7 +177,8 @@ macro_rules! pacer {
 use pacer;
 
 impl Bus for Line {
-    const CAPACITY: u32 = ring::LENGTH;
+    const CAPACITY: u32 = ring::WORDS;
+    const CONVERSIONS: u32 = ring::CONVERSIONS;
 
     fn now_us(&self) -> u64 {
         self.timer.get_counter().ticks()
@@ -251,7 +268,28 @@ impl Bus for Line {
     }
 
     fn word(&self, number: u32) -> u32 {
-        self.ring.word(number)
+        self.ring.value(number)
+    }
+
+    fn start_conversions(&mut self) -> u64 {
+        let timer = self.timer;
+        self.converter.start(|| timer.get_counter().ticks())
+    }
+
+    fn stop_conversions(&mut self) {
+        self.converter.stop();
+    }
+
+    fn converted(&self) -> u32 {
+        self.converter.converted()
+    }
+
+    fn conversion(&self, number: u32) -> u16 {
+        self.converter.value(number)
+    }
+
+    fn has_overrun(&self) -> bool {
+        self.converter.has_overrun()
     }
 }
 

@@ -195,6 +195,7 @@ impl Puppet {
                 Reply::AnalogConfig { sample_hz, full_scale_microvolt: 1_250_000, bits: 12 }
             }
             Request::AnalogStream { on } => Reply::AnalogStream { on },
+            Request::AnalogSkew => Reply::AnalogSkew { skew_ns: 5_000 },
             Request::Supply { on, millivolt } => {
                 Reply::Supply { on, millivolt: millivolt + self.too_high, milliampere: 60 }
             }
@@ -276,6 +277,25 @@ fn full_scale_values_become_volts_and_gaps_are_kept() {
         Request::AnalogStream { on: false },
     ];
     assert_eq!(*heard.lock().unwrap(), expected);
+}
+
+/// The cosine rises by 1000 in 20 µs and is sampled 5 µs late, a quarter of the interval.
+#[test]
+fn the_cosine_is_corrected_for_its_skew() {
+    let ramp = |from: i16, count: i16| (from..from + count).map(|at| (7, at * 1000)).collect::<Vec<_>>();
+    let mut device = puppet(vec![analog(0, 0, ramp(0, 10)), analog(10, 0, ramp(10, 1)), analog(20, 9, ramp(20, 5))]);
+    device.capabilities = Capabilities::ANALOG.union(Capabilities::ANALOG_SKEW);
+    let heard = device.heard.clone();
+    let mut bench = bench(SINE_COSINE, device);
+    let batches = bench.take(Duration::from_millis(100));
+    let unit_v = 1.25 / 32_767.0;
+    let cosines = batches.iter().flat_map(|batch| batch.samples.cosine_v.iter().map(|volts| volts / unit_v));
+    let expected = (0..11).chain(20..25).map(|at| f64::from(at) * 1000.0 - 250.0);
+    let pairs: Vec<(f64, f64)> = cosines.zip(expected).collect();
+    assert!(pairs.len() == 16 && pairs.iter().all(|(found, wanted)| (found - wanted).abs() < 1e-6), "{pairs:?}");
+    assert!(batches.iter().all(|batch| batch.samples.sine_v.iter().all(|volts| (volts - 7.0 * unit_v).abs() < 1e-12)));
+    assert_eq!(bench.bridge.streaming_adapter().get().unwrap().skew_ns, 5_000);
+    assert!(heard.lock().unwrap().contains(&Request::AnalogSkew));
 }
 
 /// AFS60 with sine and cosine: 5 V, and at most 5.5 V.

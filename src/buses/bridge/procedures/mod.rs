@@ -5,6 +5,7 @@
 mod drift;
 pub(crate) mod flow;
 mod power;
+mod skew;
 mod tap;
 
 use std::time::Duration;

@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use super::flow::{Chunk, SampleStream, StreamKind};
+use super::skew::SkewCorrection;
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure};
-use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
+use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request, StreamData};
 use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
@@ -36,6 +37,8 @@ pub struct StreamingAdapter {
     pub period_ns: i64,
     /// Full scale of sine and cosine, which is the voltage in microvolts at the value 32 767. Other streams have 0.
     pub full_scale_microvolt: u32,
+    /// Time in nanoseconds by which the adapter samples the cosine after the sine. The samples are corrected for it.
+    pub skew_ns: u16,
     /// Measured supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
     pub supplied: Option<(u16, u16)>,
 }
@@ -56,6 +59,7 @@ pub struct StreamTap {
     line: LineState,
     adapter: AdapterState,
     flow: Option<SampleStream>,
+    skew: Option<SkewCorrection>,
 }
 
 impl From<Failure> for AdapterStreamError {
@@ -73,7 +77,7 @@ impl From<Failure> for AdapterStreamError {
 impl StreamTap {
     /// Creates a tap for an adapter that was not identified yet. Its replies may be late by `margin`.
     pub fn new(margin: Duration) -> Self {
-        StreamTap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
+        StreamTap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None, skew: None }
     }
 
     /// Identifies and configures the adapter and starts the stream. The encoder supply is switched on if `supply` is
@@ -123,10 +127,15 @@ impl StreamTap {
                 ))));
             }
         };
+        let skew_ns = match streamed {
+            StreamKind::Analog { .. } => adapter.skew_ns(&hello)?,
+            _ => 0,
+        };
         let flow = SampleStream::start(&mut adapter, streamed, None)?;
         let period_ns = flow.period_ns();
         self.flow = Some(flow);
-        Ok(StreamingAdapter { hello, period_ns, full_scale_microvolt, supplied })
+        self.skew = SkewCorrection::new(skew_ns, period_ns);
+        Ok(StreamingAdapter { hello, period_ns, full_scale_microvolt, skew_ns, supplied })
     }
 
     /// Returns the next samples, or `None` if no samples have arrived by `until` or no stream is running.
@@ -137,7 +146,14 @@ impl StreamTap {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
-        Ok(flow.next(&mut adapter, until)?)
+        let mut chunk = flow.next(&mut adapter, until)?;
+        if let (Some(Chunk { lost, data: StreamData::Analog(data), .. }), Some(skew)) = (&mut chunk, &mut self.skew) {
+            if *lost > 0 {
+                skew.reset();
+            }
+            skew.apply(&mut data.samples);
+        }
+        Ok(chunk)
     }
 
     /// Ends the stream and returns the encoder supply to its previous state. Cancellation is ignored.
@@ -151,6 +167,19 @@ impl StreamTap {
         let ended = self.flow.take().map_or(Ok(()), |flow| flow.stop(&mut adapter));
         let left = adapter.switch_off_after_session();
         Ok(ended.and(left)?)
+    }
+}
+
+impl Adapter<'_, '_> {
+    /// Reads the time in nanoseconds by which the cosine is sampled after the sine. Other adapters sample both at once.
+    fn skew_ns(&mut self, hello: &Hello) -> Result<u16, Failure> {
+        if !hello.capabilities.contains(Capabilities::ANALOG_SKEW) {
+            return Ok(0);
+        }
+        match self.send_request(&Request::AnalogSkew)?.reply {
+            Reply::AnalogSkew { skew_ns } => Ok(skew_ns),
+            other => Err(AdapterError::unexpected_reply(Request::AnalogSkew.operation(), &other).into()),
+        }
     }
 }
 

@@ -273,6 +273,8 @@ impl Adapter {
                 let period_us = self.start_stream(Kind::Biss, period_us, least, setting.bits);
                 Ok(Reply::BissStream { period_us })
             }
+            // It samples both signals at the same time, and its faults are simulated.
+            Request::Status | Request::AnalogSkew => Err(NOT_THERE),
             Request::AnalogConfig { sample_hz } => {
                 let checked = self.analog.clone().with_value(Quantity::Rate, f64::from(sample_hz)).validate();
                 self.analog = checked.map_err(|_| OUT_OF_RANGE)?.settings().clone();

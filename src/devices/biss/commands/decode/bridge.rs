@@ -5,8 +5,8 @@ use serde_json::Map;
 use super::{form_map, position};
 use crate::bits::{hex, hex_compact};
 use crate::buses::bridge::protocol::{
-    AnalogData, BissData, BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet,
-    PacketError, Reply, Request, SsiData, StreamData,
+    AdapterStatus, AnalogData, BissData, BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation,
+    Packet, PacketError, Reply, Request, RestartReason, SsiData, StreamData, SupplyFaults,
 };
 use crate::cli::decode::FrameExplanation;
 
@@ -64,6 +64,7 @@ fn name(operation: Operation) -> &'static str {
     match operation {
         Operation::Hello => "HELLO",
         Operation::Supply => "SUPPLY",
+        Operation::Status => "STATUS",
         Operation::SsiConfig => "SSI_CONFIG",
         Operation::SsiRead => "SSI_READ",
         Operation::SsiStream => "SSI_STREAM",
@@ -74,6 +75,7 @@ fn name(operation: Operation) -> &'static str {
         Operation::BissStream => "BISS_STREAM",
         Operation::AnalogConfig => "ANALOG_CONFIG",
         Operation::AnalogStream => "ANALOG_STREAM",
+        Operation::AnalogSkew => "ANALOG_SKEW",
         Operation::UartConfig => "UART_CONFIG",
         Operation::UartTransfer => "UART_TRANSFER",
     }
@@ -82,7 +84,7 @@ fn name(operation: Operation) -> &'static str {
 fn request_text(request: &Request) -> Option<String> {
     let switch = |on: bool| if on { "on" } else { "off" };
     Some(match request {
-        Request::Hello | Request::SsiRead | Request::BissRead => return None,
+        Request::Hello | Request::Status | Request::SsiRead | Request::BissRead | Request::AnalogSkew => return None,
         Request::Supply { on, millivolt } => format!("{}, {millivolt} mV", switch(*on)),
         Request::SsiConfig { clocks, clock_hz, pause_us, flags } => {
             let edge = if flags.falling_edge() { "falling" } else { "rising" };
@@ -116,6 +118,7 @@ fn explain_reply(reply: &Reply) -> Result<Vec<String>, String> {
         Reply::Supply { on, millivolt, milliampere } => {
             vec![format!("{}, {millivolt} mV, {milliampere} mA", switch(*on))]
         }
+        Reply::Status(status) => status_lines(status),
         Reply::SsiConfig { clock_hz } | Reply::BissConfig { clock_hz } => vec![format!("{clock_hz} Hz")],
         Reply::SsiRead { t_us, raw } => vec![format!("{:.6} s: 0x{raw:X}", to_seconds(*t_us))],
         Reply::SsiStream { period_us } | Reply::BissStream { period_us } => vec![format!("every {period_us} µs")],
@@ -125,9 +128,25 @@ fn explain_reply(reply: &Reply) -> Result<Vec<String>, String> {
             vec![format!("{sample_hz} samples a second, full scale {full_scale_microvolt} µV, {bits} bits")]
         }
         Reply::AnalogStream { on } => vec![switch(*on).to_owned()],
+        Reply::AnalogSkew { skew_ns } => vec![format!("cosine {skew_ns} ns after sine")],
         Reply::UartConfig { baud } => vec![format!("{baud} bit/s")],
         Reply::UartTransfer { t_us, rx } => vec![format!("{:.6} s: received {}", to_seconds(*t_us), hex(rx))],
     })
+}
+
+fn status_lines(status: &AdapterStatus) -> Vec<String> {
+    let restart = match status.restart {
+        RestartReason::POWER => "power-on or low voltage".to_owned(),
+        RestartReason::RESET_PIN => "reset pin".to_owned(),
+        RestartReason::WATCHDOG => "watchdog".to_owned(),
+        other => format!("reason {}", other.byte()),
+    };
+    let overload = if status.faults == SupplyFaults::NONE { "no supply fault" } else { "supply overloaded" };
+    vec![
+        format!("{:.6} s since the start: {restart}", to_seconds(status.t_us)),
+        format!("{overload}, {} mV before the switch", status.input_millivolt),
+        format!("{} damaged and {} malformed packets, {} samples lost", status.damaged, status.malformed, status.lost),
+    ]
 }
 
 fn hello_reply_lines(hello: &Hello) -> Vec<String> {
@@ -138,6 +157,7 @@ fn hello_reply_lines(hello: &Hello) -> Vec<String> {
         (Capabilities::ANALOG, "analogue signals"),
         (Capabilities::UART, "RS-485 UART"),
         (Capabilities::SUPPLY, "switched supply"),
+        (Capabilities::STATUS, "status"),
     ];
     let can: Vec<&str> =
         can.into_iter().filter(|(one, _)| hello.capabilities.contains(*one)).map(|(_, name)| name).collect();

@@ -1,0 +1,200 @@
+//! Sine and cosine. The converter takes all of its inputs in turn without a pause, so that a pair is sampled back to back,
+//! and every pair has the same delay between its signals. Slower rates use every nth pair.
+
+use alloc::vec::Vec;
+
+use bridge_codec::{AnalogData, ErrorCode, MAX_BODY, StreamData};
+
+use crate::{Bus, Refusal};
+
+/// Settings of sampling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AnalogSetting {
+    /// Divisor of [`MAX_HZ`](Self::MAX_HZ), which it divides without a remainder.
+    divisor: u32,
+}
+
+/// Offset and gain of an input, which correct the amplifier in front of the converter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Correction {
+    /// Value without a signal in sixteenths of a step.
+    pub offset: u16,
+    /// Gain in 16384ths.
+    pub gain: u16,
+}
+
+/// Running conversions whose samples are sent.
+#[derive(Clone, Debug)]
+pub(crate) struct AnalogStream {
+    divisor: u32,
+    corrections: [Correction; 2],
+    /// Time at which the present conversions were started, and the number of the pair that is their first.
+    start: (u64, u64),
+    /// Conversions since then.
+    converted: u64,
+    /// Number of the next pair, counted from the start of the stream.
+    next: u64,
+    lost: u32,
+}
+
+impl AnalogSetting {
+    /// Inputs that are converted in turn: sine, cosine, the supply voltage, and two that belong to the board.
+    pub const INPUTS: u32 = 5;
+    /// Duration of a conversion in microseconds.
+    const CONVERSION_US: u32 = 2;
+    /// Highest rate of pairs in hertz.
+    pub const MAX_HZ: u32 = 1_000_000 / (Self::INPUTS * Self::CONVERSION_US);
+    /// Time in nanoseconds by which the cosine is converted after the sine.
+    pub const SKEW_NS: u16 = 1_000 * Self::CONVERSION_US as u16;
+    const MIN_HZ: u32 = 10;
+    /// Resolution of the converter in bits.
+    pub(crate) const BITS: u8 = 12;
+    /// Voltage in microvolts between the wires of the encoder at the value 32 767. The amplifier has a gain of 2.2, and
+    /// the converter a range of ±1.65 V.
+    pub(crate) const FULL_SCALE_MICROVOLT: u32 = 749_977;
+
+    /// Checks the rate of a request. The actual one is at most the requested one.
+    pub(crate) fn new(sample_hz: u32) -> Result<Self, Refusal> {
+        if sample_hz < Self::MIN_HZ {
+            return Err((ErrorCode::BAD_ARGUMENT, "a rate of at least 10 Hz"));
+        }
+        let least = Self::MAX_HZ.div_ceil(sample_hz.min(Self::MAX_HZ));
+        let divisor = (least..=Self::MAX_HZ).find(|divisor| Self::MAX_HZ.is_multiple_of(*divisor));
+        Ok(AnalogSetting { divisor: divisor.unwrap_or(Self::MAX_HZ) })
+    }
+
+    /// Returns the actual rate in hertz.
+    pub(crate) fn sample_hz(self) -> u32 {
+        Self::MAX_HZ / self.divisor.max(1)
+    }
+}
+
+impl Correction {
+    /// An input without deviations: the middle of the range, and a gain of 1.
+    pub const NONE: Correction = Correction { offset: 2048 * 16, gain: 1 << 14 };
+
+    /// Returns a converted value as a fraction of full scale.
+    fn apply(self, value: u16) -> i16 {
+        let steps = i32::from(value) * 16 - i32::from(self.offset);
+        let corrected = steps.saturating_mul(self.gain.into()) >> 14;
+        // The value is within the range of the type.
+        corrected.clamp(i16::MIN.into(), i16::MAX.into()) as i16
+    }
+}
+
+impl AnalogStream {
+    /// Time in microseconds after which a packet is sent although more samples would fit.
+    const FLUSH_US: u64 = 5_000;
+    /// Number of bytes in a packet before the samples.
+    const HEAD: usize = 15;
+    /// Number of samples that fit in a packet.
+    const FIT: u64 = ((MAX_BODY - Self::HEAD) / 4) as u64;
+
+    /// Starts the conversions.
+    pub(crate) fn begin<B: Bus>(setting: AnalogSetting, corrections: [Correction; 2], bus: &mut B) -> Self {
+        let start = (bus.start_conversions(), 0);
+        AnalogStream { divisor: setting.divisor, corrections, start, converted: 0, next: 0, lost: 0 }
+    }
+
+    /// Returns the number of microseconds between two pairs.
+    fn period_us(&self) -> u64 {
+        u64::from(self.divisor * AnalogSetting::INPUTS * AnalogSetting::CONVERSION_US)
+    }
+
+    /// Returns the number of the conversion of a sine.
+    fn conversion(&self, pair: u64) -> u64 {
+        (pair - self.start.1) * u64::from(self.divisor * AnalogSetting::INPUTS)
+    }
+
+    /// Returns the next packet, or `None` if it is neither full nor due.
+    pub(crate) fn packet<B: Bus>(&mut self, bus: &mut B) -> Option<StreamData> {
+        if bus.has_overrun() {
+            self.restart(bus);
+        }
+        self.converted += u64::from(bus.converted().wrapping_sub(self.converted as u32));
+        // Some conversions may be replaced while they are read.
+        let kept = u64::from(B::CONVERSIONS - B::CONVERSIONS / 8);
+        let oldest = self.converted.saturating_sub(kept);
+        let next = self.conversion(self.next);
+        let step = u64::from(self.divisor * AnalogSetting::INPUTS);
+        if next < oldest {
+            // Half of them go, so that the stream continues without losing again at once.
+            let lost = (oldest + kept / 2 - next).div_ceil(step);
+            self.next += lost;
+            self.lost = self.lost.saturating_add(u32::try_from(lost).unwrap_or(u32::MAX));
+        }
+        let next = self.conversion(self.next);
+        // A pair is complete with its cosine.
+        let ready = self.converted.checked_sub(next + 2).map_or(0, |behind| behind / step + 1);
+        let t0_us = self.start.0 + (self.next - self.start.1) * self.period_us();
+        if ready == 0 || ready < Self::FIT && bus.now_us() < t0_us + Self::FLUSH_US {
+            return None;
+        }
+        let count = ready.min(Self::FIT);
+        let [sine, cosine] = self.corrections;
+        let samples: Vec<(i16, i16)> = (0..count)
+            .map(|at| {
+                // Numbers of conversions wrap.
+                let number = (next + at * step) as u32;
+                let value = |number: u32| bus.conversion(number);
+                (sine.apply(value(number)), cosine.apply(value(number.wrapping_add(1))))
+            })
+            .collect();
+        let first_index = self.next as u32;
+        self.next += count;
+        let lost = u16::try_from(core::mem::take(&mut self.lost)).unwrap_or(u16::MAX);
+        Some(StreamData::Analog(AnalogData { first_index, t0_us, lost, samples }))
+    }
+
+    /// Starts the conversions again after one was missed, because the inputs are no longer in their order.
+    fn restart<B: Bus>(&mut self, bus: &mut B) {
+        bus.stop_conversions();
+        let start_us = bus.start_conversions();
+        let elapsed = start_us.saturating_sub(self.start.0);
+        let pair = (self.start.1 + elapsed.div_ceil(self.period_us())).max(self.next);
+        self.lost = self.lost.saturating_add(u32::try_from(pair - self.next).unwrap_or(u32::MAX));
+        (self.start, self.next, self.converted) = ((start_us, pair), pair, 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_divide_the_highest_one() {
+        for (wanted, actual) in [
+            (u32::MAX, 100_000),
+            (100_000, 100_000),
+            (99_999, 50_000),
+            (40_000, 25_000),
+            (20_000, 20_000),
+            (10_000, 10_000),
+            (9_000, 6_250),
+            (1_000, 1_000),
+            (10, 10),
+        ] {
+            assert_eq!(AnalogSetting::new(wanted).unwrap().sample_hz(), actual, "{wanted}");
+        }
+        assert!(AnalogSetting::new(9).is_err());
+    }
+
+    /// A step of the converter is 16, and ±1.65 V at a gain of 2.2 are ±0.75 V at 32 768.
+    #[test]
+    fn values_are_fractions_of_full_scale() {
+        let values = [0, 2047, 2048, 2049, 4095].map(|value| Correction::NONE.apply(value));
+        assert_eq!(values, [-32_768, -16, 0, 16, 32_752]);
+        let full_scale = 1.65e6 / 2.2 * 32_767.0 / 32_768.0;
+        assert!((f64::from(AnalogSetting::FULL_SCALE_MICROVOLT) - full_scale).abs() < 0.5);
+    }
+
+    #[test]
+    fn offset_and_gain_are_corrected_and_limited() {
+        let correction = Correction { offset: 2050 * 16 + 8, gain: 18_022 };
+        assert_eq!(correction.apply(2051), 8);
+        // 16 008 · 1.1.
+        assert_eq!(correction.apply(3051), 17_608);
+        assert_eq!(correction.apply(0), i16::MIN);
+        assert_eq!(Correction { offset: 0, gain: u16::MAX }.apply(4095), i16::MAX);
+    }
+}

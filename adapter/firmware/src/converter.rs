@@ -1,0 +1,106 @@
+//! The analogue inputs. The converter takes all five in turn, as fast as it can: 2 µs each. The DMA copies the values.
+
+use rp2040_hal as hal;
+
+use hal::adc::AdcPin;
+use hal::gpio::bank0::{Gpio26, Gpio27, Gpio28, Gpio29};
+use hal::gpio::{FunctionNull, FunctionSio, Pin, PullDown, PullNone, SioInput};
+use hal::pac::{ADC, RESETS};
+
+use crate::ring::Ring;
+
+/// Number of the requests of the converter to the DMA.
+const REQUEST: u8 = 36;
+/// All inputs: sine, cosine, supply voltage, voltage of the board, and temperature.
+const INPUTS: u8 = 0b1_1111;
+
+/// The pins of the inputs, without pull-up and pull-down.
+type Input<I> = AdcPin<Pin<I, FunctionSio<SioInput>, PullNone>>;
+
+/// The converter with its pins and the ring of its values.
+pub(crate) struct Converter {
+    adc: ADC,
+    ring: Ring,
+    _pins: (Input<Gpio26>, Input<Gpio27>, Input<Gpio28>, Input<Gpio29>),
+}
+
+/// The pins before they become inputs.
+pub(crate) struct Pins {
+    pub(crate) sine: Pin<Gpio26, FunctionNull, PullDown>,
+    pub(crate) cosine: Pin<Gpio27, FunctionNull, PullDown>,
+    pub(crate) supply: Pin<Gpio28, FunctionNull, PullDown>,
+    pub(crate) board: Pin<Gpio29, FunctionNull, PullDown>,
+}
+
+impl Converter {
+    /// Starts the converter. Returns `None` if a pin is in use.
+    pub(crate) fn new(adc: ADC, ring: Ring, pins: Pins, resets: &mut RESETS) -> Option<Self> {
+        let pins = (
+            AdcPin::new(pins.sine.reconfigure()).ok()?,
+            AdcPin::new(pins.cosine.reconfigure()).ok()?,
+            AdcPin::new(pins.supply.reconfigure()).ok()?,
+            AdcPin::new(pins.board.reconfigure()).ok()?,
+        );
+        let adc = hal::Adc::new(adc, resets).free();
+        adc.cs().write(|w| w.en().set_bit().ts_en().set_bit());
+        while adc.cs().read().ready().bit_is_clear() {}
+        Some(Converter { adc, ring, _pins: pins })
+    }
+
+    /// Starts to convert all inputs in turn, the sine first. `now_us` is the clock.
+    pub(crate) fn start(&mut self, now_us: impl Fn() -> u64) -> u64 {
+        // Without a divisor, conversions follow each other.
+        self.adc.div().reset();
+        self.discard();
+        // Safety: a threshold of one value, whose request the DMA serves.
+        self.adc.fcs().write(|w| unsafe { w.en().set_bit().dreq_en().set_bit().thresh().bits(1) });
+        self.ring.start(self.adc.fifo().as_ptr().cast_const(), REQUEST);
+        // Safety: input 0 is the first of those in the mask.
+        let select = |w: &mut hal::pac::adc::cs::W| unsafe {
+            w.en().set_bit().ts_en().set_bit().ainsel().bits(0).rrobin().bits(INPUTS);
+        };
+        self.adc.cs().write(|w| {
+            select(w);
+            w
+        });
+        critical_section::with(|_| {
+            self.adc.cs().write(|w| {
+                select(w);
+                w.start_many().set_bit()
+            });
+            now_us()
+        })
+    }
+
+    /// Ends the conversions.
+    pub(crate) fn stop(&mut self) {
+        self.adc.cs().write(|w| w.en().set_bit().ts_en().set_bit());
+        while self.adc.cs().read().ready().bit_is_clear() {}
+        self.ring.stop();
+        self.discard();
+    }
+
+    /// Empties the FIFO and clears its errors, which are cleared by setting their bits.
+    fn discard(&mut self) {
+        while self.adc.fcs().read().empty().bit_is_clear() {
+            let _ = self.adc.fifo().read();
+        }
+        self.adc.fcs().write(|w| w.over().clear_bit_by_one().under().clear_bit_by_one());
+    }
+
+    /// Returns the number of conversions since the start, modulo 2³².
+    pub(crate) fn converted(&self) -> u32 {
+        self.ring.received()
+    }
+
+    /// Returns a value by its number.
+    pub(crate) fn value(&self, number: u32) -> u16 {
+        // The value has twelve bits.
+        self.ring.value(number) as u16
+    }
+
+    /// Returns whether the FIFO was full when a conversion ended.
+    pub(crate) fn has_overrun(&self) -> bool {
+        self.adc.fcs().read().over().bit_is_set()
+    }
+}

@@ -1,0 +1,121 @@
+//! Interpolation of the cosine to the time of the sine, for adapters that convert one after the other. A sample of the
+//! cosine is late by a part of the interval, which lies between this sample and the previous one. The cubic polynomial
+//! through the four nearest samples gives the value there.
+
+use std::collections::VecDeque;
+
+/// Interpolation of consecutive samples.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SkewCorrection {
+    /// Delay of the cosine as a fraction of the interval, above 0 and below 1.
+    share: f64,
+    /// Latest samples of the cosine before the next ones, at most three.
+    before: VecDeque<f64>,
+}
+
+/// Number of samples that determine a value.
+const POINTS: usize = 4;
+
+impl SkewCorrection {
+    /// Creates the correction for a delay and an interval in nanoseconds. Returns `None` if both signals are sampled at the
+    /// same time, or if the delay is not below the interval.
+    pub(super) fn new(skew_ns: u16, period_ns: i64) -> Option<Self> {
+        let share = f64::from(skew_ns) / period_ns.max(1) as f64;
+        (share > 0.0 && share < 1.0).then(|| SkewCorrection { share, before: VecDeque::new() })
+    }
+
+    /// Forgets the previous samples, because some are missing after them.
+    pub(super) fn reset(&mut self) {
+        self.before.clear();
+    }
+
+    /// Replaces each cosine by its value at the time of the sine.
+    pub(super) fn apply(&mut self, samples: &mut [(i16, i16)]) {
+        let start = self.before.len();
+        let cosines: Vec<f64> =
+            self.before.iter().copied().chain(samples.iter().map(|(_, cosine)| f64::from(*cosine))).collect();
+        for (at, (_, cosine)) in samples.iter_mut().enumerate() {
+            let first = (start + at).saturating_sub(POINTS / 2).min(cosines.len().saturating_sub(POINTS));
+            let points = cosines.get(first..).unwrap_or_default();
+            let place = (start + at - first) as f64 - self.share;
+            // The conversion saturates like the converter.
+            *cosine = interpolate(points.get(..POINTS).unwrap_or(points), place).round() as i16;
+        }
+        self.before = cosines.iter().rev().take(POINTS - 1).rev().copied().collect();
+    }
+}
+
+/// Returns the value at `place` of the polynomial through points at 0, 1, 2 and so on (Lagrange).
+fn interpolate(points: &[f64], place: f64) -> f64 {
+    let weight = |own: usize| -> f64 {
+        let others = (0..points.len()).filter(|other| *other != own);
+        others.map(|other| (place - other as f64) / (own as f64 - other as f64)).product()
+    };
+    points.iter().enumerate().map(|(own, point)| point * weight(own)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Sine and cosine of `hz` with an amplitude of 20 000, sampled every 10 µs with the cosine 2 µs late.
+    fn sampled(hz: f64, count: usize) -> Vec<(i16, i16)> {
+        let value = |angle: f64| (20_000.0 * angle).round() as i16;
+        let at = |sample: usize, late: f64| TAU * hz * (sample as f64 * 10e-6 + late);
+        (0..count).map(|sample| (value(at(sample, 0.0).sin()), value(at(sample, 2e-6).cos()))).collect()
+    }
+
+    /// Largest error of the angle in degrees, corrected in portions of the given lengths.
+    fn largest_error(hz: f64, portions: &[usize]) -> f64 {
+        let mut samples = sampled(hz, portions.iter().sum());
+        let mut correction = SkewCorrection::new(2_000, 10_000).unwrap();
+        let mut rest = samples.as_mut_slice();
+        for length in portions {
+            let (portion, behind) = std::mem::take(&mut rest).split_at_mut(*length);
+            correction.apply(portion);
+            rest = behind;
+        }
+        let error = |(sample, (sine, cosine)): (usize, &(i16, i16))| {
+            let angle = f64::from(*sine).atan2(f64::from(*cosine)) - TAU * hz * sample as f64 * 10e-6;
+            (angle - TAU * (angle / TAU).round()).to_degrees().abs()
+        };
+        // The first sample has none before it, and is extrapolated.
+        samples.iter().enumerate().skip(1).map(error).fold(0.0, f64::max)
+    }
+
+    /// Without the correction, 2 µs are 0.72° at 1 kHz and 3.6° at 5 kHz.
+    #[test]
+    fn the_cosine_moves_to_the_time_of_the_sine() {
+        for (hz, limit) in [(50.0, 0.01), (1_000.0, 0.01), (5_000.0, 0.05), (10_000.0, 0.5)] {
+            let error = largest_error(hz, &[1000]);
+            assert!(error < limit, "{hz} Hz: {error}°");
+        }
+    }
+
+    #[test]
+    fn packets_of_any_length_continue() {
+        for portions in [vec![124; 8], vec![1; 100], vec![2, 3, 1, 50, 5]] {
+            let error = largest_error(1_000.0, &portions);
+            assert!(error < 0.05, "{portions:?}: {error}°");
+        }
+    }
+
+    #[test]
+    fn after_a_gap_the_previous_samples_do_not_count() {
+        let mut correction = SkewCorrection::new(2_000, 10_000).unwrap();
+        correction.apply(&mut [(0, 32_767); 10]);
+        correction.reset();
+        let mut samples = [(0, -100); 10];
+        correction.apply(&mut samples);
+        assert_eq!(samples, [(0, -100); 10]);
+    }
+
+    #[test]
+    fn signals_of_the_same_time_are_not_changed() {
+        assert_eq!(SkewCorrection::new(0, 10_000), None);
+        assert_eq!(SkewCorrection::new(10_000, 10_000), None);
+        let mut empty: [(i16, i16); 0] = [];
+        SkewCorrection::new(1, 10).unwrap().apply(&mut empty);
+    }
+}
