@@ -12,9 +12,10 @@ use bridge_codec::{
 };
 
 use crate::analog::AnalogStream;
+use crate::uart::Transfer;
 use crate::{
     AnalogSetting, BissSetting, Bus, ClockedStream, Clocking, Correction, Frame, Outbox, Refusal, RegisterAccess,
-    SsiSetting, access_register,
+    SsiSetting, UartSetting, access_register,
 };
 
 /// What an adapter tells about itself.
@@ -48,6 +49,10 @@ pub struct Adapter<B> {
     stream: Option<ClockedStream>,
     analog: Option<AnalogSetting>,
     sampled: Option<AnalogStream>,
+    uart: Option<UartSetting>,
+    transfer: Option<Transfer>,
+    /// Time in microseconds before which the serial line must not be driven.
+    line_free_us: u64,
     /// Time in microseconds before which no frame may begin.
     free_us: u64,
     /// Number of the next packet of a stream.
@@ -61,6 +66,7 @@ pub struct Adapter<B> {
 const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
 const MALFORMED: Refusal = (ErrorCode::BAD_ARGUMENT, "malformed request");
 const STREAMING: Refusal = (ErrorCode::BUSY, "a stream is running");
+const TRANSFERRING: Refusal = (ErrorCode::BUSY, "a transfer is running");
 const NOT_SUPPORTED: Refusal = (ErrorCode::NOT_SUPPORTED, "this adapter does not support the operation");
 
 impl<B: Bus> Adapter<B> {
@@ -77,6 +83,9 @@ impl<B: Bus> Adapter<B> {
             stream: None,
             analog: None,
             sampled: None,
+            uart: None,
+            transfer: None,
+            line_free_us: 0,
             free_us: 0,
             pushed: 0,
             malformed: 0,
@@ -104,6 +113,11 @@ impl<B: Bus> Adapter<B> {
         self.outbox.has_room()
     }
 
+    /// Returns whether a reply from the serial line is awaited.
+    pub const fn is_transferring(&self) -> bool {
+        self.transfer.is_some()
+    }
+
     /// Returns whether a stream is running.
     pub const fn is_streaming(&self) -> bool {
         self.stream.is_some() || self.sampled.is_some()
@@ -118,8 +132,9 @@ impl<B: Bus> Adapter<B> {
     pub fn receive(&mut self, bytes: &[u8]) {
         self.receiver.push(bytes);
         while let Some(packet) = self.receiver.next_packet() {
-            let message = self.answer(&packet);
-            self.send(&message, packet.seq);
+            if let Some(message) = self.answer(&packet) {
+                self.send(&message, packet.seq);
+            }
         }
     }
 
@@ -128,6 +143,7 @@ impl<B: Bus> Adapter<B> {
         if self.outbox.is_stuck(self.bus.now_us()) {
             self.host_left();
         }
+        self.poll_transfer();
         while self.outbox.has_room() {
             let clocked = self.stream.as_mut().and_then(|stream| stream.packet(&self.bus));
             let sampled = self.sampled.as_mut().and_then(|stream| stream.packet(&mut self.bus));
@@ -145,6 +161,9 @@ impl<B: Bus> Adapter<B> {
     /// Ends the streams and forgets what has not been sent, because the host has gone.
     pub fn host_left(&mut self) {
         self.stop_streams();
+        if self.transfer.take().is_some() {
+            self.bus.end_transfer();
+        }
         self.outbox.clear();
         self.receiver = Receiver::default();
     }
@@ -153,15 +172,33 @@ impl<B: Bus> Adapter<B> {
         self.outbox.push(&message.emit(seq).emit(), self.bus.now_us());
     }
 
-    fn answer(&mut self, packet: &Packet) -> Message {
+    fn poll_transfer(&mut self) {
+        let Some((transfer, setting)) = self.transfer.as_mut().zip(self.uart) else { return };
+        let seq = transfer.seq;
+        if let Some((t_us, rx)) = transfer.poll(&mut self.bus, setting) {
+            self.transfer = None;
+            self.line_free_us = Transfer::free_us(self.bus.now_us(), setting);
+            self.send(&Message::Reply(Reply::UartTransfer { t_us, rx }), seq);
+        }
+    }
+
+    /// Returns the reply to a request, or `None` if it follows later.
+    fn answer(&mut self, packet: &Packet) -> Option<Message> {
         let answer = match Request::parse(packet) {
+            Ok(Request::UartTransfer { timeout_us, idle_us, tx }) => {
+                match self.begin_transfer((packet.seq, timeout_us, idle_us), &tx) {
+                    Ok(()) => return None,
+                    Err(refusal) => Err(refusal),
+                }
+            }
             Ok(request) => self.execute(&request).map(Message::Reply),
             Err(error) => {
                 self.malformed = self.malformed.saturating_add(1);
                 Err(if matches!(error, BodyError::Operation(_)) { NOT_SUPPORTED } else { MALFORMED })
             }
         };
-        answer.unwrap_or_else(|(code, text)| Message::Error { op: packet.op, code, text: text.to_owned() })
+        let refused = |(code, text): Refusal| Message::Error { op: packet.op, code, text: text.to_owned() };
+        Some(answer.unwrap_or_else(refused))
     }
 
     fn execute(&mut self, request: &Request) -> Result<Reply, Refusal> {
@@ -241,8 +278,29 @@ impl<B: Bus> Adapter<B> {
                 self.requires(Capabilities::ANALOG_SKEW)?;
                 Ok(Reply::AnalogSkew { skew_ns: AnalogSetting::SKEW_NS })
             }
-            Request::Supply { .. } | Request::UartConfig { .. } | Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
+            Request::UartConfig { baud, parity, turnaround_us } => {
+                self.requires(Capabilities::UART)?;
+                if self.transfer.is_some() {
+                    return Err(TRANSFERRING);
+                }
+                let setting = UartSetting::new(baud, parity, turnaround_us)?;
+                self.bus.configure_uart(setting);
+                self.uart = Some(setting);
+                Ok(Reply::UartConfig { baud })
+            }
+            Request::Supply { .. } | Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
         }
+    }
+
+    fn begin_transfer(&mut self, times: (u8, u32, u32), tx: &[u8]) -> Result<(), Refusal> {
+        self.requires(Capabilities::UART)?;
+        let setting = self.uart.ok_or(NOT_CONFIGURED)?;
+        if self.transfer.is_some() {
+            return Err(TRANSFERRING);
+        }
+        self.bus.wait_until(self.line_free_us);
+        self.transfer = Some(Transfer::begin(&mut self.bus, setting, times, tx)?);
+        Ok(())
     }
 
     fn hello(&mut self) -> Hello {

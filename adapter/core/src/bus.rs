@@ -1,6 +1,6 @@
 //! What the adapter requires of its hardware.
 
-use crate::{BissSetting, FrameWords, SsiSetting};
+use crate::{BissSetting, FrameWords, SsiSetting, UartSetting};
 
 /// The bus that is clocked, with its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,4 +71,25 @@ pub trait Bus {
 
     /// Returns whether a conversion was missed since their start.
     fn has_overrun(&self) -> bool;
+
+    /// Sets up the serial line.
+    fn configure_uart(&mut self, setting: UartSetting);
+
+    /// Sends characters, given as their bits with the start bit lowest, and then receives. The hardware does both.
+    fn begin_transfer(&mut self, characters: &[u32]);
+
+    /// Returns whether all characters have been sent, and the driver is off.
+    fn has_sent(&mut self) -> bool;
+
+    /// Returns the time of the first start edge after the characters were sent.
+    fn first_edge_us(&mut self) -> Option<u64>;
+
+    /// Returns the number of received characters.
+    fn received_characters(&mut self) -> usize;
+
+    /// Returns the bits of a received character without the start bit, the last one highest.
+    fn received_character(&mut self, at: usize) -> u32;
+
+    /// Ends the reception.
+    fn end_transfer(&mut self);
 }

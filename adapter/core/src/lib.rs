@@ -17,6 +17,7 @@ mod line;
 mod outbox;
 mod ssi;
 mod stream;
+mod uart;
 
 pub use adapter::{Adapter, Identity};
 pub use analog::{AnalogSetting, Correction};
@@ -27,6 +28,7 @@ pub use line::{FrameWords, MAX_WORDS};
 pub use outbox::Outbox;
 pub use ssi::SsiSetting;
 pub use stream::ClockedStream;
+pub use uart::UartSetting;
 
 /// Error code and message of a refused request.
 pub(crate) type Refusal = (bridge_codec::ErrorCode, &'static str);

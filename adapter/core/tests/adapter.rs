@@ -273,7 +273,11 @@ fn a_million_random_packets_are_survived() {
         }
     }
     // Of the damaged ones, one in 65 536 may still have a matching checksum.
-    assert!(answered >= valid && answered <= valid + 10 + count / 8 / 1_000, "{answered} answers to {valid} packets");
+    // The last transfer may still be waiting for its reply.
+    assert!(
+        answered + 1 >= valid && answered <= valid + 10 + count / 8 / 1_000,
+        "{answered} answers to {valid} packets"
+    );
     let (broken, malformed) = bench.adapter.faulty_packets();
     assert!(
         data > count / 1_000 && broken > count / 10 && u64::from(malformed) > count / 10,

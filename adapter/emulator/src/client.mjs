@@ -10,7 +10,7 @@ export const u32 = (value) => [value & 255, (value >> 8) & 255, (value >> 16) & 
 export const OP = {
   hello: 0x01, supply: 0x02, ssiConfig: 0x10, ssiRead: 0x11, ssiStream: 0x12,
   bissConfig: 0x20, bissRead: 0x21, registerRead: 0x22, registerWrite: 0x23, bissStream: 0x24,
-  status: 0x03, analogConfig: 0x30, analogStream: 0x31, analogSkew: 0x33, analogData: 0xb2, ssiData: 0x93, bissData: 0xa5,
+  status: 0x03, uartConfig: 0x40, uartTransfer: 0x41, analogConfig: 0x30, analogStream: 0x31, analogSkew: 0x33, analogData: 0xb2, ssiData: 0x93, bissData: 0xa5,
 };
 
 export class Client {
@@ -33,19 +33,19 @@ export class Client {
   }
 
   /** Sends a request and returns its reply: operation and body. */
-  request(op, body = []) {
+  request(op, body = [], nanos = 300e6) {
     this.seq = (this.seq + 1) & 255;
     this.host.send(emit(this.seq, op, body));
     const { packets } = this.receiver;
     const answers = (packet) => packet[0] === this.seq && (packet[1] === (op | 0x80) || packet[1] === 0xff);
-    this.until(() => packets.some(answers), `no reply to operation ${op.toString(16)}`);
+    this.until(() => packets.some(answers), `no reply to operation ${op.toString(16)}`, nanos);
     const [reply] = packets.splice(packets.findIndex(answers), 1);
     return { op: reply[1], body: reply.subarray(2) };
   }
 
   /** Sends a request and returns the body of its reply, which is not a refusal. */
-  ask(op, body = []) {
-    const reply = this.request(op, body);
+  ask(op, body = [], nanos = 300e6) {
+    const reply = this.request(op, body, nanos);
     if (reply.op === 0xff) throw new Error(`refused: ${reply.body[1]} ${reply.body.subarray(3)}`);
     return reply.body;
   }
@@ -58,6 +58,15 @@ export class Client {
   }
 
   /** Configures SSI and returns the actual clock. */
+  configureUart(baud, parity = 2, turnaroundUs = 0) {
+    return this.ask(OP.uartConfig, [...u32(baud), parity, ...u16(turnaroundUs)]).readUInt32LE(0);
+  }
+
+  transfer(bytes, timeoutUs = 50_000, idleUs = 5_000) {
+    const body = this.ask(OP.uartTransfer, [...u32(timeoutUs), ...u32(idleUs), ...bytes], 1e9);
+    return { timeUs: Number(body.readBigUInt64LE(0)), rx: [...body.subarray(8)] };
+  }
+
   configureSsi(clocks, hz, pauseUs = 30) {
     return this.ask(OP.ssiConfig, [clocks, ...u32(hz), ...u16(pauseUs), 1]).readUInt32LE(0);
   }

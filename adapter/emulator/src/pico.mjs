@@ -34,7 +34,6 @@ export class Pico {
     mcu.logger = { debug() {}, info() {}, warn() {}, error: (name, text) => { throw new Error(`${name}: ${text}`); } };
     /** System clock cycles since the start. */
     this.cycles = 0;
-    this.stepStart = 0;
     /** Executed instructions. */
     this.instructions = 0;
     /** What happens at a cycle: [cycle, function], in order. */
@@ -65,9 +64,9 @@ export class Pico {
     return 1e9 / this.mcu.clkSys;
   }
 
-  /** Time since the start in nanoseconds, exact within a cycle. That of the clock stands still until a step is complete. */
+  /** Time since the start in nanoseconds. */
   get nanos() {
-    return this.clock.nanos + (this.cycles - this.stepStart) * this.cycleNanos;
+    return this.clock.nanos;
   }
 
   /** Returns the number of cycles in a time. */
@@ -83,19 +82,24 @@ export class Pico {
     this.events.splice(place, 0, [at, act]);
   }
 
-  /** Lets a number of cycles pass for the state machines and the events. */
+  /** Lets a number of cycles pass for the state machines, the events and the clock. */
   elapse(cycles) {
     const end = this.cycles + cycles, { machines, events } = this;
-    this.stepStart = this.cycles;
     for (;;) {
       const next = Math.min(machines.due, events.length ? events[0][0] : Infinity);
       if (next > end) break;
-      this.cycles = Math.max(this.cycles, next);
+      this.advance(next);
       while (events.length && events[0][0] <= this.cycles) events.shift()[1]();
       machines.run();
     }
-    this.cycles = end;
-    this.stepStart = end;
+    this.advance(end);
+  }
+
+  /** The clock goes with the cycles, so that what the machines cause has the right time. */
+  advance(cycle) {
+    if (cycle <= this.cycles) return;
+    const cycles = cycle - this.cycles;
+    this.cycles = cycle;
     this.clock.tick(cycles * this.cycleNanos);
   }
 

@@ -149,6 +149,20 @@ test('a round robin of the converter follows its mask (4.9.2.1)', () => {
   assert.deepEqual(convert(0b10001, 0), [0, 4, 0, 4, 0]);
 });
 
+test('what a machine causes has the time at which it happens, also after a long sleep', () => {
+  // The machine waits for a level, and its output lets the DMA copy the time.
+  const PUSH = 0x8000, { pico, mcu } = start([WAIT_1_PIN, PUSH, JMP | 2], { divisor: [1000, 0] });
+  const CHANNEL = 0x50000000, RAM = 0x20000000, TIMERAWL = 0x40054028, DREQ_PIO0_RX0 = 4;
+  mcu.writeUint32(CHANNEL, TIMERAWL);
+  mcu.writeUint32(CHANNEL + 4, RAM);
+  mcu.writeUint32(CHANNEL + 8, 1);
+  mcu.writeUint32(CHANNEL + 0xc, 1 | (2 << 2) | (DREQ_PIO0_RX0 << 15));
+  pico.after(1_000_500, () => mcu.gpio[3].setInputValue(true));
+  pico.elapse(2_000_000);
+  // Seen with the tick at 1 001 000, and the output a thousand cycles later, of 8 ns.
+  assert.equal(mcu.readUint32(RAM), 1_002_000 * 8 / 1000);
+});
+
 test('an abort of the DMA is complete at once (2.5.7)', () => {
   const mcu = new RP2040();
   correctDma(mcu.dma);

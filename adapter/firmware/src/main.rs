@@ -46,8 +46,8 @@ static HEAP: LlffHeap = LlffHeap::empty();
 const HEAP_BYTES: usize = 64 * 1024;
 
 const SERIAL_NUMBER: &str = "1";
-/// Longest sleep of the main loop in microseconds, with and without a stream.
-const SLEEP_US: [u32; 2] = [2_000, 100_000];
+/// Longest sleep of the main loop in microseconds: during a transfer, during a stream, and otherwise.
+const SLEEP_US: [u32; 3] = [200, 2_000, 100_000];
 /// Time after which the watchdog restarts an adapter that no longer runs.
 const WATCHDOG_MS: u32 = 2_000;
 
@@ -84,7 +84,14 @@ fn run() -> Option<()> {
     let line = Line::new(
         pac.PIO0,
         pac.PIO1,
-        Pins { clock: pins.gpio2.reconfigure(), data: pins.gpio3.reconfigure(), done: pins.gpio5.reconfigure() },
+        Pins {
+            clock: pins.gpio2.reconfigure(),
+            data: pins.gpio3.reconfigure(),
+            done: pins.gpio5.reconfigure(),
+            serial_out: pins.gpio8.reconfigure(),
+            serial_in: pins.gpio9.reconfigure(),
+            direction: pins.gpio10.reconfigure(),
+        },
         words,
         converter,
         timer,
@@ -110,6 +117,7 @@ fn run() -> Option<()> {
                 .union(Capabilities::BISS_REGISTERS)
                 .union(Capabilities::ANALOG)
                 .union(Capabilities::ANALOG_SKEW)
+                .union(Capabilities::UART)
                 .union(Capabilities::STATUS),
             restart,
             corrections: [Correction::NONE; 2],
@@ -142,7 +150,12 @@ fn run() -> Option<()> {
             is_idle = false;
         }
         if is_idle {
-            wake::after(if adapter.is_streaming() { SLEEP_US[0] } else { SLEEP_US[1] });
+            let [transfer, stream, idle] = SLEEP_US;
+            wake::after(match (adapter.is_transferring(), adapter.is_streaming()) {
+                (true, _) => transfer,
+                (false, true) => stream,
+                (false, false) => idle,
+            });
             usb::sleep();
         }
     }

@@ -50,8 +50,8 @@ pub(crate) fn rings(dma: DMA, resets: &mut RESETS) -> (Ring, Ring) {
 }
 
 /// Returns the registers of the DMA.
-fn dma() -> &'static hal::pac::dma::RegisterBlock {
-    // Safety: `rings` has taken the DMA, and each ring uses its own channels. The registers of all channels only have bits
+pub(crate) fn dma() -> &'static hal::pac::dma::RegisterBlock {
+    // Safety: `rings` has taken the DMA, and each user has its own channels. The registers of all channels only have bits
     // to be set, one for each channel.
     unsafe { &*DMA::ptr() }
 }

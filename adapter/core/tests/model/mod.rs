@@ -4,7 +4,7 @@
 
 use std::collections::VecDeque;
 
-use adapter_core::{Adapter, Bus, Clocking, Correction, Frame, FrameWords, Identity};
+use adapter_core::{Adapter, Bus, Clocking, Correction, Frame, FrameWords, Identity, UartSetting};
 use bridge_codec::{Capabilities, ErrorCode, Message, Packet, Receiver, Request, RestartReason};
 
 /// Wires of an encoder whose value is a function of time.
@@ -26,6 +26,11 @@ pub(crate) struct Model {
     pub(crate) has_overrun: bool,
     /// Value of an input at a time in microseconds.
     pub(crate) input: fn(u32, u64) -> u16,
+    /// Characters that were sent, and the end of their transmission; the reply with its delay.
+    pub(crate) sent: Vec<u32>,
+    pub(crate) sent_us: u64,
+    pub(crate) reply: Vec<u32>,
+    pub(crate) reply_delay_us: u64,
     /// Start of each single frame in microseconds.
     pub(crate) frames: Vec<u64>,
 }
@@ -127,6 +132,34 @@ impl Bus for Model {
         self.has_overrun
     }
 
+    fn configure_uart(&mut self, _: UartSetting) {}
+
+    /// A character takes a millisecond.
+    fn begin_transfer(&mut self, characters: &[u32]) {
+        self.sent = characters.to_vec();
+        self.sent_us = self.now_us + 1_000 * characters.len() as u64;
+    }
+
+    fn has_sent(&mut self) -> bool {
+        self.now_us >= self.sent_us
+    }
+
+    fn first_edge_us(&mut self) -> Option<u64> {
+        let edge = self.sent_us + self.reply_delay_us;
+        (!self.reply.is_empty() && self.now_us >= edge).then_some(edge)
+    }
+
+    fn received_characters(&mut self) -> usize {
+        let since = self.now_us.saturating_sub(self.sent_us + self.reply_delay_us);
+        self.reply.len().min((since / 1_000) as usize)
+    }
+
+    fn received_character(&mut self, at: usize) -> u32 {
+        self.reply[at]
+    }
+
+    fn end_transfer(&mut self) {}
+
     fn word(&self, number: u32) -> u32 {
         let behind = self.received().wrapping_sub(number);
         assert!((1..=Self::CAPACITY).contains(&behind), "word {number} is not kept");
@@ -157,6 +190,10 @@ impl Bench {
             cds: VecDeque::new(),
             cdm: Vec::new(),
             conversions: None,
+            sent: Vec::new(),
+            sent_us: 0,
+            reply: Vec::new(),
+            reply_delay_us: 3_000,
             has_overrun: false,
             input: |_, _| 2048,
             frames: Vec::new(),
@@ -170,6 +207,7 @@ impl Bench {
                 .union(Capabilities::BISS_REGISTERS)
                 .union(Capabilities::ANALOG)
                 .union(Capabilities::ANALOG_SKEW)
+                .union(Capabilities::UART)
                 .union(Capabilities::STATUS),
             restart: RestartReason::WATCHDOG,
             corrections: [Correction::NONE; 2],

@@ -25,6 +25,11 @@ impl<SM: ValidStateMachine> Machine<SM> {
         self.machine.clock_divisor_fixed_point(divisor, 0);
     }
 
+    /// Sets the number of system clocks in a cycle, with 256ths.
+    pub(super) fn set_divisor_256(&mut self, whole: u16, fraction: u8) {
+        self.machine.clock_divisor_fixed_point(whole, fraction);
+    }
+
     /// Loads OSR. The machine must be waiting.
     pub(super) fn load_osr(&mut self, value: u32) {
         self.tx.write(value);
@@ -43,6 +48,38 @@ impl<SM: ValidStateMachine> Machine<SM> {
 
     pub(super) fn clear_x(&mut self) {
         self.execute(InstructionOperands::SET { destination: SetDestination::X, data: 0 });
+    }
+
+    /// Sets Y to a number below 32. Unlike [`load_y`](Self::load_y), this is possible while the machine waits for a word.
+    pub(super) fn set_y(&mut self, data: u8) {
+        self.execute(InstructionOperands::SET { destination: SetDestination::Y, data });
+    }
+
+    pub(super) fn clear_isr(&mut self) {
+        self.execute(InstructionOperands::MOV {
+            destination: MovDestination::ISR,
+            op: MovOperation::None,
+            source: MovSource::NULL,
+        });
+    }
+
+    /// Sets the output pins of the machine.
+    pub(super) fn set_output_high(&mut self) {
+        self.execute(InstructionOperands::MOV {
+            destination: MovDestination::PINS,
+            op: MovOperation::Invert,
+            source: MovSource::NULL,
+        });
+    }
+
+    /// Returns whether the machine waits at the begin of its program.
+    pub(super) fn is_at_start(&self) -> bool {
+        self.machine.instruction_address() == u32::from(self.start)
+    }
+
+    /// Returns the address of the input, and the number of its requests to the DMA.
+    pub(super) fn input(&self) -> (*const u32, u8) {
+        (self.tx.fifo_address(), self.tx.dreq_value())
     }
 
     /// Begins the program again.

@@ -2,21 +2,25 @@
 //! connected to one of them.
 
 mod machine;
+mod serial;
 
-use adapter_core::{BissSetting, Bus, Clocking, Frame, FrameWords, MAX_WORDS};
+use adapter_core::{BissSetting, Bus, Clocking, Frame, FrameWords, MAX_WORDS, UartSetting};
 use rp2040_hal as hal;
 
-use hal::gpio::bank0::{Gpio2, Gpio3, Gpio5};
+use hal::gpio::bank0::{Gpio2, Gpio3, Gpio5, Gpio8, Gpio9, Gpio10};
 use hal::gpio::{Function, FunctionNull, FunctionPio0, FunctionPio1, Pin, PullNone};
 use hal::pac::{IO_BANK0, PIO0, PIO1, RESETS};
-use hal::pio::{InstallError, PIO, PIOBuilder, PIOExt as _, PinDir, PinState, SM0, SM1, SM3, ShiftDirection};
+use hal::pio::{
+    InstallError, MovStatusConfig, PIO, PIOBuilder, PIOExt as _, PinDir, PinState, SM0, SM1, SM3, ShiftDirection,
+};
 use hal::timer::Timer;
 
 use crate::clocks::SYSTEM_HZ;
 use crate::converter::Converter;
-use crate::pins::{CLOCK, DATA, DONE};
+use crate::pins::{CLOCK, DATA, DIRECTION, DONE, SERIAL_IN, SERIAL_OUT};
 use crate::ring::{self, Ring};
 use machine::Machine;
+use serial::Serial;
 
 /// Cycles from the start of a frame until the first falling edge, for SSI and BiSS.
 const START_CYCLES: u32 = 3;
@@ -33,6 +37,9 @@ pub(crate) struct Pins<C: Function, D: Function, E: Function> {
     pub(crate) clock: Pin<Gpio2, C, PullNone>,
     pub(crate) data: Pin<Gpio3, D, PullNone>,
     pub(crate) done: Pin<Gpio5, E, PullNone>,
+    pub(crate) serial_out: Pin<Gpio8, C, PullNone>,
+    pub(crate) serial_in: Pin<Gpio9, D, PullNone>,
+    pub(crate) direction: Pin<Gpio10, C, PullNone>,
 }
 
 /// The clock and data lines with all that drives them, and the analogue inputs.
@@ -44,6 +51,7 @@ pub(crate) struct Line {
     ssi_block: PIO<PIO1>,
     ssi: Machine<(PIO1, SM0)>,
     ssi_pacer: Machine<(PIO1, SM3)>,
+    serial: Serial,
     biss_block: PIO<PIO0>,
     ma: Machine<(PIO0, SM0)>,
     slo: Machine<(PIO0, SM1)>,
@@ -62,7 +70,7 @@ impl Line {
         timer: Timer,
         resets: &mut RESETS,
     ) -> Result<Self, InstallError> {
-        let (mut ssi_block, sm0, _, _, sm3) = pio1.split(resets);
+        let (mut ssi_block, sm0, sm1, sm2, sm3) = pio1.split(resets);
         let (ssi, ssi_pacer) = {
             let program = ssi_block.install(&pio::pio_file!("pio/ssi.pio").program)?;
             let start = program.wrap_target();
@@ -76,6 +84,29 @@ impl Line {
             sm.set_pins([(CLOCK, PinState::High)]);
             sm.set_pindirs([(CLOCK, PinDir::Output), (DATA, PinDir::Input)]);
             (Machine::new(sm.start(), rx, tx, start, Some(1)), pacer!(ssi_block, sm3))
+        };
+        let serial = {
+            let program = pio::pio_file!("pio/uart.pio", select_program("uart_tx")).program;
+            let program = ssi_block.install(&program)?;
+            let start = program.wrap_target();
+            let (mut sm, rx, tx) = PIOBuilder::from_installed_program(program)
+                .side_set_pin_base(DIRECTION)
+                .out_pins(SERIAL_OUT, 1)
+                .out_shift_direction(ShiftDirection::Right)
+                .set_mov_status_config(MovStatusConfig::Tx(1))
+                .build(sm1);
+            sm.set_pins([(SERIAL_OUT, PinState::High), (DIRECTION, PinState::Low)]);
+            sm.set_pindirs([(SERIAL_OUT, PinDir::Output), (DIRECTION, PinDir::Output)]);
+            let sender = Machine::new(sm.start(), rx, tx, start, Some(0));
+            let program = pio::pio_file!("pio/uart.pio", select_program("uart_rx")).program;
+            let program = ssi_block.install(&program)?;
+            let start = program.offset();
+            let (mut sm, rx, tx) = PIOBuilder::from_installed_program(program)
+                .in_pin_base(SERIAL_IN)
+                .in_shift_direction(ShiftDirection::Right)
+                .build(sm2);
+            sm.set_pindirs([(SERIAL_IN, PinDir::Input)]);
+            Serial::new(sender, Machine::new(sm.start(), rx, tx, start, None))
         };
         let (mut biss_block, sm0, sm1, _, sm3) = pio0.split(resets);
         let mut ma = {
@@ -110,6 +141,9 @@ impl Line {
             clock: pins.clock.into_function::<FunctionPio1>(),
             data: pins.data.into_function::<FunctionPio1>(),
             done: pins.done.into_function::<FunctionPio0>(),
+            serial_out: pins.serial_out.into_function::<FunctionPio1>(),
+            serial_in: pins.serial_in.into_function::<FunctionPio1>(),
+            direction: pins.direction.into_function::<FunctionPio1>(),
         };
         let clocking = None;
         Ok(Line {
@@ -120,6 +154,7 @@ impl Line {
             ssi_block,
             ssi,
             ssi_pacer,
+            serial,
             biss_block,
             ma,
             slo,
@@ -269,6 +304,37 @@ impl Bus for Line {
 
     fn word(&self, number: u32) -> u32 {
         self.ring.value(number)
+    }
+
+    fn configure_uart(&mut self, setting: UartSetting) {
+        self.serial.configure(setting);
+    }
+
+    fn begin_transfer(&mut self, characters: &[u32]) {
+        let now = self.now_us() as u32;
+        self.serial.begin(characters, now);
+    }
+
+    fn has_sent(&mut self) -> bool {
+        self.serial.has_sent()
+    }
+
+    fn first_edge_us(&mut self) -> Option<u64> {
+        // The hardware has the lower half of the time, which has passed a moment ago.
+        let now = self.now_us();
+        self.serial.first_edge().map(|time| now - u64::from((now as u32).wrapping_sub(time)))
+    }
+
+    fn received_characters(&mut self) -> usize {
+        self.serial.received()
+    }
+
+    fn received_character(&mut self, at: usize) -> u32 {
+        self.serial.character(at)
+    }
+
+    fn end_transfer(&mut self) {
+        self.serial.end();
     }
 
     fn start_conversions(&mut self) -> u64 {

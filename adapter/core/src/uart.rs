@@ -1,0 +1,200 @@
+//! The serial line: settings, characters as bits, and a transfer of a request and its reply.
+
+use alloc::vec::Vec;
+
+use bridge_codec::{ErrorCode, MAX_BODY};
+
+use crate::{Bus, Refusal};
+
+/// Settings of the serial line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UartSetting {
+    /// Duration of an eighth of a bit in 256ths of a system clock cycle.
+    pub divisor: u32,
+    parity: Parity,
+    turnaround_us: u16,
+    /// Duration of a character in microseconds, rounded up.
+    character_us: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Parity {
+    None,
+    Odd,
+    Even,
+}
+
+/// A request that is sent, and its reply.
+#[derive(Clone, Debug)]
+pub(crate) struct Transfer {
+    /// Sequence number of the host's request.
+    pub(crate) seq: u8,
+    timeout_us: u32,
+    idle_us: u32,
+    /// Time at which the characters have been sent.
+    sent_us: Option<u64>,
+    /// Number of characters in the reply so far, and the time of the last change.
+    received: (usize, u64),
+}
+
+impl UartSetting {
+    /// Frequency of the state machines at a divisor of 1, which take eight cycles a bit.
+    const BASE_HZ: u64 = 120_000_000 / 8;
+    const BAUD: core::ops::RangeInclusive<u32> = 300..=1_000_000;
+
+    /// Checks the settings of a request.
+    pub(crate) fn new(baud: u32, parity: u8, turnaround_us: u16) -> Result<Self, Refusal> {
+        if !Self::BAUD.contains(&baud) {
+            return Err((ErrorCode::BAD_ARGUMENT, "300 to 1000000 baud"));
+        }
+        let parity = match parity {
+            0 => Parity::None,
+            1 => Parity::Odd,
+            2 => Parity::Even,
+            _ => return Err((ErrorCode::BAD_ARGUMENT, "parity none, odd or even")),
+        };
+        let rate = u64::from(baud);
+        // At most 50 000 · 256.
+        let divisor = ((Self::BASE_HZ * 256 + rate / 2) / rate) as u32;
+        let bits = if parity == Parity::None { 10 } else { 11 };
+        let character_us = (bits * 1_000_000_u32).div_ceil(baud);
+        Ok(UartSetting { divisor, parity, turnaround_us, character_us })
+    }
+
+    /// Returns the number of bits in a character, with start and stop bit.
+    pub const fn bits(self) -> u32 {
+        match self.parity {
+            Parity::None => 10,
+            Parity::Odd | Parity::Even => 11,
+        }
+    }
+
+    /// Returns the time in microseconds by which a receiver with eight cycles a bit marks an edge late: one to two cycles.
+    pub const fn mark_delay_us(self) -> u32 {
+        self.divisor * 3 / 2 / 256 / (Self::BASE_HZ as u32 * 8 / 1_000_000)
+    }
+
+    /// Returns the bits of a character, the start bit lowest.
+    fn encode(self, byte: u8) -> u32 {
+        let is_odd = byte.count_ones() % 2 == 1;
+        let stop = match self.parity {
+            Parity::None => 1,
+            Parity::Odd => u32::from(!is_odd) | 0b10,
+            Parity::Even => u32::from(is_odd) | 0b10,
+        };
+        u32::from(byte) << 1 | stop << 9
+    }
+
+    /// Returns the byte in a word of the receiver, or `None` without a stop bit. The bits are the highest of the word, the
+    /// last one first. The host finds a wrong parity by its checksums.
+    fn decode(self, word: u32) -> Option<u8> {
+        // Eight bits of data are left.
+        (word >> 31 == 1).then_some((word >> (33 - self.bits())) as u8)
+    }
+}
+
+impl Transfer {
+    /// Maximum number of bytes in a reply, beside its time.
+    pub(crate) const MAX_RX: usize = MAX_BODY - 8;
+    const MAX_TIMEOUT_US: u32 = 2_000_000;
+    const MAX_IDLE_US: u32 = 500_000;
+
+    /// Begins to send. `free_us` is the time before which the line may not be driven.
+    pub(crate) fn begin<B: Bus>(
+        bus: &mut B,
+        setting: UartSetting,
+        (seq, timeout_us, idle_us): (u8, u32, u32),
+        tx: &[u8],
+    ) -> Result<Self, Refusal> {
+        if timeout_us > Self::MAX_TIMEOUT_US || idle_us > Self::MAX_IDLE_US || tx.is_empty() {
+            return Err((ErrorCode::BAD_ARGUMENT, "at least a byte, 2 s and 0.5 s of silence at most"));
+        }
+        let words: Vec<u32> = tx.iter().map(|byte| setting.encode(*byte)).collect();
+        bus.begin_transfer(&words);
+        Ok(Transfer { seq, timeout_us, idle_us, sent_us: None, received: (0, 0) })
+    }
+
+    /// Returns the time of the first start edge and the reply if the transfer is complete.
+    pub(crate) fn poll<B: Bus>(&mut self, bus: &mut B, setting: UartSetting) -> Option<(u64, Vec<u8>)> {
+        let now = bus.now_us();
+        if !bus.has_sent() {
+            return None;
+        }
+        let sent_us = *self.sent_us.get_or_insert(now);
+        let count = bus.received_characters().min(Self::MAX_RX);
+        if count != self.received.0 {
+            self.received = (count, now);
+        }
+        let first_edge = bus.first_edge_us();
+        let is_complete = match first_edge {
+            // The silence begins with the end of the last character, or of the one that has begun.
+            Some(edge) => {
+                let last = if count == 0 { edge + u64::from(setting.character_us) } else { self.received.1 };
+                count == Self::MAX_RX || now > last + u64::from(self.idle_us)
+            }
+            None => now > sent_us + u64::from(self.timeout_us),
+        };
+        if !is_complete {
+            return None;
+        }
+        let rx = (0..count).filter_map(|at| setting.decode(bus.received_character(at))).collect();
+        bus.end_transfer();
+        Some((first_edge.unwrap_or(now), rx))
+    }
+
+    /// Returns the time until which the line must not be driven after this transfer.
+    pub(crate) fn free_us(now_us: u64, setting: UartSetting) -> u64 {
+        now_us + u64::from(setting.turnaround_us)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn divisors_are_within_a_thousandth_of_the_baud_rate() {
+        for baud in [300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400, 115_200, 1_000_000] {
+            let setting = UartSetting::new(baud, 2, 0).unwrap();
+            let actual = 120e6 / 8.0 * 256.0 / f64::from(setting.divisor);
+            assert!((actual / f64::from(baud) - 1.0).abs() < 1e-3, "{baud}: {actual}");
+            assert!(setting.divisor >> 8 < 65_536);
+        }
+        for (baud, parity) in [(299, 0), (1_000_001, 0), (9_600, 3)] {
+            assert!(UartSetting::new(baud, parity, 0).is_err());
+        }
+        // One and a half of eight cycles of 104 µs.
+        assert_eq!(UartSetting::new(9_600, 2, 0).unwrap().mark_delay_us(), 19);
+        // Reference of HIPERFACE, section 3: a character of 11 bits takes 1.146 ms at 9600 baud.
+        assert_eq!(UartSetting::new(9_600, 2, 0).unwrap().character_us, 1_146);
+    }
+
+    /// Start bit 0, data with the lowest bit first, parity, stop bit 1.
+    #[test]
+    fn characters_have_their_bits_in_order() {
+        let line = |parity, byte| {
+            let setting = UartSetting::new(9_600, parity, 0).unwrap();
+            let bits = setting.encode(byte);
+            (0..setting.bits()).map(|at| if bits >> at & 1 == 1 { '1' } else { '0' }).collect::<alloc::string::String>()
+        };
+        assert_eq!(line(0, 0x42), "0010000101");
+        // Even: the number of ones with the parity bit is even.
+        assert_eq!(line(2, 0x42), "00100001001");
+        assert_eq!(line(2, 0x43), "01100001011");
+        assert_eq!(line(1, 0x42), "00100001011");
+        assert_eq!(line(1, 0x43), "01100001001");
+    }
+
+    #[test]
+    fn received_bits_become_bytes() {
+        for parity in [0, 2] {
+            let setting = UartSetting::new(9_600, parity, 0).unwrap();
+            for byte in [0x00, 0x42, 0x80, 0x01, 0xFF] {
+                // The receiver shifts in all bits but the start bit from above.
+                let received = setting.encode(byte) >> 1 << (33 - setting.bits());
+                assert_eq!(setting.decode(received), Some(byte));
+                assert_eq!(setting.decode(received & 0x7FFF_FFFF), None, "without a stop bit");
+            }
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The serial line: two state machines of PIO 1, and four channels of the DMA. The processor only begins a transfer and
+//! looks at its result, so that neither characters nor the time of the reply depend on the main loop.
+
+use core::cell::UnsafeCell;
+
+use adapter_core::UartSetting;
+use rp2040_hal as hal;
+
+use hal::pac::{PIO1, TIMER};
+use hal::pio::{SM1, SM2};
+
+use super::machine::Machine;
+use crate::ring::dma;
+
+/// Maximum number of characters of a request and of a reply.
+const LENGTH: usize = 512;
+/// Channels of the DMA: sending, the mark of the first edge, its time, and the characters of the reply.
+const SEND: usize = 4;
+const MARK: usize = 5;
+const STAMP: usize = 6;
+const RECEIVE: usize = 7;
+/// Request that is always present.
+const ALWAYS: u8 = 63;
+/// Content of the memory of a character that has not arrived. Received bits are the highest of a word.
+const NOTHING: u32 = 1;
+
+/// Memory that both the DMA and the processor use.
+struct Shared<const N: usize>(UnsafeCell<[u32; N]>);
+
+// Safety: the processor writes it while no channel runs, and reads it by volatile reads of whole words.
+unsafe impl<const N: usize> Sync for Shared<N> {}
+
+static SENT: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
+static RECEIVED: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
+/// The mark of the first edge, which has no meaning, and the lower half of its time.
+static EDGE: Shared<2> = Shared(UnsafeCell::new([0; 2]));
+
+impl<const N: usize> Shared<N> {
+    fn address(&self) -> *mut u32 {
+        self.0.get().cast()
+    }
+
+    fn read(&self, at: usize) -> u32 {
+        // Safety: the place is within the memory.
+        if at < N { unsafe { self.address().add(at).read_volatile() } } else { 0 }
+    }
+
+    fn write(&self, at: usize, word: u32) {
+        if at < N {
+            // Safety: the place is within the memory.
+            unsafe { self.address().add(at).write_volatile(word) };
+        }
+    }
+}
+
+/// Sender and receiver of the serial line.
+pub(super) struct Serial {
+    pub(super) sender: Machine<(PIO1, SM1)>,
+    pub(super) receiver: Machine<(PIO1, SM2)>,
+    /// Content of the memory of the time before the first edge: a time that has passed.
+    no_edge: u32,
+    /// Delay of the mark in microseconds.
+    mark_delay_us: u32,
+    /// Number of characters that were found so far.
+    count: usize,
+}
+
+impl Serial {
+    pub(super) fn new(sender: Machine<(PIO1, SM1)>, receiver: Machine<(PIO1, SM2)>) -> Self {
+        Serial { sender, receiver, no_edge: 0, mark_delay_us: 0, count: 0 }
+    }
+
+    pub(super) fn configure(&mut self, setting: UartSetting) {
+        let (whole, fraction) = ((setting.divisor >> 8) as u16, setting.divisor as u8);
+        self.mark_delay_us = setting.mark_delay_us();
+        self.sender.set_divisor_256(whole, fraction);
+        self.receiver.set_divisor_256(whole, fraction);
+        // At most eleven bits, and for the receiver without the start bit.
+        let bits = setting.bits() as u8;
+        self.sender.set_y(bits - 1);
+        self.receiver.set_y(bits - 2);
+    }
+
+    /// Sends characters, and then receives. `now` is the lower half of the clock.
+    pub(super) fn begin(&mut self, characters: &[u32], now: u32) {
+        self.end();
+        (self.no_edge, self.count) = (now.wrapping_sub(1), 0);
+        EDGE.write(1, self.no_edge);
+        for at in 0..LENGTH {
+            RECEIVED.write(at, NOTHING);
+        }
+        let count = characters.len().min(LENGTH);
+        for (at, word) in characters.iter().take(count).enumerate() {
+            SENT.write(at, *word);
+        }
+        let (fifo, request) = self.receiver.output();
+        // Each starts the next one: the mark, the time at which it came, and the characters.
+        let timer = timer_address();
+        channel(MARK, fifo as u32, EDGE.address(), 1, Copied { request, chain: STAMP, advance: 0 });
+        channel(
+            STAMP,
+            timer,
+            EDGE.address().wrapping_add(1),
+            1,
+            Copied { request: ALWAYS, chain: RECEIVE, advance: 0 },
+        );
+        let characters = Copied { request, chain: RECEIVE, advance: WRITES };
+        channel(RECEIVE, fifo as u32, RECEIVED.address(), LENGTH as u32, characters);
+        let (fifo, request) = self.sender.input();
+        let words = Copied { request, chain: SEND, advance: READS };
+        channel(SEND, SENT.address() as u32, fifo.cast_mut(), count as u32, words);
+        // Safety: the channels are set up. Those of the time and of the characters follow.
+        unsafe { dma().multi_chan_trigger().write(|w| w.bits(1 << MARK | 1 << SEND)) };
+    }
+
+    /// Returns whether all characters have been sent and the driver is off.
+    pub(super) fn has_sent(&mut self) -> bool {
+        !is_busy(SEND) && self.sender.has_taken_all() && self.sender.is_at_start()
+    }
+
+    /// Returns the lower half of the time of the first edge.
+    pub(super) fn first_edge(&self) -> Option<u32> {
+        Some(EDGE.read(1)).filter(|time| *time != self.no_edge).map(|time| time.wrapping_sub(self.mark_delay_us))
+    }
+
+    pub(super) fn received(&mut self) -> usize {
+        while self.count < LENGTH && RECEIVED.read(self.count) != NOTHING {
+            self.count += 1;
+        }
+        self.count
+    }
+
+    pub(super) fn character(&self, at: usize) -> u32 {
+        RECEIVED.read(at)
+    }
+
+    /// Ends a transfer, and prepares the receiver for the next one.
+    pub(super) fn end(&mut self) {
+        let channels = [SEND, MARK, STAMP, RECEIVE];
+        let mask = channels.iter().fold(0, |mask, channel| mask | 1 << channel);
+        for channel in channels {
+            // Safety: disables the channel, so that an abort does not start the next one.
+            unsafe { dma().ch(channel).ch_al1_ctrl().write(|w| w.bits(0)) };
+        }
+        // Safety: aborts the channels.
+        unsafe { dma().chan_abort().write(|w| w.bits(mask)) };
+        while dma().chan_abort().read().bits() & mask != 0 {}
+        self.sender.restart();
+        self.sender.set_output_high();
+        self.receiver.restart();
+        self.receiver.clear_isr();
+        self.receiver.discard();
+    }
+}
+
+/// Addresses that advance during a copy.
+const READS: u32 = 1 << 4;
+const WRITES: u32 = 1 << 5;
+
+/// How a channel copies.
+struct Copied {
+    request: u8,
+    /// Channel that is started at the end; its own number for none.
+    chain: usize,
+    advance: u32,
+}
+
+/// Sets up a channel that copies words, without starting it.
+fn channel(number: usize, from: u32, to: *mut u32, count: u32, copied: Copied) {
+    let registers = dma().ch(number);
+    // Safety: the addresses are a FIFO, the timer and memory that is never freed, which has room for the count.
+    unsafe {
+        registers.ch_read_addr().write(|w| w.bits(from));
+        registers.ch_write_addr().write(|w| w.bits(to as u32));
+        registers.ch_trans_count().write(|w| w.bits(count));
+        let bits =
+            1 | 2 << 2 | copied.advance | (copied.chain as u32) << 11 | u32::from(copied.request) << 15 | 1 << 21;
+        registers.ch_al1_ctrl().write(|w| w.bits(bits));
+    }
+}
+
+fn is_busy(channel: usize) -> bool {
+    dma().ch(channel).ch_ctrl_trig().read().busy().bit_is_set()
+}
+
+/// Returns the address of the lower half of the clock.
+fn timer_address() -> u32 {
+    // Safety: only the address is taken.
+    unsafe { (*TIMER::ptr()).timerawl().as_ptr() as u32 }
+}
