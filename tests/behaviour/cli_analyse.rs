@@ -189,6 +189,11 @@ fn wrong_usage_exits_with_status_2() {
     let bench = Bench::new();
     let file = bench.write("c.csv", table("", &rows(&REFERENCE, 100, 0.0, 1.0)));
     bench.run(&["analyse"]).fails(2, &["FILE.csv"]);
+    bench.run(&["analyse", &file, "--link", "sim:"]).fails(2, &["FILE.csv"]);
+    for seconds in ["0", "61", "NaN", "x"] {
+        bench.run(&["analyse", "--link", "sim:", "--seconds", seconds]).fails(2, &["--seconds"]);
+    }
+    bench.run(&["analyse", "--link", "serial:/dev/null"]).fails(1, &["serial:"]);
     for columns in ["1,2", "0,1,2", "1,2,2", "a,b,c", "", "1,2,3,4"] {
         bench.run(&["analyse", &file, "--columns", columns]).fails(2, &["--columns"]);
     }
@@ -340,4 +345,17 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
         let text = bench.run(&["analyse", &file]).out;
         assert_eq!(text.contains("Hz (uncertain"), label == "coarse", "{text}");
     }
+}
+
+/// The virtual adapter turns its shaft once a second, and samples without errors of the signals.
+#[test]
+fn an_adapter_is_sampled_and_analysed() {
+    let bench = Bench::new();
+    let arguments = ["analyse", "--link", "sim:?rpm=60", "--seconds", "0.2", "--rate", "20000", "--json"];
+    let ran = bench.run(&arguments);
+    assert!(ran.err.contains("virtual adapter: 20000 samples a second"), "{ran:?}");
+    let told = ran.json();
+    assert!((4_000..5_000).contains(&told["samples"].as_u64().unwrap()), "{told}");
+    let amplitude = told["amplitude_v"].as_f64().unwrap();
+    assert!((amplitude - 0.5).abs() < 0.05, "{told}");
 }

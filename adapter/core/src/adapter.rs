@@ -8,10 +8,11 @@ use alloc::string::String;
 
 use bridge_codec::{
     AdapterStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
-    RestartReason, SupplyFaults,
+    RestartReason,
 };
 
 use crate::analog::AnalogStream;
+use crate::supply::Supply;
 use crate::uart::Transfer;
 use crate::{
     AnalogSetting, BissSetting, Bus, ClockedStream, Clocking, Correction, Frame, Outbox, Refusal, RegisterAccess,
@@ -49,6 +50,7 @@ pub struct Adapter<B> {
     stream: Option<ClockedStream>,
     analog: Option<AnalogSetting>,
     sampled: Option<AnalogStream>,
+    supply: Supply,
     uart: Option<UartSetting>,
     transfer: Option<Transfer>,
     /// Time in microseconds before which the serial line must not be driven.
@@ -83,6 +85,7 @@ impl<B: Bus> Adapter<B> {
             stream: None,
             analog: None,
             sampled: None,
+            supply: Supply::new(),
             uart: None,
             transfer: None,
             line_free_us: 0,
@@ -143,6 +146,7 @@ impl<B: Bus> Adapter<B> {
         if self.outbox.is_stuck(self.bus.now_us()) {
             self.host_left();
         }
+        self.supply.poll(&mut self.bus);
         self.poll_transfer();
         while self.outbox.has_room() {
             let clocked = self.stream.as_mut().and_then(|stream| stream.packet(&self.bus));
@@ -288,7 +292,14 @@ impl<B: Bus> Adapter<B> {
                 self.uart = Some(setting);
                 Ok(Reply::UartConfig { baud })
             }
-            Request::Supply { .. } | Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
+            Request::Supply { on, millivolt } => {
+                self.requires(Capabilities::SUPPLY)?;
+                let millivolt = self.supply.switch(&mut self.bus, on, millivolt)?;
+                // The current is limited by the switch, and not measured.
+                Ok(Reply::Supply { on, millivolt, milliampere: 0 })
+            }
+            // It was handled before, since its reply follows later.
+            Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
         }
     }
 
@@ -305,8 +316,9 @@ impl<B: Bus> Adapter<B> {
 
     fn hello(&mut self) -> Hello {
         self.stop_streams();
+        let supplied = if self.supply.is_on() { Capabilities::SUPPLY_ON } else { Capabilities::new(0) };
         Hello {
-            capabilities: self.identity.capabilities,
+            capabilities: self.identity.capabilities.union(supplied),
             max_clock_hz: BissSetting::MAX_HZ,
             max_sample_hz: AnalogSetting::MAX_HZ,
             name: self.identity.name.to_owned(),
@@ -315,12 +327,13 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    fn status(&self) -> AdapterStatus {
+    fn status(&mut self) -> AdapterStatus {
+        let has_supply = self.identity.capabilities.contains(Capabilities::SUPPLY);
         AdapterStatus {
             t_us: self.bus.now_us(),
             restart: self.identity.restart,
-            faults: SupplyFaults::NONE,
-            input_millivolt: 0,
+            faults: self.supply.faults(),
+            input_millivolt: if has_supply { self.bus.supply_millivolt() } else { 0 },
             damaged: u32::try_from(self.receiver.dropped_count()).unwrap_or(u32::MAX),
             malformed: self.malformed,
             lost: self.lost,

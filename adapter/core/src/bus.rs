@@ -72,6 +72,15 @@ pub trait Bus {
     /// Returns whether a conversion was missed since their start.
     fn has_overrun(&self) -> bool;
 
+    /// Measures the voltage before the switch of the supply, in millivolts.
+    fn supply_millivolt(&mut self) -> u16;
+
+    /// Switches the supply of the encoder.
+    fn switch_supply(&mut self, on: bool);
+
+    /// Returns whether the switch of the supply reports an overload.
+    fn has_supply_fault(&mut self) -> bool;
+
     /// Sets up the serial line.
     fn configure_uart(&mut self, setting: UartSetting);
 

@@ -17,6 +17,7 @@ mod line;
 mod outbox;
 mod ssi;
 mod stream;
+mod supply;
 mod uart;
 
 pub use adapter::{Adapter, Identity};

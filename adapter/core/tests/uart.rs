@@ -42,7 +42,7 @@ fn a_reply_ends_with_silence_and_has_the_time_of_its_first_edge() {
     let took = bench.model().now_us - start;
     assert!((18_000..18_600).contains(&took), "{took} µs");
     // Start bit, 40h with the lowest bit first, even parity, stop bit.
-    assert_eq!(bench.model().sent[0], 0b1_1_01000000_0);
+    assert_eq!(bench.model().sent[0], 0b110_1000_0000);
     // The next transfer waits for the turnaround.
     let before = bench.model().now_us;
     send(&mut bench, &transfer(50_000, 5_000));

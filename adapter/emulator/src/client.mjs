@@ -1,5 +1,6 @@
 // A host program at the emulated adapter, in virtual time.
 
+import { connectBoard } from './board.mjs';
 import { emit, Receiver } from './packets.mjs';
 import { Pico } from './pico.mjs';
 import { UsbHost } from './usb-host.mjs';
@@ -14,8 +15,9 @@ export const OP = {
 };
 
 export class Client {
-  constructor(uf2 = process.env.ADAPTER_UF2) {
+  constructor({ uf2 = process.env.ADAPTER_UF2, parts } = {}) {
     this.pico = new Pico(uf2);
+    connectBoard(this.pico, parts);
     this.host = new UsbHost(this.pico);
     this.receiver = new Receiver();
     this.seq = 0;

@@ -13,6 +13,7 @@
 import net from 'node:net';
 import { parseArgs } from 'node:util';
 import { BissEncoder, frame } from './biss-encoder.mjs';
+import { connectBoard } from './board.mjs';
 import { Pico } from './pico.mjs';
 import { Control, Registers } from './registers.mjs';
 import { SineCosine } from './sine-cosine.mjs';
@@ -26,6 +27,7 @@ const { values: options, positionals: [file] } = parseArgs({
 });
 
 const pico = new Pico(file), host = new UsbHost(pico);
+connectBoard(pico);
 const delayNanos = Number(options.delay);
 let position = BigInt(options.start);
 if (options.ssi) {

@@ -88,6 +88,21 @@ impl Converter {
         self.adc.fcs().write(|w| w.over().clear_bit_by_one().under().clear_bit_by_one());
     }
 
+    /// Measures an input while no conversions run, as the mean of sixteen values.
+    pub(crate) fn measure(&mut self, input: u32) -> u16 {
+        let mut sum = 0_u32;
+        for _ in 0..16 {
+            // Safety: the number is that of an input.
+            self.adc.cs().write(|w| unsafe {
+                w.en().set_bit().ts_en().set_bit().ainsel().bits(input as u8).start_once().set_bit()
+            });
+            while self.adc.cs().read().ready().bit_is_clear() {}
+            sum += u32::from(self.adc.result().read().result().bits());
+        }
+        // The mean has twelve bits.
+        (sum / 16) as u16
+    }
+
     /// Returns the number of conversions since the start, modulo 2³².
     pub(crate) fn converted(&self) -> u32 {
         self.ring.received()

@@ -11,6 +11,8 @@ mod converter;
 mod line;
 mod pins;
 mod ring;
+mod straps;
+mod supply;
 mod usb;
 mod wake;
 
@@ -19,7 +21,7 @@ use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 
 use adapter_core::{Adapter, Bus as _, Correction, Identity};
-use bridge_codec::{Capabilities, RestartReason};
+use bridge_codec::RestartReason;
 use embedded_alloc::LlffHeap;
 use embedded_hal::digital::{OutputPin as _, StatefulOutputPin as _};
 use rp2040_hal as hal;
@@ -33,6 +35,7 @@ use usb_device::bus::UsbBusAllocator;
 
 use converter::Converter;
 use line::{Line, Pins};
+use supply::Switch;
 
 /// Second stage of the boot loader, which connects the flash.
 // Safety: the boot loader expects these bytes in this section.
@@ -94,11 +97,13 @@ fn run() -> Option<()> {
         },
         words,
         converter,
+        Switch::new(pins.gpio14, pins.gpio15),
         timer,
         &mut pac.RESETS,
     )
     .ok()?;
     let Ok(()) = driver.set_high();
+    let capabilities = straps::capabilities(pins.gpio18, pins.gpio19, pins.gpio20);
     let mut led = pins.gpio25.into_push_pull_output();
 
     let bus = UsbBus::new(pac.USBCTRL_REGS, pac.USBCTRL_DPRAM, clocks.usb_clock, true, &mut pac.RESETS);
@@ -112,13 +117,7 @@ fn run() -> Option<()> {
             name: usb::PRODUCT,
             serial: SERIAL_NUMBER.to_owned(),
             firmware: env!("CARGO_PKG_VERSION"),
-            capabilities: Capabilities::SSI
-                .union(Capabilities::BISS)
-                .union(Capabilities::BISS_REGISTERS)
-                .union(Capabilities::ANALOG)
-                .union(Capabilities::ANALOG_SKEW)
-                .union(Capabilities::UART)
-                .union(Capabilities::STATUS),
+            capabilities,
             restart,
             corrections: [Correction::NONE; 2],
         },

@@ -8,5 +8,7 @@ pub(crate) const DATA: u8 = 3;
 pub(crate) const SERIAL_OUT: u8 = 8;
 pub(crate) const SERIAL_IN: u8 = 9;
 pub(crate) const DIRECTION: u8 = 10;
+/// Input of the converter with the voltage before the switch of the supply, by way of a divider.
+pub(crate) const SUPPLY_INPUT: u32 = 2;
 /// Connects the two machines of BiSS. Nothing must be wired to it.
 pub(crate) const DONE: u8 = 5;

@@ -46,7 +46,7 @@ impl CliCommand for AnalyseCommand {
                 let capture = live::sample(output, link, arguments.rate, arguments.seconds)?;
                 analyse_capture(output, Path::new(&link.to_string()), &capture, &arguments)
             }
-            _ => Err(Failure::Usage("this command needs either a file or --link with an adapter".to_owned())),
+            _ => Err(Failure::Usage("this command needs either FILE.csv or --link with an adapter".to_owned())),
         }
     }
 }

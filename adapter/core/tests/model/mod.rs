@@ -26,6 +26,10 @@ pub(crate) struct Model {
     pub(crate) has_overrun: bool,
     /// Value of an input at a time in microseconds.
     pub(crate) input: fn(u32, u64) -> u16,
+    /// Voltage before the switch of the supply, its state, and whether it reports a fault.
+    pub(crate) input_millivolt: u16,
+    pub(crate) is_supplied: bool,
+    pub(crate) has_fault: bool,
     /// Characters that were sent, and the end of their transmission; the reply with its delay.
     pub(crate) sent: Vec<u32>,
     pub(crate) sent_us: u64,
@@ -132,6 +136,18 @@ impl Bus for Model {
         self.has_overrun
     }
 
+    fn supply_millivolt(&mut self) -> u16 {
+        self.input_millivolt
+    }
+
+    fn switch_supply(&mut self, on: bool) {
+        self.is_supplied = on;
+    }
+
+    fn has_supply_fault(&mut self) -> bool {
+        self.has_fault
+    }
+
     fn configure_uart(&mut self, _: UartSetting) {}
 
     /// A character takes a millisecond.
@@ -190,6 +206,9 @@ impl Bench {
             cds: VecDeque::new(),
             cdm: Vec::new(),
             conversions: None,
+            input_millivolt: 8_050,
+            is_supplied: false,
+            has_fault: false,
             sent: Vec::new(),
             sent_us: 0,
             reply: Vec::new(),
@@ -208,6 +227,7 @@ impl Bench {
                 .union(Capabilities::ANALOG)
                 .union(Capabilities::ANALOG_SKEW)
                 .union(Capabilities::UART)
+                .union(Capabilities::SUPPLY)
                 .union(Capabilities::STATUS),
             restart: RestartReason::WATCHDOG,
             corrections: [Correction::NONE; 2],

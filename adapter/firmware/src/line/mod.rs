@@ -4,7 +4,7 @@
 mod machine;
 mod serial;
 
-use adapter_core::{BissSetting, Bus, Clocking, Frame, FrameWords, MAX_WORDS, UartSetting};
+use adapter_core::{AnalogSetting, BissSetting, Bus, Clocking, Frame, FrameWords, MAX_WORDS, UartSetting};
 use rp2040_hal as hal;
 
 use hal::gpio::bank0::{Gpio2, Gpio3, Gpio5, Gpio8, Gpio9, Gpio10};
@@ -17,8 +17,9 @@ use hal::timer::Timer;
 
 use crate::clocks::SYSTEM_HZ;
 use crate::converter::Converter;
-use crate::pins::{CLOCK, DATA, DIRECTION, DONE, SERIAL_IN, SERIAL_OUT};
+use crate::pins::{CLOCK, DATA, DIRECTION, DONE, SERIAL_IN, SERIAL_OUT, SUPPLY_INPUT};
 use crate::ring::{self, Ring};
+use crate::supply::{self, Switch};
 use machine::Machine;
 use serial::Serial;
 
@@ -47,6 +48,8 @@ pub(crate) struct Line {
     timer: Timer,
     ring: Ring,
     converter: Converter,
+    is_converting: bool,
+    switch: Switch,
     clocking: Option<Clocking>,
     ssi_block: PIO<PIO1>,
     ssi: Machine<(PIO1, SM0)>,
@@ -67,6 +70,7 @@ impl Line {
         pins: Pins<FunctionNull, FunctionNull, FunctionNull>,
         ring: Ring,
         converter: Converter,
+        switch: Switch,
         timer: Timer,
         resets: &mut RESETS,
     ) -> Result<Self, InstallError> {
@@ -150,6 +154,8 @@ impl Line {
             timer,
             ring,
             converter,
+            is_converting: false,
+            switch,
             clocking,
             ssi_block,
             ssi,
@@ -306,6 +312,24 @@ impl Bus for Line {
         self.ring.value(number)
     }
 
+    fn supply_millivolt(&mut self) -> u16 {
+        if !self.is_converting {
+            return supply::millivolt(self.converter.measure(SUPPLY_INPUT));
+        }
+        // The latest conversion of the input in the running round.
+        let latest = self.converter.converted().saturating_sub(1);
+        let number = latest - (latest + AnalogSetting::INPUTS - SUPPLY_INPUT) % AnalogSetting::INPUTS;
+        supply::millivolt(self.converter.value(number))
+    }
+
+    fn switch_supply(&mut self, on: bool) {
+        self.switch.set(on);
+    }
+
+    fn has_supply_fault(&mut self) -> bool {
+        self.switch.has_fault()
+    }
+
     fn configure_uart(&mut self, setting: UartSetting) {
         self.serial.configure(setting);
     }
@@ -339,10 +363,12 @@ impl Bus for Line {
 
     fn start_conversions(&mut self) -> u64 {
         let timer = self.timer;
+        self.is_converting = true;
         self.converter.start(|| timer.get_counter().ticks())
     }
 
     fn stop_conversions(&mut self) {
+        self.is_converting = false;
         self.converter.stop();
     }
 
