@@ -21,7 +21,7 @@ need "command -v npm" nodejs npm
 
 RUSTFLAGS=-Dwarnings firmware/build.sh
 export ADAPTER_UF2=$PWD/target/firmware/encoder-adapter.uf2
-(cd emulator && npm ci --silent --no-audit --no-fund && node --test test/)
+(cd emulator && npm ci --silent --no-audit --no-fund && timeout 600 node --test test/*.test.mjs)
 if [ -n "$studio" ]; then
     python3 tests/studio.py "$studio" "$ADAPTER_UF2"
 else

@@ -47,6 +47,7 @@ class Adapter:
             run = subprocess.run([STUDIO, *arguments, link], capture_output=True, text=True, timeout=120,
                                  env=os.environ | {name: home for name in names})
         assert run.returncode == 0, f"{arguments}: {run.stderr}"
+        assert "lost" not in run.stderr, f"{arguments}: {run.stderr}"
         return run.stdout.splitlines()
 
     def host(self, *arguments):

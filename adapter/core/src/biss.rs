@@ -34,6 +34,7 @@ impl BissSetting {
     /// Highest clock in hertz. Every clock is an integer fraction of it.
     pub const MAX_HZ: u32 = 10_000_000;
     const MIN_HZ: u32 = 80_000;
+    const MAX_TIMEOUT_US: u16 = 500;
     /// Levels that are sampled before the data.
     const HEAD: u8 = 4;
     /// Longest delay of the line in both directions, in tenths of a microsecond.
@@ -49,6 +50,10 @@ impl BissSetting {
         }
         if clock_hz < Self::MIN_HZ {
             return Err((ErrorCode::BAD_ARGUMENT, "a clock of at least 80 kHz"));
+        }
+        // An access to a register takes 97 frames at most, during which the adapter does nothing else.
+        if timeout_us > Self::MAX_TIMEOUT_US {
+            return Err((ErrorCode::BAD_ARGUMENT, "a time-out of 500 µs at most"));
         }
         // At most 125.
         let divisor = Self::MAX_HZ.div_ceil(clock_hz.min(Self::MAX_HZ)) as u16;
@@ -131,6 +136,7 @@ mod tests {
         for (hz, data, crc) in [(79_999, 35, 6), (1_000_000, 0, 6), (1_000_000, 60, 5), (1_000_000, 255, 255)] {
             assert_eq!(BissSetting::new(hz, data, crc, 18).unwrap_err().0, ErrorCode::BAD_ARGUMENT);
         }
+        assert!(BissSetting::new(1_000_000, 35, 6, 500).is_ok() && BissSetting::new(1_000_000, 35, 6, 501).is_err());
     }
 
     /// Worst frame times of the reference, section 2, with 7 µs busy and 18 µs time-out, in tenths of a microsecond. The
