@@ -238,7 +238,8 @@ fn stop_does_not_end_readings_needed_for_control() {
 
 #[test]
 fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
-    let mut desk = in_control("sim:");
+    // The replies take so long that STOP comes before the first of them.
+    let mut desk = in_control("sim:?fault=delay:15");
     act(&mut desk, Hiperdrive::Axis(Run::Begin));
     fall_silent(&desk);
     desk.until("everything is read anew", |studio| !is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
