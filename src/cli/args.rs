@@ -19,6 +19,8 @@ use super::Failure;
 use super::commands::{Commands, KindOptions};
 use crate::app::TypeMap;
 use crate::link::LinkUrl;
+use crate::store::AssetName;
+use crate::worker::SessionLog;
 
 /// Help heading of the options that every command has.
 const COMMON_HEADING: &str = "Common options";
@@ -57,6 +59,9 @@ pub struct CommonArgs {
     /// Kinds of device that add options to every command. Set by parsing.
     #[arg(skip = Commands::NONE)]
     pub(super) commands: Commands,
+    /// The part of the logbook that the command adds. Its session shares it.
+    #[arg(skip)]
+    pub(super) log: SessionLog,
 }
 
 impl CommonArgs {
@@ -95,7 +100,7 @@ pub enum Command {
     Do(ActionArgs),
     /// Explain captured bytes without a device.
     Decode(DecodeArgs),
-    /// Print the logbook, newest first: what was written to which device, and the status codes that were read.
+    /// Print the logbook, newest first: connections, writes, status codes that were read, saved profiles, checks.
     Log(LogArgs),
     /// Serve a virtual device on a pseudo-terminal or a TCP port.
     Simulate(SimulateArgs),
@@ -107,6 +112,28 @@ pub struct Device {
     pub(super) device: String,
     #[command(flatten)]
     pub(super) own: KindOptions,
+}
+
+impl Command {
+    /// Returns the asset to which the command assigns the device.
+    pub(super) fn asset(&self) -> Option<&AssetName> {
+        match self {
+            Command::Save(save) => save.asset.name.as_ref(),
+            Command::Restore(restore) => restore.asset.name.as_ref(),
+            Command::Write(write) => write.asset.name.as_ref(),
+            Command::Do(act) => act.asset.name.as_ref(),
+            _ => None,
+        }
+    }
+}
+
+/// Option of the commands that assign a device to an asset.
+#[derive(Args)]
+pub(crate) struct AssetArgs {
+    /// Assign the device to an asset: the motor or the axis on which it is mounted. The assignment is valid until the
+    /// next one. log --asset lists what happened to the asset.
+    #[arg(long = "asset", value_name = "NAME")]
+    pub(super) name: Option<AssetName>,
 }
 
 #[derive(Args)]
@@ -166,6 +193,8 @@ pub struct SaveArgs {
     #[arg(long)]
     pub(crate) complete: bool,
     #[command(flatten)]
+    pub(super) asset: AssetArgs,
+    #[command(flatten)]
     pub(crate) own: KindOptions,
 }
 
@@ -210,6 +239,8 @@ pub struct Restore {
     /// Delete and create again a field whose size differs and that is not the last one.
     #[arg(long)]
     pub(crate) recreate: bool,
+    #[command(flatten)]
+    pub(super) asset: AssetArgs,
 }
 
 #[derive(Args)]
@@ -230,6 +261,9 @@ pub struct LogArgs {
     /// Only this serial number.
     #[arg(long, value_name = "SN")]
     pub(super) serial_number: Option<String>,
+    /// Only what happened to an asset: the entries of each device while it was assigned to it.
+    #[arg(long, value_name = "NAME")]
+    pub(super) asset: Option<AssetName>,
     /// Only entries since a date, such as 2026-11-27, or a time, such as 2026-11-27T14:30:00+01:00.
     #[arg(long, value_name = "DATE", value_parser = super::log::parse_date)]
     pub(super) since: Option<Timestamp>,
@@ -253,6 +287,8 @@ pub struct Write {
     pub(crate) value: String,
     #[command(flatten)]
     pub consent: ConsentArgs,
+    #[command(flatten)]
+    pub(super) asset: AssetArgs,
     #[command(flatten)]
     pub(crate) own: KindOptions,
 }

@@ -10,7 +10,7 @@ use super::output::{Output, count};
 use super::runner::to_failure;
 use super::{Failure, Result, Success};
 use crate::app::explain;
-use crate::store::{Entry, EntryFilter, Logbook, Outcome, Store};
+use crate::store::{Entry, EntryFilter, EntryKind, Logbook, Outcome, Store};
 
 /// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
 pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
@@ -20,12 +20,13 @@ pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
 }
 
 pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
-    let LogArgs { device, serial_number, since, search, limit } = arguments;
+    let LogArgs { device, serial_number, asset, since, search, limit } = arguments;
     let filter = EntryFilter {
         device: None,
         what: None,
         kind: device.clone(),
         serial_number: serial_number.clone(),
+        asset: asset.as_ref().map(ToString::to_string),
         since: *since,
         search: search.clone().unwrap_or_default(),
     };
@@ -66,6 +67,7 @@ fn entry_json(entry: &Entry) -> Json {
         "type": entry.device.device_type,
         "serial_number": entry.device.serial_number,
         "virtual": entry.device.is_virtual,
+        "asset": entry.asset,
         "what": entry.kind.keyword(),
         "text": entry.description,
         "items": items,
@@ -83,8 +85,10 @@ fn entry_text(entry: &Entry) -> String {
     let time = entry.at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S");
     let device = &entry.device;
     let virtual_mark = if device.is_virtual { " (virtual)" } else { "" };
+    let asset = entry.asset.as_ref().map(|asset| format!(" at {asset}")).unwrap_or_default();
     let mut text = format!(
-        "{time}  {} {} {}{virtual_mark}: {}",
+        "{time}  {}  {} {} {}{virtual_mark}{asset}: {}",
+        entry.id,
         device.kind,
         device.device_type,
         device.serial_number,
@@ -106,7 +110,7 @@ fn entry_text(entry: &Entry) -> String {
     for item in &entry.items {
         text.push_str(&format!("    {item}\n"));
     }
-    if let Some(backup) = &entry.backup {
+    if let Some(backup) = entry.backup.as_ref().filter(|_| entry.kind != EntryKind::Backup) {
         text.push_str(&format!("    backup: {}\n", backup.display()));
     }
     text

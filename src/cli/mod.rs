@@ -152,7 +152,11 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         Command::Log(log) => return log::log(output, log),
         Command::Diff(diff) => return profiles::diff(common, output, diff),
         Command::Verify(verify) => return profiles::verify_profile(common, output, &verify.file),
-        Command::Restore(restore) => return profiles::restore(common, output, restore),
+        Command::Restore(restore) => {
+            let done = profiles::restore(common, output, restore)?;
+            report_unrecorded_asset(common, output, command);
+            return Ok(done);
+        }
         Command::Find(find) => (CommandId::Find, &find.device, &find.own),
         Command::Identify(identify) => (CommandId::Identify, &identify.device, &identify.own),
         Command::Status(status) => (CommandId::Status, &status.device, &status.own),
@@ -171,7 +175,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         let lacking = || Err(usage_error(&format!("{} is not for {chosen} devices", id.name())));
         output.commands().device(chosen)?.run(common, output, command).unwrap_or_else(lacking)
     };
-    match (command, output.commands().protocol(chosen)) {
+    let done = match (command, output.commands().protocol(chosen)) {
         (Command::Simulate(simulate), _) => simulate::run_simulation(output, simulate),
         (Command::Decode(decode), Some(protocol)) => protocol.decode(output, decode),
         (Command::Save(save), _) => {
@@ -181,5 +185,14 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
             Ok(done)
         }
         _ => run(),
+    }?;
+    report_unrecorded_asset(common, output, command);
+    Ok(done)
+}
+
+fn report_unrecorded_asset(common: &CommonArgs, output: &Output, command: &Command) {
+    if command.asset().is_some() && !common.log.is_assigned() {
+        output
+            .print_message("The asset was not recorded: the device was not identified, or the logbook cannot be used.");
     }
 }

@@ -15,7 +15,7 @@ use super::runner::to_failure;
 use super::{Failure, Result, Success};
 use crate::app::{KindRegistry, explain, review};
 use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
-use crate::store::{read_text, write_atomically};
+use crate::store::{EntryKind, Event, Store, read_text, write_atomically};
 
 /// Reads a profile of any kind, for viewing or comparison.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
@@ -49,11 +49,18 @@ fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
         .map_err(|error| to_failure(&explain::profile_file_error_text(path, &error, KindRegistry::NONE)))
 }
 
-pub fn save_profile(path: &Path, body: Body) -> Result<()> {
+/// Saves a profile that was read from the device of this command, and records this in the logbook.
+pub fn save_profile(common: &CommonArgs, path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = ProfileDocument::new(second.to_string(), body);
-    write_atomically(path, document.emit().as_bytes()).map_err(|error| to_failure(&explain::file_error_text(&error)))
+    write_atomically(path, document.emit().as_bytes())
+        .map_err(|error| to_failure(&explain::file_error_text(&error)))?;
+    let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let saved = Event::new(EntryKind::Backup, format!("saved to {}", full.display()));
+    let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
+    common.log.record(&store, &Event { backup: Some(full), ..saved });
+    Ok(())
 }
 
 pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Result {

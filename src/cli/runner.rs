@@ -114,6 +114,7 @@ impl<D: CliDevice> Runner<D> {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open_error_text(&error).terminal_text()),
             error => to_failure(&D::open_error(&error)),
         })?;
+        session.share_log(common.log.clone());
         let kept = D::prepare_context(&mut session, &given);
         if let Some(path) = &common.trace {
             record_trace(&mut session, path)?;

@@ -30,8 +30,8 @@ pub use files::{
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
-    DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Intent, Logbook, LogbookError, LogbookErrorKind, Origin,
-    Outcome, WriteResult,
+    AssetName, AssetNameError, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Logbook, LogbookError,
+    LogbookErrorKind, Origin, Outcome, WriteResult,
 };
 
 use crate::profile::Cause;

@@ -19,6 +19,7 @@ pub mod open;
 mod poll_scheduler;
 mod ring;
 mod session;
+mod session_log;
 pub mod stream;
 mod thread;
 
@@ -35,12 +36,15 @@ pub use live::WorkerStopHandle;
 pub use open::OpenError;
 pub use ring::Ring;
 pub use session::{Session, SessionContext};
+pub use session_log::SessionLog;
 
 use event_sender::{CAPACITY, EventSender};
 use live::{LiveRequests, WatchList};
 use thread::{Never, SessionThread, SubmittedJob};
 
+use crate::analysis::check::Verdict;
 use crate::link::{CancelToken, LinkError};
+use crate::store::DeviceKey;
 
 /// A kind of device in a session, with its connection, known data and jobs.
 pub trait Device: Send + 'static {
@@ -69,6 +73,22 @@ pub trait Device: Send + 'static {
         job: Self::Job,
         tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
+
+    /// Returns the key of the device that was identified last. The default is for devices without a serial number.
+    fn identified(&self, _is_virtual: bool) -> Option<DeviceKey> {
+        None
+    }
+
+    /// Returns the status codes in a result, for the logbook. The default is for devices that record them while they
+    /// are read, or have none.
+    fn status_codes(_output: &Self::Output) -> Option<String> {
+        None
+    }
+
+    /// Returns the verdicts of a device check. `None` if the result is not that of a check.
+    fn check_verdicts(_output: &Self::Output) -> Option<Vec<Verdict>> {
+        None
+    }
 
     /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without request begin
     /// with the next sample and end on `None`.

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Device, Event, JobId, JobInterruption as _, JobReport, WatchReply};
+use super::{Device, Event, JobId, JobInterruption as _, JobReport, SessionLog, WatchReply};
 use crate::link::{CancelToken, Clock, Ctx, LinkError, Trace, TraceEntry};
-use crate::store::Store;
+use crate::store::{DeviceKey, EntryKind, Event as LogbookEvent, Store};
 
 /// The context of a job for any kind of device, with time, cancellation, trace and folders.
 pub struct SessionContext {
@@ -17,12 +17,23 @@ pub struct SessionContext {
     pub store: Store,
     /// Whether the device is simulated in this process. Its write cycles are counted separately.
     pub is_virtual: bool,
+    log: SessionLog,
 }
 
 impl SessionContext {
     /// Returns the context of a procedure on `wire`.
     pub fn procedure_context<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
+    }
+
+    /// Returns the log of the session, for parts that outlast the borrow of the context.
+    pub fn log(&self) -> SessionLog {
+        self.log.clone()
+    }
+
+    /// Records that a device was identified. Only the first time counts.
+    pub fn record_identity(&self, device: &DeviceKey) {
+        self.log.record_identity(&self.store, device);
     }
 }
 
@@ -36,7 +47,13 @@ impl<D: Device> Session<D> {
     /// Creates a session with a device.
     pub fn from_device(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (CancelToken::default(), Trace::default());
-        Session { context: SessionContext { clock, cancel, trace, store, is_virtual }, device }
+        let log = SessionLog::default();
+        Session { context: SessionContext { clock, cancel, trace, store, is_virtual, log }, device }
+    }
+
+    /// Uses a log that its creator shares with this session.
+    pub fn share_log(&mut self, log: SessionLog) {
+        self.context.log = log;
     }
 
     /// Returns the cancellation flag of the running job.
@@ -89,7 +106,7 @@ impl<D: Device> Session<D> {
     /// Runs a job on this thread. `tell` receives all events except the last, which is returned.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
-        let result = self.device.run(&mut self.context, job, &mut |report| match report {
+        let result = self.run_and_record(job, &mut |report| match report {
             JobReport::Progress(progress) => tell(Event::Progress(id, progress)),
             JobReport::Remark(remark) => tell(Event::Remark(remark)),
         });
@@ -134,6 +151,28 @@ impl<D: Device> Session<D> {
     /// # Errors
     /// Returns the error of the job.
     pub fn run_inline(&mut self, job: D::Job) -> Result<D::Output, D::Error> {
-        self.device.run(&mut self.context, job, &mut |_| {})
+        self.run_and_record(job, &mut |_| {})
+    }
+
+    /// Runs a job, and records what the logbook keeps of its result before anyone can see the result.
+    fn run_and_record(
+        &mut self,
+        job: D::Job,
+        tell: &mut dyn FnMut(JobReport<D::DeviceMessage, D::JobStep>),
+    ) -> Result<D::Output, D::Error> {
+        let result = self.device.run(&mut self.context, job, tell);
+        let SessionContext { log, store, is_virtual, .. } = &self.context;
+        if let Some(device) = self.device.identified(*is_virtual) {
+            log.record_identity(store, &device);
+        }
+        if let Ok(output) = &result {
+            if let Some(codes) = D::status_codes(output) {
+                log.record(store, &LogbookEvent::new(EntryKind::Status, codes));
+            }
+            if let Some(verdicts) = D::check_verdicts(output) {
+                log.record_check(store, verdicts);
+            }
+        }
+        result
     }
 }

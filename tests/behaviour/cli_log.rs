@@ -18,7 +18,7 @@ fn a_write_is_logged_with_its_old_and_new_values() {
     let old = bench.run(&["read", "hiperface", "field:0@3+2", "--link", "sim:", "--json"]).json();
     let write = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:", "--json"];
     assert_eq!(bench.run(&write).status, Some(0));
-    let entry = bench.run(&["log", "--json"]).json();
+    let entry = bench.run(&["log", "--json", "--limit", "1"]).json();
     assert_eq!(entry["items"], json!([{"item": "field:0@3+2", "name": null, "old": old["value"], "new": "C0FF"}]));
     let expected = [
         ("device", json!("hiperface")),
@@ -53,12 +53,13 @@ fn entries_are_selected_and_the_newest_is_first() {
         assert_eq!(ran.status, Some(0), "{ran:?}");
         lines(&ran.out).iter().map(|line| line["device"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
-    assert_eq!(devices(&[]), ["hiperdrive", "hiperface"]);
+    // Each command connects, and then writes.
+    assert_eq!(devices(&[]), ["hiperdrive", "hiperdrive", "hiperface", "hiperface"]);
     assert_eq!(devices(&["--limit", "1"]), ["hiperdrive"]);
-    assert_eq!(devices(&["--device", "hiperface"]), ["hiperface"]);
-    assert_eq!(devices(&["--serial-number", "GB0450179"]), ["hiperface"]);
+    assert_eq!(devices(&["--device", "hiperface"]), ["hiperface", "hiperface"]);
+    assert_eq!(devices(&["--serial-number", "GB0450179"]), ["hiperface", "hiperface"]);
     assert_eq!(devices(&["--search", "LOWER limit"]), ["hiperdrive"]);
-    assert_eq!(devices(&["--since", "2020-01-01"]).len(), 2);
+    assert_eq!(devices(&["--since", "2020-01-01"]).len(), 4);
     assert_eq!(devices(&["--since", "2999-12-31T23:59:59Z"]), [] as [String; 0]);
     bench.run(&["log", "--since", "yesterday"]).fails(2, &["--since", "2026-11-27"]);
     bench.run(&["log", "--device", "toaster"]).fails(2, &["toaster", "hiperface"]);
@@ -70,7 +71,7 @@ fn access_codes_are_not_in_the_logbook() {
     let bench = Bench::new();
     let change = ["do", "hiperface", "change-code", "2", "A7", "--yes", "--link", "sim:", "--json"];
     assert_eq!(bench.run(&change).status, Some(0));
-    let entry = bench.run(&["log", "--json"]).json();
+    let entry = bench.run(&["log", "--json", "--limit", "1"]).json();
     assert_eq!((&entry["items"][0]["old"], &entry["items"][0]["new"]), (&Value::Null, &Value::Null));
     assert!(!entry["text"].to_string().contains("A7"), "{entry}");
 }
@@ -81,4 +82,72 @@ fn a_damaged_logbook_is_named() {
     std::fs::create_dir_all(bench.path("data/encoder-studio")).unwrap();
     bench.write("data/encoder-studio/logbook.sqlite", "no database, and not a short one at that. ".repeat(30));
     bench.run(&["log"]).fails(1, &["logbook.sqlite", "damaged"]);
+}
+
+/// Returns the kinds of the entries, oldest first.
+fn kinds(bench: &Bench, options: &[&str]) -> Vec<String> {
+    let ran = bench.run(&[&["log", "--json"], options].concat());
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    lines(&ran.out).iter().rev().map(|line| line["what"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn each_kind_of_event_is_logged() {
+    for device in ["hiperface", "biss", "interbus", "hiperdrive"] {
+        let bench = Bench::new();
+        let file = bench.path("saved.ron");
+        let file = file.to_str().unwrap();
+        for command in [vec!["identify", device], vec!["save", device, "-o", file], vec!["do", device, "check"]] {
+            let ran = bench.run(&[command.as_slice(), &["--link", "sim:"]].concat());
+            assert_eq!(ran.status, Some(0), "{device}: {ran:?}");
+        }
+        let found = kinds(&bench, &["--device", device]);
+        let expected = ["connected", "connected", "backup", "connected", "check"];
+        // A check may read status codes, and reading cam programs may cost stores, which are counted.
+        let is_own = |kind: &&str| !["status", "procedure"].contains(kind);
+        let found: Vec<&str> = found.iter().map(String::as_str).filter(is_own).collect();
+        assert_eq!(found, expected, "{device}");
+        let saved = lines(&bench.run(&["log", "--json", "--search", "saved to"]).out);
+        assert_eq!((saved.len(), &saved[0]["backup"]), (1, &json!(file)), "{device}");
+        let check = lines(&bench.run(&["log", "--json", "--limit", "1"]).out);
+        assert!(check[0]["text"].as_str().unwrap().contains("good"), "{check:?}");
+    }
+}
+
+/// A command that only reads works without a logbook, and says on stderr that nothing was recorded.
+#[test]
+fn reading_goes_on_without_a_logbook() {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("data/encoder-studio")).unwrap();
+    bench.write("data/encoder-studio/logbook.sqlite", "no database, and not a short one at that. ".repeat(30));
+    let ran = bench.run(&["identify", "hiperface", "--link", "sim:", "--json"]);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert_eq!(ran.json()["serial_number"], "GB0450179");
+    assert!(ran.err.contains("logbook.sqlite") && ran.err.contains("damaged"), "{ran:?}");
+}
+
+#[test]
+fn an_asset_is_assigned_and_selects_entries() {
+    let bench = Bench::new();
+    let write = |value: &str, options: &[&str]| {
+        let command = ["write", "hiperface", "field:0@3+2", value, "--yes", "--link", "sim:"];
+        assert_eq!(bench.run(&[&command, options].concat()).status, Some(0));
+    };
+    write("0001", &[]);
+    write("0002", &["--asset", "Achse 3 · Süd"]);
+    write("0003", &[]);
+    assert_eq!(kinds(&bench, &[]), ["connected", "write", "assigned", "connected", "write", "connected", "write"]);
+    let of = |asset: &str| lines(&bench.run(&["log", "--json", "--asset", asset]).out);
+    let entries = of("Achse 3 · Süd");
+    assert_eq!(entries.len(), 5, "an assignment is valid until the next one");
+    assert!(entries.iter().all(|entry| entry["asset"] == "Achse 3 · Süd"));
+    assert_eq!(entries[4]["items"], json!([{"item": "asset", "name": null, "old": null, "new": "Achse 3 · Süd"}]));
+    assert_eq!(of("Achse 3").len(), 0);
+    let identify = bench.run(&["do", "hiperface", "check", "--asset", "shelf", "--link", "sim:"]);
+    assert_eq!(identify.status, Some(0), "{identify:?}");
+    assert_eq!((of("shelf").len(), of("Achse 3 · Süd").len()), (3, 5));
+    assert!(bench.run(&["log"]).out.contains("GB0450179 (virtual) at shelf: check"));
+    for (bad, words) in [("", "empty"), ("a\nb", "control character"), (&"x".repeat(81), "at most 80")] {
+        bench.run(&["save", "hiperface", "-o", "x.ron", "--asset", bad, "--link", "sim:"]).fails(2, &[words]);
+    }
 }

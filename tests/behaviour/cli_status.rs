@@ -21,7 +21,7 @@ fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E"]).map(Foreign::waited_for) else { return };
     assert_eq!(bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).status, Some(0));
-    let entry = bench.run(&["log", "--json", "--device", "hiperface"]).json();
+    let entry = bench.run(&["log", "--json", "--device", "hiperface", "--limit", "1"]).json();
     assert_eq!((&entry["what"], &entry["virtual"]), (&json!("status"), &json!(false)));
     assert_eq!(entry["text"], json!("1Eh critical encoder temperature"));
 }

@@ -31,13 +31,14 @@ fn after_a_write() -> Screen {
     });
     screen.click("review.close");
     screen.act(Action::ShowTab(LOGBOOK_TAB));
-    screen.until("the logbook is read", |studio| entry_count(studio) == Some(1));
+    // The connection and the write.
+    screen.until("the logbook is read", |studio| entry_count(studio) == Some(2));
     screen
 }
 
 fn select_first_entry(screen: &mut Screen) {
     let time = first_entry_time(screen);
-    screen.harness.get_by_label(&time).click();
+    screen.harness.get_all_by_label(&time).next().unwrap().click();
     screen.steps();
 }
 
@@ -76,11 +77,12 @@ fn a_note_is_added_to_the_device_of_the_selected_entry() {
     screen.harness.get_by_label(&word).type_text("Kupplung ersetzt");
     screen.steps();
     screen.click("logbook.add_note");
-    screen.until("the note is in the list", |studio| entry_count(studio) == Some(2));
+    screen.until("the note is in the list", |studio| entry_count(studio) == Some(3));
     let logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
-    let [note, write] = logbook.entries(&EntryFilter::default(), 10).unwrap().try_into().unwrap();
+    let [note, write, connected] = logbook.entries(&EntryFilter::default(), 10).unwrap().try_into().unwrap();
     assert_eq!((note.kind, note.description.as_str()), (EntryKind::Note, "Kupplung ersetzt"));
-    assert_eq!(note.device, write.device);
+    assert_eq!(connected.kind, EntryKind::Connected);
+    assert_eq!((&note.device, &connected.device), (&write.device, &write.device));
     assert!(!screen.is_enabled("logbook.add_note"), "the entry is empty again");
 }
 
@@ -93,7 +95,7 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     // The other entry comes from another program, so the list is read again when the tab is opened.
     screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
     screen.act(Action::ShowTab(LOGBOOK_TAB));
-    screen.until("both entries are shown", |studio| entry_count(studio) == Some(2));
+    screen.until("all entries are shown", |studio| entry_count(studio) == Some(3));
     let word = screen.say("logbook.search");
     screen.harness.get_by_label(&word).focus();
     screen.steps();

@@ -102,7 +102,10 @@ fn ctrl_and_enter_pressed_together_open_the_review() {
 #[test]
 fn without_a_logbook_the_write_button_needs_a_permission() {
     let mut screen = Screen::new_form(SIZE);
-    std::fs::create_dir_all(screen.outside.store().logbook_path()).unwrap();
+    let logbook = screen.outside.store().logbook_path();
+    // The connection is already recorded.
+    std::fs::remove_file(&logbook).unwrap();
+    std::fs::create_dir_all(logbook).unwrap();
     type_bytes(&mut screen, "58");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.until("the plan is ready", |studio| {

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::ConsentArgs;
+use super::{AssetArgs, ConsentArgs};
 use crate::cli::commands::KindOptions;
 use crate::cli::{Failure, Result};
 
@@ -17,6 +17,8 @@ pub struct ActionArgs {
     pub(crate) arguments: Vec<String>,
     #[command(flatten)]
     pub(crate) consent: ConsentArgs,
+    #[command(flatten)]
+    pub(in crate::cli) asset: AssetArgs,
     #[command(flatten)]
     pub(crate) own: KindOptions,
 }

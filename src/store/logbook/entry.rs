@@ -30,6 +30,13 @@ impl DeviceKey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryId(pub(super) i64);
 
+impl EntryId {
+    /// Parses the number as `log` prints it. Returns `None` if the text is not a number from 1.
+    pub fn parse(text: &str) -> Option<Self> {
+        text.parse().ok().filter(|number| *number > 0).map(EntryId)
+    }
+}
+
 impl fmt::Display for EntryId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
@@ -39,6 +46,10 @@ impl fmt::Display for EntryId {
 /// What an entry reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EntryKind {
+    /// A device was identified, once for each connection.
+    Connected,
+    /// The device was assigned to an asset, a motor or an axis.
+    Assigned,
     /// Status codes were read, which may have cleared them in the device.
     Status,
     /// Single values were written.
@@ -49,28 +60,40 @@ pub enum EntryKind {
     Preset,
     /// A procedure or a service of the device was executed, such as a calibration.
     Procedure,
+    /// A profile of the device was saved. The backup before a write belongs to the entry of the write.
+    Backup,
+    /// The device was checked.
+    Check,
     /// The user has written a note.
     Note,
 }
 
 impl EntryKind {
-    pub const ALL: [EntryKind; 6] = [
+    pub const ALL: [EntryKind; 10] = [
+        EntryKind::Connected,
+        EntryKind::Assigned,
         EntryKind::Status,
         EntryKind::Write,
         EntryKind::Restore,
         EntryKind::Preset,
         EntryKind::Procedure,
+        EntryKind::Backup,
+        EntryKind::Check,
         EntryKind::Note,
     ];
 
     /// Returns the word in the file and on the command line.
     pub const fn keyword(self) -> &'static str {
         match self {
+            EntryKind::Connected => "connected",
+            EntryKind::Assigned => "assigned",
             EntryKind::Status => "status",
             EntryKind::Write => "write",
             EntryKind::Restore => "restore",
             EntryKind::Preset => "preset",
             EntryKind::Procedure => "procedure",
+            EntryKind::Backup => "backup",
+            EntryKind::Check => "check",
             EntryKind::Note => "note",
         }
     }
@@ -79,7 +102,12 @@ impl EntryKind {
     pub const fn has_result(self) -> bool {
         match self {
             EntryKind::Write | EntryKind::Restore | EntryKind::Preset | EntryKind::Procedure => true,
-            EntryKind::Status | EntryKind::Note => false,
+            EntryKind::Connected
+            | EntryKind::Assigned
+            | EntryKind::Status
+            | EntryKind::Backup
+            | EntryKind::Check
+            | EntryKind::Note => false,
         }
     }
 
@@ -111,7 +139,7 @@ impl Outcome {
 pub struct Origin {
     /// Name of the computer. It is empty in entries of older logbooks.
     pub bench: String,
-    /// Name of the user, if known.
+    /// Name of the user, if known and if the settings allow it.
     pub user: Option<String>,
     /// Version of the program. It is empty in entries of older logbooks.
     pub version: String,
@@ -138,6 +166,24 @@ pub struct Intent {
     pub backup: Option<PathBuf>,
 }
 
+/// An event that writes nothing to the device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    pub kind: EntryKind,
+    pub description: String,
+    /// Items with their old and new values, if the description is not enough.
+    pub items: Vec<ChangedItem>,
+    /// Path of the profile that was saved.
+    pub backup: Option<PathBuf>,
+}
+
+impl Event {
+    /// Creates an event that its description explains.
+    pub fn new(kind: EntryKind, description: impl Into<String>) -> Self {
+        Event { kind, description: description.into(), items: Vec::new(), backup: None }
+    }
+}
+
 /// An entry of the logbook with the result of the write, if it has one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
@@ -147,6 +193,8 @@ pub struct Entry {
     /// Time of the event. For a write, this is the time directly before its first byte.
     pub at: Timestamp,
     pub device: DeviceKey,
+    /// Asset to which the device was assigned at that time.
+    pub asset: Option<String>,
     /// Description. For a write, it contains the changed items.
     pub description: String,
     /// Changed items. The list is empty in entries of older logbooks.
@@ -183,6 +231,8 @@ pub struct EntryFilter {
     /// Kind of device.
     pub kind: Option<String>,
     pub serial_number: Option<String>,
+    /// Asset to which the device was assigned at the time of the entry.
+    pub asset: Option<String>,
     /// Time of the oldest entry.
     pub since: Option<Timestamp>,
     /// Text contained in the description, the device, the user or the bench. Upper and lower case of ASCII are equal.

@@ -1,14 +1,17 @@
-//! The logbook, which records what this program has done to each device: writes with their old and new values and the
-//! write cycles they took, and status codes that were read. An intent is recorded before the first byte is sent, and
-//! its result afterwards. If the program dies in between, the intent remains. Entries are only ever added. The format
-//! is SQLite: two windows can share the logbook, and any tool can read it.
+//! The logbook, which records what happened to each device: connections, writes with their old and new values and the
+//! write cycles they took, status codes that were read, saved profiles, checks, and the asset of the device. An intent
+//! is recorded before the first byte is sent, and its result afterwards. If the program dies in between, the intent
+//! remains. Entries are only ever added. The format is SQLite: two windows can share the logbook, and any tool can read
+//! it.
 //!
 //! The logbook never contains access codes, because descriptions and failure messages are made from the plan instead of
 //! frames. It does not decide whether a device may be written to. If it fails, the caller rejects writes that are not
 //! forced.
 
+mod asset;
 mod entry;
 mod error;
+mod insert;
 mod query;
 mod schema;
 
@@ -18,8 +21,11 @@ use std::time::Duration;
 use jiff::Timestamp;
 use rusqlite::{Connection, named_params};
 
-pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Intent, Origin, Outcome, WriteResult};
+pub use asset::{AssetName, AssetNameError};
+pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, WriteResult};
 pub use error::{LogbookError, LogbookErrorKind};
+
+use insert::Further;
 
 /// Maximum time to wait for another window that is writing.
 const LOCK_TIMEOUT: Duration = Duration::from_secs(2);
@@ -58,38 +64,34 @@ impl Logbook {
         intent: &Intent,
     ) -> Result<EntryId, LogbookError> {
         let description = intent.items.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        self.insert_intent(at, device, &description, intent)
+        let Intent { kind, items, planned_cycles, backup } = intent.clone();
+        let added = insert::event(
+            &self.database,
+            &self.origin,
+            at,
+            device,
+            &Event { kind, description, items, backup },
+            Further { planned_cycles, asset: None },
+        );
+        added.map_err(|error| self.database_error(error))
     }
 
-    fn insert_intent(
-        &mut self,
-        at: Timestamp,
-        device: &DeviceKey,
-        description: &str,
-        intent: &Intent,
-    ) -> Result<EntryId, LogbookError> {
-        let Origin { bench, user, version } = &self.origin;
-        let sql = "INSERT INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
-                                      planned_cycles, backup, bench, user, version)
-                   VALUES (lower(hex(randomblob(16))), :at, :what, :kind, :device_type, :serial_number, :is_virtual,
-                           :description, :items, :planned_cycles, :backup, :bench, :user, :version)";
-        let parameters = named_params! {
-            ":at": at.to_string(),
-            ":what": intent.kind.keyword(),
-            ":kind": device.kind,
-            ":device_type": device.device_type,
-            ":serial_number": device.serial_number,
-            ":is_virtual": device.is_virtual,
-            ":description": description,
-            ":items": query::items_json(&intent.items),
-            ":planned_cycles": saturating_cycle_count(intent.planned_cycles),
-            ":backup": intent.backup.as_deref().map(Path::to_string_lossy),
-            ":bench": bench,
-            ":user": user,
-            ":version": version,
-        };
-        self.database.execute(sql, parameters).map_err(|error| self.database_error(error))?;
-        Ok(EntryId(self.database.last_insert_rowid()))
+    /// Records an event that writes nothing to the device. The record is on disk when this function returns.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be written.
+    pub fn record(&mut self, at: Timestamp, device: &DeviceKey, event: &Event) -> Result<EntryId, LogbookError> {
+        let added = insert::event(&self.database, &self.origin, at, device, event, Further::default());
+        added.map_err(|error| self.database_error(error))
+    }
+
+    /// Assigns a device to an asset from now on. Nothing is recorded if it is assigned to this asset already.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be read or written.
+    pub fn assign(&mut self, at: Timestamp, device: &DeviceKey, asset: &AssetName) -> Result<(), LogbookError> {
+        insert::assignment(&mut self.database, &self.origin, at, device, asset)
+            .map_err(|error| LogbookErrorKind::from(error).into_error(&self.path))
     }
 
     /// Records how an intended write ended.
@@ -115,7 +117,7 @@ impl Logbook {
             ":at": at.to_string(),
             ":outcome": word,
             ":failure": failure,
-            ":cycles_spent": saturating_cycle_count(cycles_spent),
+            ":cycles_spent": insert::saturating_cycle_count(cycles_spent),
             ":id": id.0,
         };
         match self.database.execute(sql, parameters).map_err(|error| self.database_error(error))? {
@@ -140,13 +142,20 @@ impl Logbook {
             .map_err(|error| self.database_error(error))
     }
 
-    /// Records status codes that were read from a device. The record is on disk when this function returns.
+    /// Returns the asset to which a device is assigned, or `None` if it never was.
     ///
     /// # Errors
-    /// Returns an error if the logbook cannot be written.
-    pub fn record_status(&mut self, at: Timestamp, device: &DeviceKey, codes: &str) -> Result<(), LogbookError> {
-        let event = Intent { kind: EntryKind::Status, items: Vec::new(), planned_cycles: 0, backup: None };
-        self.insert_intent(at, device, codes, &event).map(drop)
+    /// Returns an error if the logbook cannot be read.
+    pub fn asset(&self, device: &DeviceKey) -> Result<Option<String>, LogbookError> {
+        query::present_asset(&self.database, device).map_err(|error| self.database_error(error))
+    }
+
+    /// Returns an entry, or `None` if there is none with this number.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be read.
+    pub fn entry(&self, id: EntryId) -> Result<Option<Entry>, LogbookError> {
+        query::entry(&self.database, id).map_err(|error| self.database_error(error))
     }
 
     /// Adds a note of the user about a device. The record is on disk when this function returns.
@@ -154,8 +163,7 @@ impl Logbook {
     /// # Errors
     /// Returns an error if the logbook cannot be written.
     pub fn add_note(&mut self, at: Timestamp, device: &DeviceKey, note: &str) -> Result<(), LogbookError> {
-        let event = Intent { kind: EntryKind::Note, items: Vec::new(), planned_cycles: 0, backup: None };
-        self.insert_intent(at, device, note, &event).map(drop)
+        self.record(at, device, &Event::new(EntryKind::Note, note)).map(drop)
     }
 
     /// Returns all devices that have entries, in the order of their kinds and serial numbers.
@@ -193,12 +201,6 @@ impl Logbook {
     fn database_error(&self, error: rusqlite::Error) -> LogbookError {
         LogbookErrorKind::from(error).into_error(&self.path)
     }
-}
-
-/// Limits the cycles of an entry to 32 bits, which rules out an overflow of the sum. No EEPROM survives a thousandth of
-/// that number.
-fn saturating_cycle_count(cycles: u64) -> u32 {
-    u32::try_from(cycles).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]

@@ -3,28 +3,41 @@
 use std::path::PathBuf;
 
 use rusqlite::types::Type;
-use rusqlite::{Connection, Params, Row, named_params};
+use rusqlite::{Connection, OptionalExtension, Params, Row, named_params};
 
 use super::entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Origin, Outcome, WriteResult};
 use super::schema;
 use crate::profile::ChangedItem;
 
 const COLUMNS: &str = "id, event.at AS at, what, kind, device_type, serial_number, is_virtual, description, items,
-    planned_cycles, backup, bench, user, version, result.at AS concluded_at, outcome, failure, cycles_spent
-    FROM event LEFT JOIN result ON result.event = event.uid";
+    planned_cycles, backup, bench, user, version, result.at AS concluded_at, outcome, failure, cycles_spent";
+const TABLES: &str = "event LEFT JOIN result ON result.event = event.uid";
+
+/// Asset of an entry: the last assignment of its device up to the entry.
+const ASSET: &str = "(SELECT assigned.asset FROM event AS assigned
+    WHERE assigned.asset IS NOT NULL AND assigned.kind = event.kind AND assigned.serial_number = event.serial_number
+        AND assigned.device_type = event.device_type AND assigned.is_virtual = event.is_virtual
+        AND assigned.id <= event.id
+    ORDER BY assigned.id DESC LIMIT 1)";
 
 /// Returns the last `limit` entries that match the filter, newest first.
 pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -> rusqlite::Result<Vec<Entry>> {
     // `instr` takes any character as it is, unlike LIKE. Without the Z, times with and without a fraction can be compared
-    // as text.
-    let condition = "(:kind IS NULL OR kind = :kind)
+    // as text. The list of devices that ever had the asset spares the search for the asset of each entry.
+    let condition = format!(
+        "(:kind IS NULL OR kind = :kind)
         AND (:serial_number IS NULL OR serial_number = :serial_number)
         AND (:what IS NULL OR what = :what)
         AND (:device IS NULL OR (kind, device_type, serial_number, is_virtual)
             = (:device, :device_type, :device_number, :is_virtual))
         AND (:since IS NULL OR rtrim(event.at, 'Z') >= rtrim(:since, 'Z'))
         AND (:search = '' OR instr(lower(description || char(10) || kind || char(10) || device_type || char(10)
-            || serial_number || char(10) || coalesce(user, '') || char(10) || bench), lower(:search)))";
+            || serial_number || char(10) || coalesce(user, '') || char(10) || bench), lower(:search)))
+        AND (:asset IS NULL OR (kind, serial_number, device_type, is_virtual) IN (
+                SELECT named.kind, named.serial_number, named.device_type, named.is_virtual
+                FROM event AS named WHERE named.asset = :asset)
+            AND {ASSET} = :asset)"
+    );
     let device = filter.device.as_ref();
     let parameters = named_params! {
         ":device": device.map(|device| &device.kind),
@@ -36,9 +49,10 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
         ":serial_number": filter.serial_number,
         ":since": filter.since.map(|since| since.to_string()),
         ":search": filter.search.trim(),
+        ":asset": filter.asset,
         ":limit": limit,
     };
-    select(database, condition, ":limit", parameters)
+    select(database, &condition, ":limit", parameters)
 }
 
 /// Returns all devices that have entries, in the order of their kinds and serial numbers.
@@ -49,11 +63,23 @@ pub(super) fn devices(database: &Connection) -> rusqlite::Result<Vec<DeviceKey>>
 }
 
 pub(super) fn write_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    query_device(database, device, "what NOT IN ('status', 'note')", limit)
+    query_device(database, device, "what IN ('write', 'restore', 'preset', 'procedure')", limit)
 }
 
 pub(super) fn status_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
     query_device(database, device, "what = 'status'", limit)
+}
+
+pub(super) fn entry(database: &Connection, id: EntryId) -> rusqlite::Result<Option<Entry>> {
+    Ok(select(database, "id = ?1", "1", [id.0])?.pop())
+}
+
+/// Returns the asset to which a device is assigned.
+pub(super) fn present_asset(database: &Connection, device: &DeviceKey) -> rusqlite::Result<Option<String>> {
+    let sql = "SELECT asset FROM event WHERE asset IS NOT NULL AND kind = ?1 AND serial_number = ?2
+        AND device_type = ?3 AND is_virtual = ?4 ORDER BY id DESC LIMIT 1";
+    let key = (&device.kind, &device.serial_number, &device.device_type, device.is_virtual);
+    database.query_row(sql, key, |row| row.get(0)).optional()
 }
 
 fn query_device(database: &Connection, device: &DeviceKey, which: &str, limit: u32) -> rusqlite::Result<Vec<Entry>> {
@@ -68,7 +94,9 @@ fn select(
     limit: &str,
     parameters: impl Params,
 ) -> rusqlite::Result<Vec<Entry>> {
-    let sql = format!("SELECT {COLUMNS} WHERE {condition} ORDER BY id DESC LIMIT {limit}");
+    let sql = format!(
+        "SELECT {COLUMNS}, {ASSET} AS asset_then FROM {TABLES} WHERE {condition} ORDER BY id DESC LIMIT {limit}"
+    );
     database.prepare(&sql)?.query_map(parameters, read_entry)?.collect()
 }
 
@@ -86,6 +114,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
         })?,
         at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
         device: read_device(row)?,
+        asset: row.get("asset_then")?,
         description: row.get("description")?,
         items: row
             .get("items")

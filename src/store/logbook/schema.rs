@@ -13,7 +13,7 @@ use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
 /// exist.
-pub(super) const STEPS: [&str; 3] = [
+pub(super) const STEPS: [&str; 4] = [
     "
     CREATE TABLE entry (
         id             INTEGER PRIMARY KEY,
@@ -93,6 +93,13 @@ pub(super) const STEPS: [&str; 3] = [
     DROP TABLE temp.moved;
     DROP TABLE entry;
     DROP TABLE status;
+",
+    // New words in `what`: connected, assigned, backup, check. A program that knows only schema 3 would take them for
+    // damage.
+    "
+    ALTER TABLE event ADD COLUMN asset TEXT; -- the asset to which the device is assigned from now on, of 'assigned' only
+    CREATE INDEX event_assigned ON event (kind, serial_number, device_type, is_virtual) WHERE asset IS NOT NULL;
+    CREATE INDEX event_of_asset ON event (asset) WHERE asset IS NOT NULL;
 ",
 ];
 

@@ -89,6 +89,7 @@ fn history_is_newest_first_and_complete() {
         kind: EntryKind::Write,
         at: at(second),
         device: own.clone(),
+        asset: None,
         description: item.to_owned(),
         items: vec![ChangedItem::new(item, None, None)],
         planned_cycles,
@@ -283,7 +284,8 @@ fn entries_are_filtered_and_searched() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     logbook.record_intent(at(0), &device("GB1"), &intent("field:1", 1, None)).unwrap();
-    logbook.record_status(at(10), &device("GB2"), "08h overheated, 100 % of 5_0").unwrap();
+    let status = |codes| Event::new(EntryKind::Status, codes);
+    logbook.record(at(10), &device("GB2"), &status("08h overheated, 100 % of 5_0")).unwrap();
     let biss = DeviceKey { kind: "biss".into(), ..device("GB1") };
     logbook.record_intent(at(20), &biss, &intent("0x6E", 1, None)).unwrap();
     let found = |filter: EntryFilter| {
@@ -296,7 +298,7 @@ fn entries_are_filtered_and_searched() {
     assert_eq!(found(EntryFilter { serial_number: Some("GB1".into()), ..all.clone() }), [at(20), at(0)]);
     assert_eq!(found(EntryFilter { since: Some(at(10)), ..all.clone() }), [at(20), at(10)]);
     let half = at(10) + jiff::SignedDuration::from_millis(500);
-    logbook.record_status(half, &device("GB3"), "1Eh").unwrap();
+    logbook.record(half, &device("GB3"), &status("1Eh")).unwrap();
     let found = |filter: EntryFilter| {
         let entries = logbook.entries(&filter, 10).unwrap();
         entries.into_iter().map(|entry| entry.at).collect::<Vec<_>>()
@@ -310,6 +312,83 @@ fn entries_are_filtered_and_searched() {
     assert_eq!(search("gb2"), [at(10)]);
     assert_eq!(logbook.status_entries(&device("GB2"), 10).unwrap().len(), 1);
     assert_eq!(logbook.history(&device("GB2"), 10).unwrap(), []);
+}
+
+/// A logbook of schema 3, made with the statements of that schema and with rows as that version wrote them.
+#[test]
+fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
+    let (_root, path) = place();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let old = Connection::open(&path).unwrap();
+    for step in &schema::STEPS[..3] {
+        old.execute_batch(step).unwrap();
+    }
+    old.execute_batch(
+        r#"INSERT INTO event VALUES (1, 'aa', '2026-11-26T08:00:00Z', 'write', 'hiperface', '37h', '1', 0,
+               'field:1@3+2: 00FF → C0FF', '[{"item":"field:1@3+2","old":"00FF","new":"C0FF"}]', 1, '/b.ron', 'bench 1',
+               'user', '1.5.0');
+           INSERT INTO result VALUES ('aa', '2026-11-26T08:00:01Z', 'done', NULL, 1);
+           INSERT INTO event VALUES (2, 'bb', '2026-11-26T09:00:00Z', 'status', 'hiperface', '37h', '1', 0, '1Eh', '[]', 0,
+               NULL, 'bench 1', NULL, '1.5.0');
+           PRAGMA user_version = 3;"#,
+    )
+    .unwrap();
+    drop(old);
+    let mut logbook = Logbook::open(&path).unwrap();
+    logbook.assign(at(0), &device("1"), &"M-17".parse().unwrap()).unwrap();
+    logbook.record(at(1), &device("1"), &Event::new(EntryKind::Connected, "identified")).unwrap();
+    let entries = logbook.entries(&EntryFilter::default(), 10).unwrap();
+    let told: Vec<_> = entries.iter().map(|entry| (entry.kind.keyword(), entry.asset.as_deref())).collect();
+    assert_eq!(told, [("connected", Some("M-17")), ("assigned", Some("M-17")), ("status", None), ("write", None)]);
+    assert_eq!(entries[3].items, [ChangedItem::new("field:1@3+2", Some("00FF".into()), Some("C0FF".into()))]);
+    assert_eq!(entries[3].origin.user.as_deref(), Some("user"));
+    assert_eq!(logbook.write_cycles(&device("1")), Ok(1));
+    let writes = logbook.history(&device("1"), 10).unwrap();
+    assert_eq!(writes.len(), 1, "a connection is not a write");
+}
+
+/// An asset keeps its entries when its encoder is exchanged, and an encoder takes none of them along.
+#[test]
+fn an_asset_has_the_entries_of_its_devices_while_they_are_assigned() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    let (old, new) = (device("old"), device("new"));
+    let [motor, shelf] = ["motor 17", "shelf"].map(|name| name.parse::<AssetName>().unwrap());
+    let write = |logbook: &mut Logbook, second, of: &DeviceKey, item: &str| {
+        logbook.record_intent(at(second), of, &intent(item, 1, None)).unwrap();
+    };
+    write(&mut logbook, 0, &old, "before");
+    logbook.assign(at(1), &old, &motor).unwrap();
+    logbook.assign(at(2), &old, &motor).unwrap();
+    write(&mut logbook, 3, &old, "first encoder");
+    logbook.assign(at(4), &old, &shelf).unwrap();
+    write(&mut logbook, 5, &old, "on the shelf");
+    logbook.assign(at(6), &new, &motor).unwrap();
+    write(&mut logbook, 7, &new, "second encoder");
+    // Another kind of device may have the same serial number.
+    write(&mut logbook, 8, &DeviceKey { kind: "biss".into(), ..new.clone() }, "another kind");
+    let of = |asset: &str| {
+        let filter = EntryFilter { asset: Some(asset.to_owned()), ..EntryFilter::default() };
+        let entries = logbook.entries(&filter, 10).unwrap();
+        entries.into_iter().map(|entry| entry.description).collect::<Vec<_>>()
+    };
+    let assigned = "asset: → motor 17";
+    assert_eq!(of("motor 17"), ["second encoder", assigned, "first encoder", assigned]);
+    assert_eq!(of("shelf"), ["on the shelf", "asset: motor 17 → shelf"]);
+    assert_eq!(of("Motor 17"), [] as [String; 0]);
+}
+
+#[test]
+fn an_entry_is_found_by_its_number() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    let id = logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap();
+    let parsed = EntryId::parse(&id.to_string()).unwrap();
+    assert_eq!(logbook.entry(parsed).unwrap().map(|entry| entry.description), Some("x".to_owned()));
+    assert_eq!(logbook.entry(EntryId::parse("99").unwrap()), Ok(None));
+    for bad in ["0", "-1", "x", "", "99999999999999999999"] {
+        assert_eq!(EntryId::parse(bad), None, "{bad}");
+    }
 }
 
 #[test]

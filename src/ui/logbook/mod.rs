@@ -206,21 +206,31 @@ fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
         Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, theme.translate("writes_card.done")),
         Some(Outcome::Cancelled) => (icons::STOP, palette.warn, theme.translate("writes_card.cancelled")),
         Some(Outcome::Failed(why)) => (icons::X_CIRCLE, palette.bad, why.clone()),
-        None => match entry.kind {
-            EntryKind::Status => (icons::WARNING_CIRCLE, palette.warn, theme.translate(kind_text(entry.kind))),
-            EntryKind::Note => (icons::PENCIL_SIMPLE, palette.accent, theme.translate(kind_text(entry.kind))),
-            _ => (icons::QUESTION, palette.warn, theme.translate("writes_card.open")),
-        },
+        None => {
+            let words = theme.translate(kind_text(entry.kind));
+            match entry.kind {
+                EntryKind::Connected | EntryKind::Assigned => (icons::PLUGS_CONNECTED, palette.muted, words),
+                EntryKind::Status => (icons::WARNING_CIRCLE, palette.warn, words),
+                EntryKind::Backup => (icons::FLOPPY_DISK, palette.muted, words),
+                EntryKind::Check => (icons::LIST_CHECKS, palette.muted, words),
+                EntryKind::Note => (icons::PENCIL_SIMPLE, palette.accent, words),
+                _ => (icons::QUESTION, palette.warn, theme.translate("writes_card.open")),
+            }
+        }
     }
 }
 
 fn kind_text(kind: EntryKind) -> &'static str {
     match kind {
+        EntryKind::Connected => "logbook.kind_connected",
+        EntryKind::Assigned => "logbook.kind_assigned",
         EntryKind::Status => "logbook.kind_status",
         EntryKind::Write => "logbook.kind_write",
         EntryKind::Restore => "logbook.kind_restore",
         EntryKind::Preset => "logbook.kind_preset",
         EntryKind::Procedure => "logbook.kind_procedure",
+        EntryKind::Backup => "logbook.kind_backup",
+        EntryKind::Check => "logbook.kind_check",
         EntryKind::Note => "logbook.kind_note",
     }
 }

@@ -93,7 +93,7 @@ fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result
 }
 
 fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
-    save_profile(&save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
+    save_profile(common, &save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
     output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
     Ok(Success::Well)
 }

@@ -179,6 +179,8 @@ fn a_consent_covers_only_its_plan() {
 #[test]
 fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
+    // A connection may already be recorded.
+    let _ = std::fs::remove_file(bench.store().logbook_path());
     std::fs::create_dir_all(bench.store().logbook_path()).unwrap();
     let prepared = bench.prepare(filter()).unwrap();
     let (seen, before) = (prepared.cycles_seen, bench.flash_cycles());

@@ -119,7 +119,10 @@ impl Stand {
 
     /// Blocks the path of the logbook.
     pub(crate) fn block_logbook(&self) {
-        std::fs::create_dir_all(Store::at_root(self.folder.path()).logbook_path()).unwrap();
+        let path = Store::at_root(self.folder.path()).logbook_path();
+        // A connection may already be recorded.
+        let _ = std::fs::remove_file(&path);
+        std::fs::create_dir_all(path).unwrap();
     }
 
     /// Returns a parameter as the device has it.

@@ -25,7 +25,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     let profile = read_saved_profile(common, BissJob::Save)?;
     let banks = profile.banks().count();
     let (mode, unsaved) = (profile.recorded.device_mode, words::unsaved_profile_warning(&profile));
-    save_profile(&save.file, Body::new(profile))?;
+    save_profile(common, &save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
         output.print_message(&words.terminal_text());
     }

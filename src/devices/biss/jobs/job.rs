@@ -14,7 +14,9 @@ use crate::devices::biss::profile::{
     Bank, BissPlan, BissProfile, MotorSource, MountingSteps, PlanError, PresetParts, RegisterRange, RestoreOptions,
     TypeMismatch,
 };
-use crate::devices::biss::protocol::{Area, DeviceMode, KIND, PositionFilter, PresetValue, RegisterAddress};
+use crate::devices::biss::protocol::{
+    Area, DeviceMode, Identity as Kind, KIND, PositionFilter, PresetValue, RegisterAddress,
+};
 use crate::store::{DeviceKey, EntryKind, StoreError};
 use crate::worker::commit::{ApprovedPlan, total_cycles_to_report};
 
@@ -239,6 +241,10 @@ impl From<PlanError> for JobError {
 /// Returns the key of an encoder for backups and the logbook. It contains manufacturer and device ID, because serial
 /// numbers are only unique within these.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    let (manufacturer, device) = (hex_compact(&identity.kind.manufacturer), hex_compact(&identity.kind.device_id));
-    DeviceKey::new(KIND, &format!("{manufacturer}-{device}"), &identity.serial_number, is_virtual)
+    logbook_key(&identity.kind, &identity.serial_number, is_virtual)
+}
+
+pub(super) fn logbook_key(kind: &Kind, serial_number: &str, is_virtual: bool) -> DeviceKey {
+    let (manufacturer, device) = (hex_compact(&kind.manufacturer), hex_compact(&kind.device_id));
+    DeviceKey::new(KIND, &format!("{manufacturer}-{device}"), serial_number, is_virtual)
 }

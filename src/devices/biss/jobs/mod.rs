@@ -19,17 +19,18 @@ pub use job::{
 };
 pub use open::{check_link, open};
 
+use crate::analysis::check::Verdict;
 use crate::buses::bridge::procedures::log_supply_failure;
 use crate::devices::biss::procedures::check::MemoryWear;
 use crate::devices::biss::procedures::{
-    self, Error, Identity, Master, PolledSample, ReadStep, Station, UnsavedValues, identify, procedure, read_position,
-    read_registers, read_sample, read_status, read_watched_value,
+    self, EncoderStatus, Error, FlagRegister, Identity, Master, PolledSample, ReadStep, Station, UnsavedValues,
+    identify, procedure, read_position, read_registers, read_sample, read_status, read_watched_value,
 };
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{Descriptions, DeviceMode, RegisterAddress};
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
-use crate::store::{Store, StoreError};
+use crate::store::{DeviceKey, Store, StoreError};
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, WatchReply};
 
@@ -188,6 +189,26 @@ impl Device for Biss {
         })
     }
 
+    fn identified(&self, is_virtual: bool) -> Option<DeviceKey> {
+        let (kind, serial_number) = self.station.identified.as_ref()?;
+        Some(job::logbook_key(kind, serial_number, is_virtual))
+    }
+
+    fn status_codes(output: &BissOutput) -> Option<String> {
+        match output {
+            BissOutput::Status(status) => flags_for_logbook(status),
+            BissOutput::Surveyed(survey) => flags_for_logbook(&survey.status),
+            _ => None,
+        }
+    }
+
+    fn check_verdicts(output: &BissOutput) -> Option<Vec<Verdict>> {
+        match output {
+            BissOutput::Check(lines) => Some(lines.iter().map(|line| line.verdict).collect()),
+            _ => None,
+        }
+    }
+
     fn set_sample_interval(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMING_INTERVAL);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
@@ -265,4 +286,18 @@ fn read_step(place: ReadStep) -> JobStep {
         ReadStep::Register(address) => JobStep::Register(address),
         ReadStep::Bank(bank) => JobStep::Bank(bank),
     }
+}
+
+/// Returns the errors and warnings that an encoder reports, or `None` if there are none.
+fn flags_for_logbook(status: &EncoderStatus) -> Option<String> {
+    let list = |weight: &'static str, flags: &Option<FlagRegister>| {
+        let bits = flags.as_ref().map(|flags| flags.set.clone()).unwrap_or_default().into_iter();
+        let words = bits.map(move |(bit, name)| match name {
+            Some(name) => format!("{weight}: {}", name.english()),
+            None => format!("{weight}: bit {bit}"),
+        });
+        words.collect::<Vec<_>>()
+    };
+    let flags = [list("error", &status.errors), list("warning", &status.warnings)].concat();
+    (!flags.is_empty()).then(|| flags.join(", "))
 }

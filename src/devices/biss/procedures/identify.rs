@@ -152,6 +152,7 @@ pub(super) fn identify_and_record(
     let source = if source == FrameSource::Assumed { detect_frame_source(master)? } else { source };
     let station = master.station();
     station.source = Some(source);
+    station.identified = Some((kind.clone(), serial_number.clone()));
     Ok(Identity {
         mismatch: closest_mismatch(types, &kind).filter(|_| description.identity().is_none()),
         layout: station.frame_layout(),

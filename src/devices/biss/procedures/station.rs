@@ -11,7 +11,7 @@ use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::flow::SampleStream;
 use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfterSession};
 use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
-use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
+use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Identity as Kind, Layout, RegisterAddress};
 use crate::expected::{AllowedValues, Quantity};
 use crate::link::line::{Echo, LineState, MARGIN};
 use crate::link::{UrlError, UrlQuery};
@@ -108,6 +108,8 @@ pub struct Station {
     pub adapter: AdapterState,
     /// Register description of the encoder, or `None` before identification.
     pub description: Option<Arc<Description>>,
+    /// Type and serial number found during identification.
+    pub identified: Option<(Kind, String)>,
     /// Firmware version found during identification.
     pub firmware: Option<Firmware>,
     /// Frame layout from the encoder's data sheet or from the link, if either provides one.
@@ -179,6 +181,7 @@ impl Station {
             supply: None,
             adapter: AdapterState::default(),
             description: None,
+            identified: None,
             firmware: None,
             layout: None,
             given: None,

@@ -20,7 +20,7 @@ use crate::result_of;
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = read_profile(common)?;
     let (parameters, drives) = (profile.image.values.len(), profile.identity.drives.len());
-    save_profile(&save.file, Body::new(profile))?;
+    save_profile(common, &save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
     let counted = format!("{} of the device and {}", count(parameters, "parameter"), count(drives, "drive"));
     output.show(&json, &format!("{}: {counted}\n", save.file.display()))?;

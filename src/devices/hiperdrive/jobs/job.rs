@@ -189,5 +189,9 @@ impl From<PlanError> for JobError {
 /// Returns the key of a device for backups and the logbook. Saves are counted per adapter or hub, whichever drives are
 /// connected.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    DeviceKey::new(KIND, &identity.category, &identity.serial_number, is_virtual)
+    logbook_key(&identity.category, &identity.serial_number, is_virtual)
+}
+
+pub(super) fn logbook_key(category: &str, serial_number: &str, is_virtual: bool) -> DeviceKey {
+    DeviceKey::new(KIND, category, serial_number, is_virtual)
 }

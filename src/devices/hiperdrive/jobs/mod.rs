@@ -25,6 +25,7 @@ pub use motion::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
 pub use open::{check_link, open};
 use session_watch::MonitoredLink;
 
+use crate::analysis::check::Verdict;
 use crate::devices::hiperdrive::procedures::check::check_device;
 use crate::devices::hiperdrive::procedures::{
     DriveReading, Master, PolledSample, Station, Temperature, identify, network, position, read_status, read_survey,
@@ -33,7 +34,7 @@ use crate::devices::hiperdrive::procedures::{
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
 use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
-use crate::store::Store;
+use crate::store::{DeviceKey, Store};
 use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, WatchReply};
 
 pub struct Hiperdrive {
@@ -158,6 +159,32 @@ impl Device for Hiperdrive {
                 Out::Watched(drive)
             }
         })
+    }
+
+    fn identified(&self, is_virtual: bool) -> Option<DeviceKey> {
+        let (category, serial_number) = self.station.identified.as_ref()?;
+        Some(job::logbook_key(category, serial_number, is_virtual))
+    }
+
+    fn status_codes(output: &HiperdriveOutput) -> Option<String> {
+        let HiperdriveOutput::Status(status) = output else { return None };
+        let codes: Vec<String> = status
+            .drives
+            .iter()
+            .filter(|drive| !drive.buffer.is_empty())
+            .map(|drive| {
+                let codes: Vec<String> = drive.buffer.iter().map(|code| format!("{:04X}h", code.code())).collect();
+                format!("drive {}: {}", drive.number.get(), codes.join(", "))
+            })
+            .collect();
+        (!codes.is_empty()).then(|| codes.join("; "))
+    }
+
+    fn check_verdicts(output: &HiperdriveOutput) -> Option<Vec<Verdict>> {
+        match output {
+            HiperdriveOutput::Check(lines) => Some(lines.iter().map(|line| line.verdict).collect()),
+            _ => None,
+        }
     }
 
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<PolledSample, JobError> {

@@ -164,6 +164,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     let mut text = |number| master.read_text(steps.next(device_parameter(number)?));
     let (name, article_number, production_date, version) = (text(15)?, text(16)?, text(18)?, text(19)?);
     let serial_number = master.read_number(steps.next(device_parameter(17)?))?.to_string();
+    master.remember_device(&category, &serial_number);
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 

@@ -81,6 +81,10 @@ impl<'a> Master<'a> {
         self.station.known.topology = Some(topology);
     }
 
+    pub(super) fn remember_device(&mut self, category: &str, serial_number: &str) {
+        self.station.identified = Some((category.to_owned(), serial_number.to_owned()));
+    }
+
     /// Waits, but returns early if cancelled.
     ///
     /// # Errors

@@ -54,6 +54,8 @@ pub struct Station {
     pub(super) originator: u32,
     pub(super) connections: u16,
     pub(super) known: KnownState,
+    /// Category and serial number of the device that was identified last.
+    pub identified: Option<(String, String)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,6 +86,7 @@ impl Station {
             originator: random as u32,
             connections: (random >> 32) as u16,
             known: KnownState::default(),
+            identified: None,
         }
     }
 

@@ -26,7 +26,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     report_locked_fields(output, &saved, "saved without its bytes");
     let fields = saved.profile.fields.len();
     let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
-    save_profile(&save.file, Body::new(saved.profile))?;
+    save_profile(common, &save.file, Body::new(saved.profile))?;
     let json = json!({"file": save.file, "fields": fields, "locked": locked});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
     Ok(Success::Well)

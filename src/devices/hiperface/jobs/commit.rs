@@ -22,8 +22,11 @@ pub(super) fn commit_plan(
 }
 
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    let device_type = format!("{:02X}h", identity.label.encoder_type);
-    DeviceKey::new(KIND, &device_type, &identity.serial.serial_number, is_virtual)
+    logbook_key(identity.label.encoder_type, &identity.serial.serial_number, is_virtual)
+}
+
+pub(super) fn logbook_key(encoder_type: u8, serial_number: &str, is_virtual: bool) -> DeviceKey {
+    DeviceKey::new(KIND, &format!("{encoder_type:02X}h"), serial_number, is_virtual)
 }
 
 impl PlannedWrite for Prepared {

@@ -20,9 +20,10 @@ pub use types::{TypeTableFileError, encoder_types};
 
 use status::RecentStatusCodes;
 
+use crate::analysis::check::Verdict;
 use crate::devices::hiperface::procedures::find::SearchProgress;
 use crate::devices::hiperface::procedures::{
-    self, Codes, Error, Identity, Master, PolledSample, Station, WatchedQuantity, check, find, identify, read_analogue,
+    self, Codes, Error, Master, PolledSample, Station, WatchedQuantity, check, find, identify, read_analogue,
     read_counter, read_field, read_field_status, read_position, read_range, read_sample, read_status,
     read_watched_value,
 };
@@ -38,8 +39,6 @@ pub struct Hiperface {
     types: Arc<EncoderTypes>,
     /// Geometry from the last identification in this session, used to interpret samples.
     geometry: Option<Geometry>,
-    /// Logbook key of the last identified encoder.
-    identified: Option<DeviceKey>,
     status: RecentStatusCodes,
     /// Line error counts that have already been reported.
     told_troubles: [u64; 4],
@@ -56,24 +55,23 @@ impl Hiperface {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
-    fn set_identity(&mut self, context: &SessionContext, identity: &Identity) {
-        self.geometry = identity.geometry;
-        self.identified = Some(device_key(identity, context.is_virtual));
-    }
-
     /// Stores status codes before they are displayed. Codes belong to the logbook of an encoder, so an unknown encoder
     /// is identified first.
     fn store_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
         }
-        if self.identified.is_none() {
+        if self.station.identified.is_none() {
             let types = self.types.clone();
             if let Ok(identity) = identify(&mut self.create_master(context), &types) {
-                self.set_identity(context, &identity);
+                self.geometry = identity.geometry;
             }
         }
-        let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(context.is_virtual));
+        let device = self.identified(context.is_virtual);
+        if let Some(device) = &device {
+            context.record_identity(device);
+        }
+        let device = device.unwrap_or_else(|| status::unknown_device(context.is_virtual));
         status::record_codes(&context.store, &device, codes);
     }
 
@@ -99,7 +97,7 @@ impl Session<Hiperface> {
     ) -> Self {
         let geometry = station.geometry;
         let (types, status) = (Arc::new(types), RecentStatusCodes::default());
-        let device = Hiperface { wire, station, types, geometry, identified: None, status, told_troubles: [0; 4] };
+        let device = Hiperface { wire, station, types, geometry, status, told_troubles: [0; 4] };
         Session::from_device(device, clock, store, is_virtual)
     }
 
@@ -131,6 +129,18 @@ impl Device for Hiperface {
         let codes = self.station.take_unlogged_codes();
         self.store_codes(context, &codes);
         result
+    }
+
+    fn identified(&self, is_virtual: bool) -> Option<DeviceKey> {
+        let (encoder_type, serial_number) = self.station.identified.as_ref()?;
+        Some(commit::logbook_key(*encoder_type, serial_number, is_virtual))
+    }
+
+    fn check_verdicts(output: &HiperfaceOutput) -> Option<Vec<Verdict>> {
+        match output {
+            HiperfaceOutput::Check(lines) => Some(lines.iter().map(|line| line.verdict).collect()),
+            _ => None,
+        }
     }
 
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<PolledSample, JobError> {
@@ -200,7 +210,6 @@ impl Hiperface {
         Ok(match job {
             HiperfaceJob::Prepare(change) => {
                 let prepared = prepare::prepare_plan(self, context, change, steps)?;
-                self.identified = Some(device_key(&prepared.identity, context.is_virtual));
                 HiperfaceOutput::Prepared(Box::new(prepared))
             }
             HiperfaceJob::Commit(commit) => {
@@ -209,7 +218,7 @@ impl Hiperface {
             HiperfaceJob::Survey => {
                 let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
                 let survey = procedures::read_all_values(&mut self.create_master(context), &types, progress)?;
-                self.set_identity(context, &survey.identity);
+                self.geometry = survey.identity.geometry;
                 HiperfaceOutput::Surveyed(Box::new(survey))
             }
             HiperfaceJob::UseCode { number, code } => {
@@ -218,7 +227,7 @@ impl Hiperface {
             }
             HiperfaceJob::Identify => {
                 let identity = identify(&mut self.create_master(context), &types)?;
-                self.set_identity(context, &identity);
+                self.geometry = identity.geometry;
                 HiperfaceOutput::Identity(identity)
             }
             HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.create_master(context))?),

@@ -6,7 +6,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 
 use crate::devices::hiperface::protocol::{KIND, StatusCode};
-use crate::store::{DeviceKey, Logbook, Store};
+use crate::store::{DeviceKey, EntryKind, Event, Logbook, Store};
 use crate::units::Moment;
 
 /// Time within which a code that live values report repeatedly is stored only once.
@@ -35,8 +35,9 @@ impl RecentStatusCodes {
 pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);
-    let noted = Logbook::open(&store.logbook_path())
-        .and_then(|mut logbook| logbook.record_status(Timestamp::now(), device, &words));
+    let event = Event::new(EntryKind::Status, words);
+    let noted =
+        Logbook::open(&store.logbook_path()).and_then(|mut logbook| logbook.record(Timestamp::now(), device, &event));
     if let Err(error) = noted {
         tracing::warn!("{error}");
     }

@@ -87,6 +87,7 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
         geometry.or_else(|| extended.and_then(|label| label.geometry)).or_else(|| row.and_then(|row| row.geometry));
     let kit = row.filter(|_| label.encoder_type != TypeLabel::EXTENDED).map(|row| row.kit);
     let address = read_address(master)?;
+    master.station().identified = Some((label.encoder_type, serial.serial_number.clone()));
     Ok(Identity { address, label, serial, memory, name, geometry, kit, extended_label })
 }
 

@@ -88,6 +88,8 @@ pub struct Station {
     pub codes_met: Vec<StatusCode>,
     /// Status codes for the logbook. This is their only copy, because 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
+    /// Type and serial number of the encoder that was identified last.
+    pub identified: Option<(u8, String)>,
     /// Number of missing or damaged replies to 50h. Each of them may have contained a status code.
     pub(super) unanswered_codes: u32,
     /// Whether every value must be read twice because it will be stored. This applies even to a line without errors.
@@ -107,6 +109,7 @@ impl Station {
             geometry: None,
             codes_met: Vec::new(),
             codes_read: Vec::new(),
+            identified: None,
             unanswered_codes: 0,
             thorough: false,
             chunk: MAX_TRANSFER,

@@ -23,7 +23,7 @@ use crate::profile::Body;
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = read_profile(common, output)?;
     let programs = profile.image.known_programs().count();
-    save_profile(&save.file, Body::new(profile))?;
+    save_profile(common, &save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "programs": programs});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
     Ok(Success::Well)

@@ -9,6 +9,7 @@ use crate::devices::interbus::procedures::{Journal, ModeSwitch};
 use crate::devices::interbus::protocol::{KIND, StartupMode, Value};
 use crate::profile::ChangedItem;
 use crate::store::{DeviceKey, Drafts, EntryId, EntryKind, Intent, Logbook, LogbookError, Outcome, Store};
+use crate::worker::{SessionContext, SessionLog};
 
 use super::job::logbook_key;
 
@@ -17,13 +18,15 @@ const PROGRAM_READ_NOTE: &str = "cam programs read, each of which may be stored 
 
 pub(super) struct WriteJournal {
     store: Store,
+    log: SessionLog,
     is_virtual: bool,
     begun: BTreeMap<String, (Logbook, EntryId)>,
 }
 
 impl WriteJournal {
-    pub(super) fn new(store: Store, is_virtual: bool) -> Self {
-        WriteJournal { store, is_virtual, begun: BTreeMap::new() }
+    pub(super) fn new(context: &SessionContext) -> Self {
+        let (store, log, is_virtual) = (context.store.clone(), context.log(), context.is_virtual);
+        WriteJournal { store, log, is_virtual, begun: BTreeMap::new() }
     }
 
     fn pending_mode_restores(&self) -> Drafts {
@@ -41,6 +44,8 @@ impl WriteJournal {
     }
 
     fn record_intent(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
+        // The connection precedes what happens in it.
+        self.log.record_identity(&self.store, &self.device_key(serial_number));
         let mut logbook = Logbook::open(&self.store.logbook_path())?;
         let items = vec![ChangedItem::new(PROGRAM_READ_NOTE, None, None)];
         let intent = Intent { kind: EntryKind::Procedure, items, planned_cycles: stores, backup: None };

@@ -18,14 +18,16 @@ pub use open::{check_link, open};
 
 use journal::WriteJournal;
 
+use crate::analysis::check::Verdict;
 use crate::devices::interbus::procedures::check::{MemoryWear as Limits, check_encoder as check_device};
 use crate::devices::interbus::procedures::{
     Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_all_values, read_item,
     read_programs, read_single_value, read_status, save, select,
 };
+use crate::devices::interbus::protocol::Reply;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
-use crate::store::Store;
+use crate::store::{DeviceKey, Store};
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, WatchReply};
 
@@ -50,7 +52,7 @@ impl Interbus {
         context: &'a mut SessionContext,
         on_step: impl FnMut(Handshake) + 'a,
     ) -> Master<'a> {
-        let notes = WriteJournal::new(context.store.clone(), context.is_virtual);
+        let notes = WriteJournal::new(context);
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
             .with_reporter(on_step)
             .with_journal(notes)
@@ -156,6 +158,22 @@ impl Device for Interbus {
             InterbusJob::LeadBack => {
                 self.run_reading_job(context, tell, |master, _| Ok(Out::LedBack(master.end_foreign_operation()?)))
             }
+        }
+    }
+
+    fn identified(&self, is_virtual: bool) -> Option<DeviceKey> {
+        Some(job::logbook_key(&self.station.serial_number()?.to_string(), is_virtual))
+    }
+
+    fn status_codes(output: &InterbusOutput) -> Option<String> {
+        let InterbusOutput::Status(status) = output else { return None };
+        status.error.map(|error| format!("error word 0x{:08X}", Reply::Error(error).emit()))
+    }
+
+    fn check_verdicts(output: &InterbusOutput) -> Option<Vec<Verdict>> {
+        match output {
+            InterbusOutput::Check(lines) => Some(lines.iter().map(|line| line.verdict).collect()),
+            _ => None,
         }
     }
 

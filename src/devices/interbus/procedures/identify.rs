@@ -163,6 +163,7 @@ pub(super) fn read_identity(
         flags: Flags::new(Value::from_word(flags)),
     };
     master.remember_gear(identity.gear().ok());
+    master.remember_serial_number(serial);
     Ok(identity)
 }
 

@@ -114,6 +114,10 @@ impl<'a> Master<'a> {
         self.known.gear = gear;
     }
 
+    pub(super) fn remember_serial_number(&mut self, serial_number: u32) {
+        self.known.serial_number = Some(serial_number);
+    }
+
     pub(super) fn gear(&self) -> Option<Gear> {
         self.known.gear
     }

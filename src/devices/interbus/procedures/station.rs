@@ -46,6 +46,7 @@ pub struct Station {
 pub(super) struct KnownState {
     /// Operating mode as last reported.
     pub(super) mode: Option<StartupMode>,
+    pub(super) serial_number: Option<u32>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
     /// OUT word that must remain set to keep the encoder in its mode. It is `None` if 00000000h keeps the mode.
@@ -56,6 +57,11 @@ pub(super) struct KnownState {
 }
 
 impl Station {
+    /// Returns the serial number of the encoder that was identified last.
+    pub fn serial_number(&self) -> Option<u32> {
+        self.known.serial_number
+    }
+
     /// Creates the state of an unused gateway with default parameters. `margin` extends the time limit for replies.
     pub fn new(margin: Duration) -> Self {
         Station {
