@@ -17,9 +17,10 @@ pub(crate) use decode::{Direction, DirectionOption};
 
 use super::Failure;
 use super::commands::{Commands, KindOptions};
+use super::undo::UndoneWrite;
 use crate::app::TypeMap;
 use crate::link::LinkUrl;
-use crate::store::AssetName;
+use crate::store::{AssetName, EntryId};
 use crate::worker::SessionLog;
 
 /// Help heading of the options that every command has.
@@ -102,6 +103,8 @@ pub enum Command {
     Decode(DecodeArgs),
     /// Print the logbook, newest first: connections, writes, status codes that were read, saved profiles, checks.
     Log(LogArgs),
+    /// Plan a write of the logbook back, as far as possible: read, compare, and restore the values before it.
+    Undo(UndoArgs),
     /// Serve a virtual device on a pseudo-terminal or a TCP port.
     Simulate(SimulateArgs),
 }
@@ -200,9 +203,9 @@ pub struct SaveArgs {
 
 #[derive(Args)]
 pub struct DiffArgs {
-    /// Profile to compare.
+    /// Profile to compare, or log:ENTRY for the values before a write of the logbook.
     pub(super) left: PathBuf,
-    /// Second profile. Default: the device at --link.
+    /// Second profile or log:ENTRY. Default: the device at --link.
     pub(super) right: Option<PathBuf>,
 }
 
@@ -241,6 +244,40 @@ pub struct Restore {
     pub(crate) recreate: bool,
     #[command(flatten)]
     pub(super) asset: AssetArgs,
+    /// The write that the restore undoes. Set by the command undo.
+    #[arg(skip)]
+    pub(super) undone: Option<UndoneWrite>,
+}
+
+impl Restore {
+    /// Returns a restore of the backup of a write that is undone. Another device is never allowed.
+    pub(super) fn of_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneWrite) -> Self {
+        Restore {
+            file,
+            dry_run: undo.dry_run,
+            consent: ConsentArgs { ..undo.consent },
+            allow_other_device: false,
+            allow_other_type: false,
+            copy: Vec::new(),
+            leave: Vec::new(),
+            with_mounting: false,
+            recreate: false,
+            asset: AssetArgs { name: None },
+            undone: Some(undone),
+        }
+    }
+}
+
+#[derive(Args)]
+pub struct UndoArgs {
+    /// Number of the entry, as log prints it.
+    #[arg(value_parser = super::log::parse_entry)]
+    pub(super) entry: EntryId,
+    /// Print the operations that would be carried out, and write nothing.
+    #[arg(long)]
+    pub(super) dry_run: bool,
+    #[command(flatten)]
+    pub(super) consent: ConsentArgs,
 }
 
 #[derive(Args)]

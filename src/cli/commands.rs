@@ -11,7 +11,7 @@ use super::output::Output;
 use super::simulate::ServableDevice;
 use super::{Failure, Result};
 use crate::app::{Text, TypeMap};
-use crate::profile::Body;
+use crate::profile::{Body, ChangedItem};
 
 /// Commands that a kind of device may support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,6 +162,20 @@ pub trait ProfileCommands: Sync {
     /// Reads a device for comparison with a profile. Without a profile, everything is read. With one, at least its
     /// items are read.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
+
+    /// Splits an item of the logbook into single values: bytes or registers. An undo compares them one by one.
+    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
+        vec![item.clone()]
+    }
+
+    /// Removes the values from the backup of a write that the write did not change, if the backup contains more than
+    /// the surroundings of the write.
+    fn keep_items(&self, _backup: &mut Body, _items: &[ChangedItem]) {}
+
+    /// Returns what to do instead, if a restore of the backup cannot write back an item.
+    fn instead_of_undo(&self, _item: &ChangedItem, _backup: &Body) -> Option<String> {
+        None
+    }
 
     /// Returns a note that applies to every use of a profile.
     fn profile_note(&self, _profile: &Body) -> Option<Text> {

@@ -1,5 +1,7 @@
 //! `log`: the logbook of this computer.
 
+use std::path::{Path, PathBuf};
+
 use jiff::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
@@ -10,13 +12,44 @@ use super::output::{Output, count};
 use super::runner::to_failure;
 use super::{Failure, Result, Success};
 use crate::app::explain;
-use crate::store::{Entry, EntryFilter, EntryKind, Logbook, Outcome, Store};
+use crate::store::{Entry, EntryFilter, EntryId, EntryKind, Logbook, Outcome, Store};
 
 /// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
 pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
     let midnight = |date: Date| Some(date.to_zoned(TimeZone::system()).ok()?.timestamp());
     let date = || text.parse().ok().and_then(midnight);
     text.parse().ok().or_else(date).ok_or_else(|| "enter a date such as 2026-11-27".to_owned())
+}
+
+pub(super) fn parse_entry(text: &str) -> std::result::Result<EntryId, String> {
+    EntryId::parse(text).ok_or_else(|| "enter the number of an entry, as log prints it".to_owned())
+}
+
+/// Returns the entry with this number.
+pub(super) fn entry_with_number(id: EntryId) -> Result<Entry> {
+    let entry = match existing_logbook()? {
+        None => None,
+        Some(logbook) => logbook.entry(id).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))?,
+    };
+    entry.ok_or_else(|| Failure::Failed(vec![format!("The logbook has no entry {id}. log prints the numbers.")]))
+}
+
+/// Returns the path of the profile with the values before a write, or of the profile that was saved.
+pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
+    entry.backup.clone().ok_or_else(|| {
+        let (id, what) = (entry.id, entry.kind.keyword());
+        let why = format!("Entry {id} ({what}) has no backup. Only writes and saved profiles have one.");
+        Failure::Failed(vec![why])
+    })
+}
+
+/// Returns the path of a profile. `log:ENTRY` means the backup of an entry.
+pub(super) fn profile_path(argument: &Path) -> Result<PathBuf> {
+    let Some(number) = argument.to_str().and_then(|text| text.strip_prefix("log:")) else {
+        return Ok(argument.to_owned());
+    };
+    let id = parse_entry(number).map_err(|why| Failure::Usage(format!("log:{number}: {why}")))?;
+    profile_of(&entry_with_number(id)?)
 }
 
 pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
@@ -40,13 +73,18 @@ pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
     Ok(Success::Well)
 }
 
-fn entries(filter: &EntryFilter, limit: u32) -> std::result::Result<Vec<Entry>, Failure> {
+fn entries(filter: &EntryFilter, limit: u32) -> Result<Vec<Entry>> {
+    let Some(logbook) = existing_logbook()? else { return Ok(Vec::new()) };
+    logbook.entries(filter, limit).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
+}
+
+/// Opens the logbook. Returns `None` if nothing has been recorded yet.
+fn existing_logbook() -> Result<Option<Logbook>> {
     let path = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
-        return Ok(Vec::new());
+        return Ok(None);
     }
-    let entries = Logbook::open(&path).and_then(|logbook| logbook.entries(filter, limit));
-    entries.map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
+    Logbook::open(&path).map(Some).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
 }
 
 fn entry_json(entry: &Entry) -> Json {

@@ -16,6 +16,7 @@ pub(crate) mod profiles;
 pub(crate) mod runner;
 pub(crate) mod simulate;
 pub(crate) mod slow_reply_notice;
+pub(crate) mod undo;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -150,6 +151,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
     let (id, chosen, own) = match command {
         Command::Ports => return ports::ports(output),
         Command::Log(log) => return log::log(output, log),
+        Command::Undo(undo) => return undo::undo(common, output, undo),
         Command::Diff(diff) => return profiles::diff(common, output, diff),
         Command::Verify(verify) => return profiles::verify_profile(common, output, &verify.file),
         Command::Restore(restore) => {

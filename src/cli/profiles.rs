@@ -2,13 +2,14 @@
 //! content of the file determines the kind.
 
 use std::fmt::Display;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, DiffArgs, Restore};
 use super::consent::require_consent;
+use super::log::profile_path;
 use super::output::{Lines, Output, write_stderr};
 use super::plan::{NOTHING_TO_WRITE, PlanReport, WriteSummary};
 use super::runner::to_failure;
@@ -16,6 +17,7 @@ use super::{Failure, Result, Success};
 use crate::app::{KindRegistry, explain, review};
 use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
 use crate::store::{EntryKind, Event, Store, read_text, write_atomically};
+use crate::worker::commit::PlannedWrite;
 
 /// Reads a profile of any kind, for viewing or comparison.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
@@ -67,15 +69,18 @@ pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Res
     if diff.right.is_some() == common.link.is_some() {
         return Err(Failure::Usage("diff takes either a second file or --link URL".to_owned()));
     }
-    let left = load(output, &diff.left)?;
+    let left = load(output, &profile_path(&diff.left)?)?;
     let kind = output.commands().device(left.kind())?;
     let (right, name) = match &diff.right {
-        Some(path) => (load(output, path)?, path.as_path()),
-        None => (kind.read_for_comparison(common, output, None)?, Path::new("the device")),
+        Some(argument) => {
+            let path = profile_path(argument)?;
+            (load(output, &path)?, path)
+        }
+        None => (kind.read_for_comparison(common, output, None)?, PathBuf::from("the device")),
     };
     let comparison = left
         .compare(&right)
-        .map_err(|error| to_failure(&explain::profile_file_error_text(name, &error, KindRegistry::NONE)))?;
+        .map_err(|error| to_failure(&explain::profile_file_error_text(&name, &error, KindRegistry::NONE)))?;
     let missing = comparison.one_sided_items();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
@@ -126,16 +131,24 @@ pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Writes the plan that restores a profile, or only prints it if this is a dry run.
-pub fn write_restore(
+/// Writes the plan that restores a profile, or only prints it if this is a dry run. If the restore undoes a write, the
+/// plan is refused when values have changed since.
+pub fn write_restore<P: PlannedWrite>(
+    common: &CommonArgs,
     output: &Output,
     restore: &Restore,
+    prepared: P,
     plan: &PlanReport,
     left: &UnrestoredItems,
-    write: impl FnOnce() -> Result<WriteSummary>,
+    write: impl FnOnce(P) -> Result<WriteSummary>,
 ) -> Result {
+    restore.check_undo(common, &prepared)?;
     left.print_warning(output);
-    if restore.dry_run { show_dry_run(output, plan, left) } else { show_restored(output, &write()?, left) }
+    if restore.dry_run {
+        show_dry_run(output, restore, plan, left)
+    } else {
+        show_restored(output, restore, plan, &write(prepared)?, left)
+    }
 }
 
 /// Returns the options of a restore, for devices without data fields.
@@ -201,8 +214,8 @@ impl UnrestoredItems {
     }
 }
 
-fn show_dry_run(output: &Output, plan: &PlanReport, left: &UnrestoredItems) -> Result {
-    let json = json!({
+fn show_dry_run(output: &Output, restore: &Restore, plan: &PlanReport, left: &UnrestoredItems) -> Result {
+    let mut json = json!({
         "dry_run": true,
         "operations": plan.operations,
         "written": 0,
@@ -213,12 +226,21 @@ fn show_dry_run(output: &Output, plan: &PlanReport, left: &UnrestoredItems) -> R
         "missing": left.missing,
         "redo": left.redo,
     });
+    if let Some(undone) = &restore.undone {
+        undone.add_keys(&mut json, &plan.operations);
+    }
     output.show(&json, &plan.text)?;
     Ok(Success::Well)
 }
 
-fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) -> Result {
-    let json = json!({
+fn show_restored(
+    output: &Output,
+    restore: &Restore,
+    plan: &PlanReport,
+    spent: &WriteSummary,
+    left: &UnrestoredItems,
+) -> Result {
+    let mut json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,
         "verified": spent.verified,
@@ -227,6 +249,9 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) 
         "missing": left.missing,
         "redo": left.redo,
     });
+    if let Some(undone) = &restore.undone {
+        undone.add_keys(&mut json, &plan.operations);
+    }
     let mut lines = Lines::default();
     lines
         .add_line("written", spent.written)

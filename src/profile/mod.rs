@@ -21,6 +21,7 @@ mod source;
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
+mod undo;
 mod unique_names;
 mod write;
 mod written;
@@ -37,6 +38,7 @@ pub use restore::{Restore, RestoreOptions};
 pub use rewrite::{ChangedSide, diverging_changes};
 pub use ron_text::{Entries, UnknownValues, Writer};
 pub use source::{Change, PathStep, UpdatedText};
+pub use undo::{ChangedSince, ValueChanges};
 pub(crate) use write::InterruptedWriteOf;
 pub use write::{ConfirmedPlan, DeviceError, InterruptedWrite, OperationError, Write};
 pub use written::{WriteRecord, WrittenChanges};

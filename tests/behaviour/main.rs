@@ -25,6 +25,7 @@ mod cli_position;
 mod cli_simulate;
 mod cli_ssi;
 mod cli_status;
+mod cli_undo;
 mod foreign;
 mod going;
 mod hiperdrive_bad_input;

@@ -62,7 +62,7 @@ impl ProfileCommands for NovoCommands {
         let shown = shown(&prepared);
         let unchanged = (ITEMS.len() - prepared.plan.ops.len()) as u64;
         let left = UnrestoredItems { unchanged, missing: Vec::new(), redo: Vec::new() };
-        write_restore(output, restore, &shown, &left, || {
+        write_restore(common, output, restore, prepared, &shown, &left, |prepared| {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = confirm_plan(output, &restore.consent, prepared, &[&shown.text])?;
             let written = result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(written) => *written);

@@ -12,9 +12,10 @@ use crate::cli::profiles::{UnrestoredItems, profile_to_restore, restore_options,
 use crate::cli::{Result, Success};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
+use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::state::explain as words;
-use crate::profile::Body;
+use crate::profile::{Body, ChangedItem};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -49,12 +50,37 @@ impl ProfileCommands for HiperdriveCommands {
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
         let plan = plan_report(&prepared);
-        write_restore(output, restore, &plan, &left, || commit_plan(&mut runner, output, prepared, &restore.consent))
+        write_restore(common, output, restore, prepared, &plan, &left, |prepared| {
+            commit_plan(&mut runner, output, prepared, &restore.consent)
+        })
     }
 
     /// Reads the complete device for a comparison.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(read_profile(common)?))
+    }
+
+    /// A backup contains all parameters, of which a later write may have changed others.
+    fn keep_items(&self, backup: &mut Body, items: &[ChangedItem]) {
+        if let Some(profile) = backup.get_mut::<HiperdriveProfile>() {
+            let is_changed = |name: &str| items.iter().any(|item| item.item == name);
+            profile.image.values.retain(|number, _| is_changed(&Item(*number).to_string()));
+        }
+    }
+
+    /// The save at the end of a write is not a value.
+    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
+        if item.item == ParameterNumber::SAVE.to_string() { Vec::new() } else { vec![item.clone()] }
+    }
+
+    fn instead_of_undo(&self, item: &ChangedItem, _backup: &Body) -> Option<String> {
+        match item.item.parse::<Item>() {
+            Ok(item) if item.0.drive1_number() == REFERENCE => {
+                Some("set the reference again with \"do hiperdrive set-position\"".to_owned())
+            }
+            Ok(_) => None,
+            Err(_) => Some("change the settings of the network again".to_owned()),
+        }
     }
 
     /// Returns a message if the two profiles are from different devices or have different drives. A profile without a

@@ -11,13 +11,15 @@ use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
 use crate::cli::profiles::{UnrestoredItems, print_skipped_mounting, profile_to_restore, save_profile, write_restore};
+use crate::cli::undo::single_bytes;
 use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownMeaningField};
+use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::explain as words;
-use crate::profile::Body;
+use crate::profile::{Body, ChangedItem};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -53,7 +55,7 @@ impl ProfileCommands for HiperfaceCommands {
         if let Some(text) = words::remaining_created_fields_text(&prepared.created_left) {
             output.print_message(&text.terminal_text());
         }
-        for item in &prepared.missing {
+        for item in prepared.missing.iter().filter(|item| restore.concerns(&item.to_string())) {
             output.print_message(&format!(
                 "{item} is not restored: it is missing in the profile or the encoder, or cannot be read"
             ));
@@ -63,13 +65,54 @@ impl ProfileCommands for HiperfaceCommands {
         let missing = prepared.missing.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing, redo };
         let plan = plan_report(&prepared);
-        write_restore(output, restore, &plan, &left, || commit_plan(&mut runner, output, prepared, &restore.consent))
+        write_restore(common, output, restore, prepared, &plan, &left, |prepared| {
+            commit_plan(&mut runner, output, prepared, &restore.consent)
+        })
     }
 
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, _profile: Option<&Body>) -> Result<Body> {
         let saved = read_saved_profile(&mut Runner::open(common)?, SaveOptions::default())?;
         report_locked_fields(output, &saved, "compared without its bytes");
         Ok(Body::new(saved.profile))
+    }
+
+    /// Splits bytes of a field. Bytes of a field that is created or deleted belong to its status.
+    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
+        match item.item.parse() {
+            Ok(Item::Field(_)) if item.old.is_none() => Vec::new(),
+            Ok(Item::Field(range)) => {
+                single_bytes(item, |at| format!("field:{}@{}", range.field, range.start.saturating_add(at)))
+            }
+            Ok(Item::Status(_)) => {
+                let existing = |value: &Option<String>| {
+                    let byte = u8::from_str_radix(value.as_deref()?, 16).ok()?;
+                    value.clone().filter(|_| DataFieldStatus::from_byte(byte).exists())
+                };
+                vec![ChangedItem::new(&item.item, existing(&item.old), existing(&item.new))]
+            }
+            _ => vec![item.clone()],
+        }
+    }
+
+    fn instead_of_undo(&self, item: &ChangedItem, backup: &Body) -> Option<String> {
+        // The content of a field that was only created is unknown, and it may have been used since.
+        let is_known = |field: u8| {
+            let created = backup.get::<HiperfaceProfile>().map(|profile| profile.created.as_slice());
+            created.unwrap_or_default().iter().any(|own| own.number == field)
+        };
+        let old = item.old.as_deref().unwrap_or_default();
+        Some(match item.item.parse() {
+            Ok(Item::Status(field)) if item.old.is_none() && !is_known(field) => {
+                format!("use \"do hiperface delete-field {field}\" if its bytes are not needed")
+            }
+            Ok(Item::Field(_) | Item::Status(_) | Item::Analogue(_)) => return None,
+            Ok(Item::Address) => format!("use \"write hiperface address 0x{old}\""),
+            Ok(Item::Settings) => format!("use \"write hiperface settings 0x{old}\""),
+            Ok(Item::Counter) => "the encoder can only increment or clear its counter".to_owned(),
+            Err(_) if item.item == "position" => "set it again with \"do hiperface set-position\"".to_owned(),
+            // Access codes are not in the logbook.
+            Err(_) => "use \"do hiperface change-code\" with the code before".to_owned(),
+        })
     }
 
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {

@@ -46,7 +46,9 @@ impl ProfileCommands for InterbusCommands {
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
         let plan = plan_report(&prepared);
-        write_restore(output, restore, &plan, &left, || commit_plan(&mut runner, output, prepared, &restore.consent))
+        write_restore(common, output, restore, prepared, &plan, &left, |prepared| {
+            commit_plan(&mut runner, output, prepared, &restore.consent)
+        })
     }
 
     /// Reads the encoder for a comparison. If a profile is given, only its items are read. Reading a cam program

@@ -1,0 +1,102 @@
+//! Undoing a write of the logbook: the check that each value is still the one that the write has left. A value that has
+//! changed since is not overwritten.
+
+use std::collections::BTreeMap;
+
+use super::ChangedItem;
+
+/// The values that some operations change in total, from the first old value to the last new one. Values that the
+/// operations change and change back, such as the protection of a field, are not included.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ValueChanges(BTreeMap<String, Change>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Change {
+    old: Option<String>,
+    new: Option<String>,
+}
+
+/// A value that is no longer the one that the write has left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChangedSince {
+    /// Name of the value.
+    pub item: String,
+    /// Value that the write has left. `None` if the item did not exist then.
+    pub expected: Option<String>,
+    /// Present value. `None` if the item does not exist.
+    pub found: Option<String>,
+}
+
+impl ValueChanges {
+    /// Adds up changes in their order. Each item must be a single value.
+    pub fn of(items: impl IntoIterator<Item = ChangedItem>) -> Self {
+        let mut values: BTreeMap<String, Change> = BTreeMap::new();
+        for ChangedItem { item, old, new, .. } in items {
+            match values.get_mut(&item) {
+                Some(change) => change.new = new,
+                None => {
+                    values.insert(item, Change { old, new });
+                }
+            }
+        }
+        values.retain(|_, change| change.old != change.new);
+        ValueChanges(values)
+    }
+
+    /// Returns the names of the changed values.
+    pub fn items(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// Compares a write with the operations that would undo it. Returns the values that have changed in between,
+    /// including those that the write did not change.
+    pub fn changed_since(&self, undoing: &ValueChanges) -> Vec<ChangedSince> {
+        let changed = undoing.0.iter().filter_map(|(item, Change { old: found, new: back })| {
+            // The write did not change this value, so it left the value that would be written back.
+            let expected = self.0.get(item).map_or(back, |change| &change.new);
+            (expected != found).then(|| ChangedSince {
+                item: item.clone(),
+                expected: expected.clone(),
+                found: found.clone(),
+            })
+        });
+        changed.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn item(item: &str, old: &str, new: &str) -> ChangedItem {
+        let value = |text: &str| (!text.is_empty()).then(|| text.to_owned());
+        ChangedItem::new(item, value(old), value(new))
+    }
+
+    fn changes(items: &[(&str, &str, &str)]) -> ValueChanges {
+        ValueChanges::of(items.iter().map(|(name, old, new)| item(name, old, new)))
+    }
+
+    #[test]
+    fn changes_of_a_value_add_up() {
+        let unlocked = [("status:3", "A8", "E8"), ("field:3@0", "00", "11"), ("status:3", "E8", "A8")];
+        assert_eq!(changes(&unlocked), changes(&[("field:3@0", "00", "11")]));
+        assert_eq!(changes(&[("a", "1", "2"), ("a", "2", "3")]), changes(&[("a", "1", "3")]));
+        assert_eq!(changes(&[("code 2", "", "")]), ValueChanges::default());
+    }
+
+    #[test]
+    fn values_that_changed_since_are_named() {
+        let write = changes(&[("a", "1", "2"), ("b", "5", "6"), ("c", "", "7")]);
+        let since = |undoing: &[(&str, &str, &str)]| {
+            let text = |value: Option<String>| value.unwrap_or_default();
+            let changed = write.changed_since(&changes(undoing)).into_iter();
+            changed.map(|own| (own.item, text(own.expected), text(own.found))).collect::<Vec<_>>()
+        };
+        assert_eq!(since(&[("a", "2", "1"), ("b", "6", "5"), ("c", "7", "")]), []);
+        assert_eq!(since(&[]), [], "all values are the old ones already");
+        assert_eq!(since(&[("a", "9", "1")]), [("a".into(), "2".into(), "9".into())]);
+        assert_eq!(since(&[("d", "8", "3")]), [("d".into(), "3".into(), "8".into())], "another write changed it");
+        assert_eq!(since(&[("c", "", "7")]), [("c".into(), "7".into(), String::new())]);
+    }
+}

@@ -1,0 +1,185 @@
+//! The command `undo`, and `diff` with a moment of the logbook. A separate virtual device keeps its memory between the
+//! commands.
+
+use serde_json::{Value, json};
+
+use super::support::{Bench, Ran, Simulated};
+
+/// A virtual device with its commands.
+struct Device {
+    bench: Bench,
+    kind: &'static str,
+    link: String,
+    _simulated: Simulated,
+}
+
+impl Device {
+    fn start(kind: &'static str) -> Self {
+        let bench = Bench::new();
+        let simulated = Simulated::start(&bench, &[kind, "--listen", "127.0.0.1:0"]);
+        let scheme = match kind {
+            "interbus" => "modbus",
+            "hiperdrive" => "enip",
+            _ => "tcp",
+        };
+        let link = format!("{scheme}:{}", simulated.place);
+        Device { bench, kind, link, _simulated: simulated }
+    }
+
+    fn run(&self, words: &[&str]) -> Ran {
+        self.bench.run(&[words, &["--link", &self.link, "--json"]].concat())
+    }
+
+    fn read(&self, item: &str) -> Value {
+        self.run(&["read", self.kind, item]).json()["value"].clone()
+    }
+
+    /// Writes an item, and returns the number of the entry.
+    fn write(&self, item: &str, value: &str) -> String {
+        let ran = self.run(&["write", self.kind, item, value, "--yes"]);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        self.last_entry()
+    }
+
+    /// Returns the number of the newest entry that is not about reading.
+    fn last_entry(&self) -> String {
+        let log = self.bench.run(&["log", "--json"]).out;
+        let entries = log.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+        let of_reading = ["connected", "status", "procedure"].map(Value::from);
+        let last = entries.into_iter().find(|entry| !of_reading.contains(&entry["what"])).unwrap();
+        last["entry"].as_str().unwrap().to_owned()
+    }
+
+    fn undo(&self, entry: &str) -> Ran {
+        self.run(&["undo", entry, "--yes"])
+    }
+}
+
+#[test]
+fn a_write_is_undone_in_the_usual_way() {
+    for (kind, item, value, cycles) in [
+        ("hiperface", "field:0@3+2", "C0FF", 1),
+        ("interbus", "cam:2:5", "10..20", 1),
+        ("biss", "0x24:0x10+4", "C0FFEE01", 1),
+        ("hiperdrive", "158", "-100000", 1),
+    ] {
+        let device = Device::start(kind);
+        let before = device.read(item);
+        let entry = device.write(item, value);
+        assert_ne!(device.read(item), before, "{kind}");
+        let planned = device.run(&["undo", &entry, "--dry-run"]);
+        assert_eq!(planned.status, Some(0), "{kind}: {planned:?}");
+        let planned = planned.json();
+        assert_eq!(
+            (&planned["written"], &planned["write_cycles"], &planned["dry_run"]),
+            (&json!(0), &json!(cycles), &json!(true))
+        );
+        assert!(!planned["operations"].as_array().unwrap().is_empty(), "{planned}");
+        let undone = device.undo(&entry);
+        assert_eq!(undone.status, Some(0), "{kind}: {undone:?}");
+        let undone = undone.json();
+        assert_eq!((&undone["write_cycles"], &undone["entry"]), (&json!(cycles), &json!(entry)), "{kind}");
+        assert_eq!(undone["written"], undone["verified"], "{kind}");
+        assert_eq!(undone["not_undone"], json!([]), "{kind}");
+        assert_eq!(device.read(item), before, "{kind}");
+        // The undo is an entry with the values exchanged, and can be undone as well.
+        assert_eq!(device.undo(&device.last_entry()).status, Some(0), "{kind}");
+        assert_ne!(device.read(item), before, "{kind}");
+    }
+}
+
+#[test]
+fn what_changed_since_is_not_overwritten() {
+    let device = Device::start("hiperface");
+    let first = device.write("field:0@3+2", "0001");
+    let second = device.write("field:0@4+1", "02");
+    let refused = device.undo(&first);
+    refused.fails(1, &["changed since", "field:0@4", "expected 01, found 02"]);
+    assert_eq!(device.read("field:0@3+2"), "0002");
+    assert_eq!(device.undo(&second).status, Some(0));
+    assert_eq!(device.undo(&first).status, Some(0));
+    // Nothing is left to undo.
+    let again = device.undo(&first);
+    assert_eq!((again.status, &again.json()["written"]), (Some(0), &json!(0)), "{again:?}");
+}
+
+/// Other parameters than those of the write stay as they are.
+#[test]
+fn an_undo_leaves_later_writes_to_other_parameters() {
+    let device = Device::start("hiperdrive");
+    let before = device.read("158");
+    let first = device.write("158", "-100000");
+    device.write("160", "200000");
+    assert_eq!(device.undo(&first).status, Some(0));
+    assert_eq!((device.read("158"), device.read("160")), (before, json!(200_000)));
+}
+
+#[test]
+fn a_deleted_field_returns_with_its_bytes() {
+    let device = Device::start("hiperface");
+    let fields = device.run(&["identify", "hiperface"]).json()["data_fields"].to_string();
+    assert_eq!(device.run(&["do", "hiperface", "create-field", &fields, "32", "--yes"]).status, Some(0));
+    // It is not known whether its bytes have been used since.
+    device.undo(&device.last_entry()).fails(1, &[&format!("status:{fields}"), "delete-field"]);
+    device.write(&format!("field:{fields}@0+2"), "AB12");
+    assert_eq!(device.run(&["do", "hiperface", "delete-field", &fields, "--yes"]).status, Some(0));
+    let deleted = device.last_entry();
+    let undone = device.undo(&deleted);
+    assert_eq!(undone.status, Some(0), "{undone:?}");
+    assert_eq!(device.read(&format!("field:{fields}@0+2")), "AB12");
+}
+
+#[test]
+fn what_cannot_be_undone_is_told_with_what_to_do_instead() {
+    let device = Device::start("hiperface");
+    let act = |words: &[&str]| {
+        let ran = device.run(&[&["do", "hiperface"], words, &["--yes"]].concat());
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        device.last_entry()
+    };
+    let code = act(&["change-code", "2", "A7"]);
+    device.undo(&code).fails(1, &["code 2", "change-code"]);
+    let counter = act(&["increment-counter"]);
+    device.undo(&counter).fails(1, &["counter", "increment or clear"]);
+    let position = act(&["set-position", "4096"]);
+    device.undo(&position).fails(1, &["position was set", "help do"]);
+    assert_eq!(device.run(&["do", "hiperface", "check"]).status, Some(0));
+    device.undo(&device.last_entry()).fails(1, &["check", "nothing to undo"]);
+    device.undo("9999").fails(1, &["no entry 9999"]);
+    device.undo("first").fails(2, &["number of an entry"]);
+}
+
+#[test]
+fn another_device_is_refused() {
+    let device = Device::start("hiperface");
+    let entry = device.write("field:0@3+2", "C0FF");
+    let other = Simulated::start(&device.bench, &["hiperface", "--listen", "127.0.0.1:0", "--set", "serial=HF0000001"]);
+    let link = format!("tcp:{}", other.place);
+    device.bench.run(&["undo", &entry, "--yes", "--link", &link]).fails(1, &["HF0000001"]);
+    // The virtual encoder in the process has the serial number of the one outside, and is another one.
+    device.bench.run(&["undo", &entry, "--yes", "--link", "sim:"]).fails(1, &["virtual"]);
+    device.bench.run(&["undo", &entry, "--link", &device.link]).fails(2, &["--yes"]);
+}
+
+#[test]
+fn a_moment_of_the_logbook_is_compared() {
+    let device = Device::start("hiperface");
+    let before = device.read("field:0@3+2");
+    let entry = device.write("field:0@3+2", "C0FF");
+    let moment = format!("log:{entry}");
+    let differences = device.run(&["diff", &moment]);
+    assert_eq!(differences.status, Some(3), "{differences:?}");
+    let found = differences.json_with(3)["differences"].clone();
+    let (left, right): (String, String) =
+        found.as_array().unwrap().iter().fold(Default::default(), |(left, right), own| {
+            (left + own["left"].as_str().unwrap(), right + own["right"].as_str().unwrap())
+        });
+    assert!(before.as_str().unwrap().contains(&left) && "C0FF".contains(&right), "{found}");
+    let same = device.bench.run(&["diff", &moment, &moment, "--json"]);
+    assert_eq!((same.status, &same.json()["equal"]), (Some(0), &json!(true)));
+    assert_eq!(device.run(&["identify", "hiperface"]).status, Some(0));
+    let connected = device.bench.run(&["log", "--json", "--limit", "1"]).json();
+    let connected = format!("log:{}", connected["entry"].as_str().unwrap());
+    device.bench.run(&["diff", &connected, &moment]).fails(1, &["connected", "no backup"]);
+    device.bench.run(&["diff", "log:x", &moment]).fails(2, &["log:x"]);
+}
