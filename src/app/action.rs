@@ -19,13 +19,15 @@ use super::tab::Tab;
 use super::{ColorScheme, Language, Picture, Settings, Text, connect};
 use crate::link::LinkError;
 use crate::profile::{PlanId, ProfileDocument, ProfileError};
-use crate::store::{DeviceKey, EntryFilter, FileError, LogbookError};
+use crate::store::{DeviceKey, EntryFilter, FileError, LogbookError, UserName};
 use crate::worker::{OpenError, Worker};
 
 pub enum Action {
     ShowTab(Tab),
     SetTheme(ColorScheme),
     SetLanguage(Language),
+    /// Sets how the logbook names the user.
+    SetUserName(UserName),
     KeepLayout(String),
     /// Open the lower panel, or reduce it to one line.
     OpenLowerPanel(bool),

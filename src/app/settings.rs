@@ -11,6 +11,7 @@ use super::Language;
 use super::drives::{PartialDriveEntry, RememberedDrives};
 use super::kinds::KindRegistry;
 use super::tab::Tab;
+use crate::store::UserName;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ColorScheme {
@@ -39,6 +40,9 @@ pub struct Settings {
     /// Whether the Live panel shows values without a plot.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub values_alone: bool,
+    /// Name of the user in the logbook.
+    #[serde(skip_serializing_if = "is_default")]
+    pub user_name: UserName,
     /// Data about drives, by the name of the device to which the drives are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
@@ -55,6 +59,7 @@ impl Default for Settings {
             lower_open: false,
             live_stopped: false,
             values_alone: false,
+            user_name: UserName::default(),
             drives: BTreeMap::new(),
         }
     }
@@ -103,6 +108,7 @@ impl Settings {
             lower_open: entry!(lower_open: bool, usual.lower_open),
             live_stopped: entry!(live_stopped: bool, usual.live_stopped),
             values_alone: entry!(values_alone: bool, usual.values_alone),
+            user_name: entry!(user_name: UserName, usual.user_name),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay unconfirmed, even if other parts are invalid.
@@ -121,7 +127,7 @@ impl Settings {
         macro_rules! take {
             ($($name:ident),*) => { $(if ours.$name != known.$name { self.$name = ours.$name.clone(); })* };
         }
-        take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone);
+        take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone, user_name);
         self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
             let used = links_used_since(known.links_of(tab), ours.links_of(tab));
@@ -143,6 +149,12 @@ impl Settings {
 
     pub(super) fn adopt_drive_data(&mut self, from: &Settings) {
         self.drives = from.drives.clone();
+    }
+
+    /// Returns the settings in a file, as far as they are readable, for the command line. Without a file, the defaults
+    /// apply.
+    pub fn of_file(text: &str) -> Self {
+        Settings::parse(text).unwrap_or_else(|| Settings::parse_partial(text))
     }
 
     pub fn emit(&self) -> String {
@@ -177,6 +189,10 @@ impl Settings {
             links.truncate(Self::LINKS);
         });
     }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// Links used in each tab. Tabs are in the order of their first use.

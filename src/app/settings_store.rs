@@ -125,6 +125,7 @@ impl SettingsStore {
             }
         };
         *settings = found.clone().with_changes(&Settings::initial(kinds), settings);
+        settings.user_name.apply();
         self.known = found;
     }
 

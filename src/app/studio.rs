@@ -91,6 +91,10 @@ impl Studio {
             Action::AddNote(device, note) => self.add_note(device, &note),
             Action::SetTheme(theme) => self.settings.theme = theme,
             Action::SetLanguage(language) => self.settings.language = language,
+            Action::SetUserName(name) => {
+                self.settings.user_name = name;
+                name.apply();
+            }
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
             Action::OpenLowerPanel(open) => self.settings.lower_open = open,
             Action::ShowValuesAlone(alone) => self.settings.values_alone = alone,

@@ -31,7 +31,7 @@ pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
     AssetName, AssetNameError, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Logbook, LogbookError,
-    LogbookErrorKind, Origin, Outcome, WriteResult,
+    LogbookErrorKind, Origin, Outcome, UserName, WriteResult,
 };
 
 use crate::profile::Cause;

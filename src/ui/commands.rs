@@ -10,7 +10,7 @@ use super::device_view::DeviceView;
 use super::{Theme, Views};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, SessionId, Studio, Tab, Text, connect};
-use crate::store::Backup;
+use crate::store::{Backup, UserName};
 
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
@@ -129,6 +129,13 @@ fn program_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Comman
         Language::English => act("shell.language", Action::SetLanguage(Language::German)),
         Language::German => act("shell.language", Action::SetLanguage(Language::English)),
     });
+    for (name, word) in [
+        (UserName::Full, "shell.user_name"),
+        (UserName::Initials, "shell.user_initials"),
+        (UserName::Off, "shell.user_off"),
+    ] {
+        commands.push(act(word, Action::SetUserName(name)).enabled_if(name != settings.user_name));
+    }
     let (word, opens) = if settings.lower_open { ("status_line.close", false) } else { ("status_line.open", true) };
     commands.push(act(word, Action::OpenLowerPanel(opens)).with_shortcut(COMMAND, Key::T));
     commands.push(command("shell.help", CommandEffect::ToggleHelp).with_shortcut(Modifiers::NONE, HELP_KEY));

@@ -151,3 +151,24 @@ fn an_asset_is_assigned_and_selects_entries() {
         bench.run(&["save", "hiperface", "-o", "x.ron", "--asset", bad, "--link", "sim:"]).fails(2, &[words]);
     }
 }
+
+/// A plant's rules may forbid names in the logbook.
+#[test]
+fn the_settings_choose_how_the_user_is_named() {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
+    let user_with = |settings: &str| {
+        bench.write("config/encoder-studio/settings.ron", settings);
+        assert_eq!(bench.run(&["identify", "hiperface", "--link", "sim:"]).status, Some(0));
+        bench.run(&["log", "--json", "--limit", "1"]).json()["user"].clone()
+    };
+    let full = user_with("(theme: Dark)");
+    let initials = user_with("(user_name: Initials)");
+    assert_eq!(user_with("(user_name: Off)"), Value::Null);
+    // Other settings that this version cannot read do not matter.
+    assert_eq!(user_with("(theme: Pink, user_name: Off)"), Value::Null);
+    if let (Some(full), Some(initials)) = (full.as_str(), initials.as_str()) {
+        assert!(!initials.is_empty() && initials.chars().count() <= full.chars().count(), "{full} {initials}");
+        assert!(initials.chars().all(|c| c.is_uppercase() || c.is_numeric()), "{initials}");
+    }
+}

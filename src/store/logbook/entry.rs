@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use jiff::Timestamp;
 
+use super::user_name;
 use crate::profile::ChangedItem;
 
 /// The device to which an entry belongs.
@@ -150,7 +151,7 @@ impl Origin {
     pub fn of_this_process() -> Self {
         Origin {
             bench: whoami::hostname().unwrap_or_default(),
-            user: whoami::username().ok().filter(|name| !name.is_empty()),
+            user: user_name::of_this_process(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
     }

@@ -14,6 +14,7 @@ mod error;
 mod insert;
 mod query;
 mod schema;
+mod user_name;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -24,6 +25,7 @@ use rusqlite::{Connection, named_params};
 pub use asset::{AssetName, AssetNameError};
 pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, WriteResult};
 pub use error::{LogbookError, LogbookErrorKind};
+pub use user_name::UserName;
 
 use insert::Further;
 
