@@ -4,11 +4,13 @@ use egui::{RichText, Ui};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::controls::{card, empty_placeholder, enabled_button, labelled_button, paragraph};
+use super::controls::{
+    card, committed_entry, empty_placeholder, enabled_button, labelled_button, paragraph, show_error_below,
+};
 use super::{Theme, icons};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, DeviceCommand};
-use crate::store::{Entry, Outcome};
+use crate::app::{Action, AnyDevice, DeviceCommand, Text, explain};
+use crate::store::{AssetName, Entry, Outcome};
 
 const COMPARE: &str = icons::ARROWS_OUT_LINE_HORIZONTAL;
 
@@ -19,6 +21,8 @@ pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec
     }
     theme.add_gap(ui);
     backups_ui(ui, theme, device, actions);
+    theme.add_gap(ui);
+    asset_ui(ui, theme, device, actions);
     theme.add_gap(ui);
     writes_ui(ui, theme, device);
     if !device.logged_status_codes().is_empty() {
@@ -89,6 +93,23 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
     });
 }
 
+/// Draws the entry for the asset. The text that is being typed is kept with the entry.
+fn asset_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+    card(ui, theme, "asset_card.title", |ui| {
+        paragraph(ui, theme.label(theme.translate("asset_card.words")));
+        let id = egui::Id::unique(("asset_card.name", device.id()));
+        let mut draft = ui.data(|data| data.get_temp::<Option<(String, Option<Text>)>>(id)).flatten();
+        let (shown, label) = (device.asset().unwrap_or_default(), theme.translate("asset_card.name"));
+        committed_entry(ui, &mut draft, shown, 260.0, &label, |text| {
+            let name = text.parse::<AssetName>().map_err(explain::asset_name_error_text)?;
+            actions.push(device.command(DeviceCommand::Assign(name)));
+            Ok(())
+        });
+        show_error_below(ui, theme, draft.as_ref().and_then(|(_, problem)| problem.as_ref()));
+        ui.data_mut(|data| data.insert_temp(id, draft));
+    });
+}
+
 fn writes_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "writes_card.title", |ui| match device.logged_writes() {
         None => {
@@ -134,7 +155,7 @@ fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
     ui.horizontal(|ui| {
         ui.label(theme.monospace(time(write.at)));
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
-        let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", write.write_cycles());
+        let cycles = Text::new("writes_card.cycles").with("cycles", write.write_cycles());
         ui.label(theme.label(theme.format_text(&cycles)));
         ui.add(egui::Label::new(theme.monospace(&write.description)).truncate());
     });

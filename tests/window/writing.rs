@@ -52,6 +52,18 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
 }
 
 #[test]
+fn a_device_is_assigned_to_an_asset() {
+    let mut desk = Desk::new_form("");
+    assert_eq!(desk.encoder().session.asset, None);
+    desk.command(DeviceCommand::Assign("Achse 7".parse().unwrap()));
+    desk.until("the assignment is listed", |studio| {
+        studio.hiperface().unwrap().session.asset.as_deref() == Some("Achse 7")
+    });
+    let writes = desk.encoder().session.writes.clone().unwrap().unwrap();
+    assert_eq!(writes.len(), 0, "an assignment is not a write");
+}
+
+#[test]
 fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     let mut desk = Desk::new_form("");
     desk.put(0, RATED, &[0x23]);
@@ -273,6 +285,7 @@ fn late_results_for_another_encoder_are_dropped() {
         is_virtual: true,
     };
     let listed = Box::new(DeviceHistory {
+        asset: None,
         backups: Ok(Vec::new()),
         writes: Ok(Vec::new()),
         cycles: Some(0),

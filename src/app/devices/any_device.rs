@@ -85,6 +85,11 @@ impl AnyDevice {
         self.memory()?.logbook_key()
     }
 
+    /// Returns the asset to which this device is assigned in the logbook.
+    pub fn asset(&self) -> Option<&str> {
+        self.state().asset.as_deref()
+    }
+
     /// Returns the status codes of this device in the logbook, newest first.
     pub fn logged_status_codes(&self) -> &[Entry] {
         &self.state().statuses

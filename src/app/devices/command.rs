@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
+use crate::store::AssetName;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceCommand {
@@ -20,6 +21,8 @@ pub enum DeviceCommand {
     Undo,
     Redo,
     RevertAll,
+    /// Assign the device to an asset in the logbook.
+    Assign(AssetName),
     Restore(PathBuf),
     AskRestore,
     AskCompare,

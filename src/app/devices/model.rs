@@ -17,7 +17,7 @@ use crate::app::{
 };
 use crate::link::LinkUrl;
 use crate::profile::{Body, ProfileDocument, ProfileError};
-use crate::store::DeviceKey;
+use crate::store::{AssetName, DeviceKey};
 use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
@@ -93,6 +93,9 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
                 self.with_memory(services, |memory, services| memory.review_edits(services));
             }
             DeviceCommand::AskSave => self.ask_where_to_save(services),
+            DeviceCommand::Assign(asset) => {
+                self.with_memory(services, |memory, services| memory.assign_asset(asset, services));
+            }
             DeviceCommand::Restore(path) => {
                 self.with_memory(services, |memory, services| memory.read_backup(path, services));
             }
@@ -308,6 +311,9 @@ pub trait DeviceMemory {
     /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
 
+    /// Assigns the device to an asset in the logbook.
+    fn assign_asset(&mut self, asset: AssetName, services: &mut Services);
+
     /// Reads a backup that is to be restored.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
@@ -373,6 +379,12 @@ impl<T: HasProfile> DeviceMemory for T {
 
     fn is_savable(&self) -> bool {
         self.saves_last_reading() || self.session().is_savable()
+    }
+
+    fn assign_asset(&mut self, asset: AssetName, services: &mut Services) {
+        if let Some(key) = self.device_key().filter(|key| !key.serial_number.is_empty()) {
+            self.session().assign_asset(key, asset, services);
+        }
     }
 
     fn read_backup(&mut self, path: PathBuf, services: &mut Services) {

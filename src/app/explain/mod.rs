@@ -17,7 +17,7 @@ use super::action::OpenFailure;
 use super::{KindRegistry, Text};
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{ProfileDocument, ProfileError, SCHEMA};
-use crate::store::{FileError, FileErrorKind, LogbookError, StoreError};
+use crate::store::{AssetNameError, FileError, FileErrorKind, LogbookError, StoreError};
 use crate::units::Parity;
 use crate::worker::{NotStarted, OpenError};
 
@@ -152,6 +152,17 @@ pub fn logbook_error_text(why: &LogbookError) -> Text {
 /// Describes why the logbook cannot be read.
 pub fn logbook_unreadable(why: &LogbookError) -> Text {
     Text::new("backups.no_logbook").with_text("why", logbook_problem(why))
+}
+
+/// Describes why a name of an asset is refused.
+pub fn asset_name_error_text(why: AssetNameError) -> Text {
+    match why {
+        AssetNameError::Empty => Text::new("asset_card.empty"),
+        AssetNameError::TooLong { found, most } => {
+            Text::new("asset_card.too_long").with("found", found).with("most", most)
+        }
+        AssetNameError::ControlCharacter => Text::new("asset_card.control"),
+    }
 }
 
 pub fn parity_text(parity: Parity) -> Text {

@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 
+use jiff::Timestamp;
+
 use super::{FileSnapshot, ProfileFile, SaveRequest, SessionState, Source};
 use crate::app::action::TaskResult;
 use crate::app::documents::{new_document, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
 use crate::profile::{Body, ProfileDocument};
-use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
+use crate::store::{AssetName, Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
 
 impl SessionState {
     pub(crate) fn suggested_file(&self) -> PathBuf {
@@ -80,6 +82,20 @@ impl SessionState {
         });
     }
 
+    /// Starts a task that assigns a device to an asset, and lists what the logbook has then.
+    pub(in crate::app) fn assign_asset(&self, of: DeviceKey, asset: AssetName, services: &Services) {
+        let (store, id) = (services.world.store.clone(), self.id);
+        services.tasks.run("asset", move || {
+            let assigned = Logbook::open(&store.logbook_path())
+                .and_then(|mut logbook| logbook.assign(Timestamp::now(), &of, &asset));
+            let mut listed = Box::new(DeviceHistory::load(&of, &store));
+            if let Err(error) = assigned {
+                listed.writes = Err(error);
+            }
+            Action::Done(TaskResult::Listed(id, of, listed))
+        });
+    }
+
     pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
         let (session, formats) = (self.id, services.world.kinds.formats);
         services.tasks.run("backup", move || {
@@ -91,6 +107,7 @@ impl SessionState {
     pub(in crate::app) fn set_backups(&mut self, listed: DeviceHistory) {
         self.backups = Some(listed.backups.map_err(|error| explain::file_error_text(&error)));
         self.cycles = listed.cycles;
+        self.asset = listed.asset;
         self.statuses = listed.statuses;
         self.writes = Some(listed.writes.map_err(|error| explain::logbook_unreadable(&error)));
     }
@@ -102,6 +119,8 @@ pub struct DeviceHistory {
     pub writes: Result<Vec<Entry>, LogbookError>,
     /// Total number of write cycles, or `None` if the logbook does not contain it.
     pub cycles: Option<u64>,
+    /// Asset to which the device is assigned.
+    pub asset: Option<String>,
     /// Status codes that were read, with the newest first. An error of the logbook is reported in `writes`.
     pub statuses: Vec<Entry>,
 }
@@ -112,16 +131,17 @@ impl DeviceHistory {
 
     pub(in crate::app) fn load(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list_for(&key.kind, &key.serial_number);
-        let (writes, cycles, statuses) = match store.logbook_path() {
-            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0), Vec::new()),
+        let (writes, cycles, asset, statuses) = match store.logbook_path() {
+            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0), None, Vec::new()),
             path => match Logbook::open(&path) {
                 Ok(logbook) => {
                     let statuses = logbook.status_entries(key, Self::STATUSES).unwrap_or_default();
-                    (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok(), statuses)
+                    let asset = logbook.asset(key).unwrap_or_default();
+                    (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok(), asset, statuses)
                 }
-                Err(error) => (Err(error), None, Vec::new()),
+                Err(error) => (Err(error), None, None, Vec::new()),
             },
         };
-        DeviceHistory { backups, writes, cycles, statuses }
+        DeviceHistory { backups, writes, cycles, asset, statuses }
     }
 }

@@ -26,6 +26,8 @@ pub struct SessionState {
     pub writes: Option<Result<Vec<Entry>, Text>>,
     /// Write cycles recorded in the logbook, or `None` if there are none or they have not been read.
     pub cycles: Option<u64>,
+    /// Asset to which the device is assigned in the logbook.
+    pub asset: Option<String>,
     /// Status codes in the logbook, with the newest first.
     pub statuses: Vec<Entry>,
     /// Whether nothing has been read since the link was opened.
@@ -51,6 +53,7 @@ impl SessionState {
             backups: None,
             writes: None,
             cycles: None,
+            asset: None,
             statuses: Vec::new(),
             just_connected: false,
             live_due: false,
@@ -126,6 +129,7 @@ impl SessionState {
     /// Discards all data about the device, because another device has replied.
     pub(super) fn discard_device_data(&mut self) {
         (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
+        self.asset = None;
         self.statuses.clear();
     }
 
