@@ -75,8 +75,8 @@ impl Motor {
     }
 
     /// Evaluates the shaft's movement, in periods, from one static vector to another that is `electrical_turns` ahead.
-    /// The distance must be below ½, because the shaft may otherwise turn the other way. Returns `None` if the shaft
-    /// has not moved or the distance is zero.
+    /// The distance must be below ½, because the shaft may otherwise turn in the opposite direction. Returns `None` if
+    /// the shaft has not moved or the distance is zero.
     pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVectorResult> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
@@ -85,8 +85,8 @@ impl Motor {
         sensible.then_some(SecondVectorResult { pole_pairs: pole_pairs as u32, ratio })
     }
 
-    /// Converts periods to the position within one revolution. Whole revolutions are dropped first, because they would
-    /// cost digits of the fraction.
+    /// Converts periods to the position within one revolution. Whole revolutions are removed first, because they would
+    /// reduce the precision of the fraction.
     fn revolutions_from_periods(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)
     }

@@ -1,16 +1,16 @@
 //! Continuity of a capture's time stamps: missing samples, and times that go backwards. Quantities counted from sample
 //! to sample, such as the periods of a frequency, are counted within a continuous section only.
 //!
-//! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, and rounding can
-//! give even samples steps of two lengths. A difference of one digit is therefore not a gap.
+//! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, so rounding can
+//! turn equal steps into steps of two lengths. Steps that differ by one digit are therefore not gaps.
 
-/// Multiple of the usual time step above which a step is a gap.
+/// Factor by which a time step must exceed the usual step to be a gap.
 const GAP: f64 = 1.5;
-/// Approximate number of time steps from which the usual step is taken. The usual step is their median.
+/// Approximate number of time steps whose median is the usual step.
 const SAMPLED_STEPS: usize = 1 << 14;
-/// Relative deviation from the usual time step within which a step counts as equal.
+/// Relative tolerance within which a time step is equal to the usual step.
 const STEP_TOLERANCE: f64 = 0.01;
-/// Share of equal time steps below which differences are attributed to the limited digits of the times.
+/// Fraction of equal time steps. Below it, differences are attributed to the limited number of digits.
 const EVEN_STEP_SHARE: f64 = 0.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -58,12 +58,12 @@ pub enum SignalChannel {
 
 pub const MIN_POINTS: usize = 6;
 
-/// Fraction of the other channel's range below which a channel counts as dead. Noise may reach this range.
+/// A channel is dead if its range is below this fraction of the other channel's range. Noise may reach this range.
 const DEAD_CHANNEL_FRACTION: f64 = 0.05;
-/// Ratio of the variance across a line to that along it. Below this ratio, the points lie on the line.
+/// Points lie on a line if the ratio of the variance across it to that along it is below this value.
 const LINE_VARIANCE_RATIO: f64 = 1e-4;
-/// Ratio of the smallest to the largest eigenvalue of the normal equations. Below this ratio, there is no unique
-/// solution.
+/// Minimum ratio of the smallest to the largest eigenvalue of the normal equations. Below it, the solution is not
+/// unique.
 const MIN_EIGENVALUE_RATIO: f64 = 1e-13;
 /// Number of times the origin is moved to the centre of the previous ellipse.
 const CENTRING_PASSES: usize = 4;

@@ -255,7 +255,7 @@ mod tests {
     }
 
     proptest! {
-        /// Every sample is counted however the samples are split, and none is outside a square around them.
+        /// Every sample is counted regardless of how the samples are split, and none is outside a square around them.
         #[test]
         fn every_sample_is_counted(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =

@@ -23,7 +23,7 @@ pub struct MotionRates {
 }
 
 impl Motion {
-    /// Divisor of the window. Of positions closer together than the result, not all are kept, which limits memory at
+    /// Divisor of the window. Positions closer together than the resulting time are thinned out, which limits memory at
     /// any sample rate.
     const RESOLUTION: i64 = 1024;
 

@@ -1,8 +1,8 @@
-//! Differential and integral non-linearity against a reference. The deviation inside one signal period has its causes
-//! in offset, gain, phase and harmonics. The deviation over the revolution has its causes in eccentricity, coupling and
-//! scale. The mean over one period around each sample is the integral part, and the rest is the differential part. Both
-//! are given as ± values, which are half of the peak-to-peak range. See SICK 8010701, definitions of errors, and
-//! section 6 of the project's sine/cosine reference.
+//! Differential and integral non-linearity against a reference. The deviation inside one signal period is caused by
+//! offset, gain, phase and harmonics. The deviation over the revolution is caused by eccentricity, coupling and scale.
+//! The mean over one period around each sample is the integral part, and the rest is the differential part. Both are
+//! given as ± values, which are half of the peak-to-peak range. See SICK 8010701, definitions of errors, and section 6
+//! of the project's sine/cosine reference.
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearity {

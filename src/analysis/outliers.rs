@@ -21,12 +21,12 @@ pub struct Outliers {
     pub all: Option<(Ellipse, Coverage)>,
 }
 
-/// Number of robust deviations above which a sample is left out. Normally distributed noise exceeds it in one of 10¹⁵
-/// samples.
+/// A sample is left out if its distance exceeds this number of robust deviations. Normally distributed noise exceeds it
+/// in one of 10¹⁵ samples.
 pub const DEVIATIONS: f64 = 8.0;
-/// Fraction of the amplitude within which a sample is never an outlier, however low the noise is.
+/// Fraction of the amplitude within which a sample is never an outlier, regardless of how low the noise is.
 pub const MIN_SHARE: f64 = 0.02;
-/// Share of deviating samples above which the cause is the signal itself. The samples are then not outliers.
+/// Maximum fraction of outliers. If more samples deviate, the cause is the signal itself, and they are not outliers.
 pub const MAX_OUTLIER_SHARE: f64 = 0.05;
 /// Minimum number of samples required to recognise outliers.
 pub const MIN_SAMPLES: usize = 50;
@@ -37,14 +37,14 @@ const MEDIAN_SAMPLES: usize = 1 << 15;
 const MAX_FITS: usize = 4;
 /// Ratio of a normal distribution's standard deviation to the median of its distances from zero.
 const NORMAL_DEVIATION_RATIO: f64 = 1.4826;
-/// Median distance from an upright ellipse, as a fraction of its amplitude, above which the samples lie on no ellipse.
-/// A cloud of samples has 0.3.
+/// Maximum median distance from an upright ellipse, as a fraction of its amplitude. Above it, the samples lie on no
+/// ellipse. A cloud of samples has 0.3.
 const MAX_MEDIAN_DISTANCE: f64 = 0.15;
-/// Fraction of the other channel's range below which a channel counts as constant.
+/// A channel is constant if its range is below this fraction of the other channel's range.
 const DEAD_CHANNEL_FRACTION: f64 = 0.05;
 
 pub(super) enum OutlierResult {
-    /// No outliers were found, or too many samples deviate to count as outliers.
+    /// No outliers were found, or too many samples deviate to be outliers.
     Nothing,
     Outliers(Ellipse, Outliers),
 }
@@ -132,7 +132,8 @@ fn fit_excluding(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale:
 /// # Errors
 /// Returns the constant channel, or `None` if both channels are constant.
 fn ellipse_from_quantiles(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>> {
-    /// Share of samples beyond each quantile. A sine is outside cos(0.05·π) of its amplitude for a tenth of the time.
+    /// Fraction of samples beyond each quantile. A sine is outside cos(0.05·π) of its amplitude for a tenth of the
+    /// time.
     const QUANTILE_SHARE: f64 = 0.05;
     let reach = (QUANTILE_SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {

@@ -64,7 +64,7 @@ type Terms = SVector<f64, TERMS>;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
-    /// Times in seconds. If they do not increase, they are ignored, and the samples count as equidistant.
+    /// Times in seconds. If they do not increase, they are ignored, and the samples are treated as equidistant.
     pub time_s: &'a [f64],
     pub sine_v: &'a [f64],
     pub cosine_v: &'a [f64],
@@ -254,8 +254,8 @@ impl NormalEquations {
     }
 
     fn solve(self) -> Option<(Terms, f64)> {
-        /// Smallest significant eigenvalue, as a share of the largest one. Few samples per period cannot separate high
-        /// harmonics from low ones.
+        /// Smallest significant eigenvalue, as a fraction of the largest one. Few samples per period cannot separate
+        /// high harmonics from low ones.
         const MIN_EIGENVALUE_SHARE: f64 = 1e-4;
         let parts = self.normal.symmetric_eigen();
         let largest = parts.eigenvalues.max();

@@ -21,12 +21,12 @@ pub struct Limits {
     pub ok_v: (f64, f64),
     /// Minimum and maximum amplitudes in volts outside which the signal is faulty.
     pub fault_v: (f64, f64),
-    /// Largest offset as a share of the amplitude.
+    /// Largest offset as a fraction of the amplitude.
     pub offset: f64,
     /// Minimum and maximum gain ratio.
     pub gain_ratio: (f64, f64),
     pub phase_deg: f64,
-    /// Largest rms deviation from the ellipse as a share of the amplitude.
+    /// Largest rms deviation from the ellipse as a fraction of the amplitude.
     pub residual: f64,
     /// Minimum and maximum mean level of REFSIN and REFCOS in volts.
     pub level_v: (f64, f64),
@@ -53,8 +53,8 @@ impl Family {
         }
     }
 
-    /// Returns the supply voltage of the family's encoders. It is from the HIPERFACE description 8010701, or 4.5 to 5.5
-    /// V for AFS and AFM60 with sine and cosine.
+    /// Returns the supply voltage of the family's encoders. The source is the HIPERFACE description 8010701, except for
+    /// AFS and AFM60 encoders with sine and cosine (4.5 V to 5.5 V).
     pub const fn supply_voltage(self) -> SupplyVoltage {
         match self {
             Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
@@ -95,7 +95,7 @@ pub enum QualityFinding {
 const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Limits {
-    /// Limits for HIPERFACE: 0.9 … 1.1 V peak to peak, mean level 2.0 … 3.0 V.
+    /// Limits for HIPERFACE: 0.9 V to 1.1 V peak to peak, mean level 2.0 V to 3.0 V.
     pub const HIPERFACE: Limits = Limits {
         ok_v: (0.45, 0.55),
         fault_v: (0.30, 0.70),
@@ -106,20 +106,20 @@ impl Limits {
         level_v: (2.0, 3.0),
     };
 
-    /// Limits for AFS/AFM60: 0.8 … 1.2 V peak to peak, mean level 2.5 V ± 10 %.
+    /// Limits for AFS/AFM60: 0.8 V to 1.2 V peak to peak, mean level 2.5 V ± 10 %.
     pub const AFS_AFM60: Limits = Limits { ok_v: (0.40, 0.60), level_v: (2.25, 2.75), ..Limits::HIPERFACE };
 
-    /// Limits for TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
+    /// Limits for TTK70: 0.9 V to 1.1 V peak to peak, mean level 2.5 V ± 5 %.
     pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
-    /// Judges the length of a single amplitude vector. A single vector also contains offset and gain errors, so judge
-    /// the minimum and maximum over a period. Returns `None` without a signal.
+    /// Returns the verdict on the length of a single amplitude vector. Such a vector also contains offset and gain
+    /// errors, so use the minimum and maximum over a period. Returns `None` without a signal.
     pub fn vector_verdict(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude_verdict(length)) }
     }
 
-    /// Judges a peak amplitude in volts.
+    /// Returns the verdict on a peak amplitude in volts.
     pub fn amplitude_verdict(&self, volts: f64) -> Verdict {
         if is_within(volts, self.ok_v) {
             Verdict::Ok
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(Limits::TTK70.vector_verdict(0.0, 0.4), Some(Verdict::Warn));
     }
 
-    /// Section 1.
+    /// The levels match section 1 of the project's sine/cosine reference.
     #[test]
     fn families_have_their_levels() {
         let levels = Family::ALL.map(|family| (family.name(), family.limits().level_v));

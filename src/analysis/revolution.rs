@@ -36,7 +36,7 @@ const MAX_PERIOD_DEVIATION: f64 = 0.02;
 
 impl Revolution {
     /// Compares sine and cosine in volts with the reference angle in mechanical degrees. The reference may be wrapped
-    /// or not, and turn in either direction. Samples in `left_out` are ignored, and so are samples taken while the
+    /// or not, and turn in either direction. Samples in `left_out` are ignored, as are samples taken while the
     /// reference is at rest.
     ///
     /// # Errors

@@ -14,8 +14,8 @@ pub const MIN_OCTANTS: u32 = 6;
 /// one point has 0.4 or more, while a residual of 0.02 is already a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
-/// Median angle between samples, in degrees, above which the direction is uncertain. With fewer than four samples per
-/// period, noise or an uneven motion easily makes it half a period (U).
+/// Maximum median angle between samples in degrees. Above it, the direction is uncertain: with fewer than four samples
+/// per period, noise or an uneven motion can easily increase it to half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub enum AnalysisError {
     /// The samples are too far from the ellipse to be a sine and a cosine.
     #[error("the samples are {share:.2} of the amplitude off the ellipse")]
     NoSignal {
-        /// Rms distance from the ellipse as a share of the amplitude.
+        /// Rms distance from the ellipse as a fraction of the amplitude.
         share: f64,
     },
 }
@@ -121,9 +121,10 @@ impl Analysis {
 
 /// Returns whether the samples scatter only slightly around a point other than zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
-    /// Rms scatter of one channel, relative to the distance of the point from zero. The value is 6° of a signal (U).
+    /// Maximum RMS scatter of one channel at rest, relative to the distance of the point from zero. The value
+    /// corresponds to 6° of a signal (U).
     const SCATTER: f64 = 0.1;
-    /// Distance from zero in volts below which there may be no signal (U).
+    /// Minimum distance from zero in volts. Below it, there may be no signal (U).
     const MIN_V: f64 = 0.1;
     let of = |values: &[f64]| {
         let count = values.len().max(1) as f64;

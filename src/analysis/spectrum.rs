@@ -73,8 +73,8 @@ impl Spectrum {
         &self.amplitudes_v
     }
 
-    /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines of a peak
-    /// found before are skipped, and so are those around 0 Hz, which belong to the mean.
+    /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines that
+    /// belong to a higher peak are skipped, as are those around 0 Hz, which belong to the mean.
     pub fn highest_peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())

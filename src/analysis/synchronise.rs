@@ -19,7 +19,7 @@ pub struct Synchroniser {
     pub periods: u64,
     /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period. It is 0 if unknown.
     pub offset_steps: f64,
-    /// Whether the absolute position refers to the middle of its step. It refers to the beginning otherwise.
+    /// Whether the absolute position refers to the middle of its step instead of the beginning.
     pub half_step: bool,
 }
 

@@ -3,9 +3,9 @@
 
 use crate::units::Moment;
 
-/// Point in time in whole nanoseconds from the origin that the samples of one history share. The origin is the start of
-/// a session's clock or the trigger of a capture, for example. Earlier times are negative. Covers 292 years in both
-/// directions.
+/// Point in time in whole nanoseconds from an origin, which all samples of a history share. The origin is, for example,
+/// the start of a session's clock or the trigger of a capture. Earlier times are negative. The range is 292 years in
+/// both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct SampleTime(i64);

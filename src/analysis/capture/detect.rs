@@ -212,7 +212,8 @@ fn decimal_comma(lines: &[HeaderLine]) -> bool {
 }
 
 /// Returns whether a line is a data row. In a data row all fields are numbers, or at least half of them if the row has
-/// the usual width. A malformed number in the first row is thus reported as an error and not taken for a header.
+/// the usual width. A malformed number in the first row is thus reported as an error instead of being mistaken for a
+/// header.
 fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (count_numbers(line, decimal_comma), count_filled_fields(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)

@@ -1,4 +1,4 @@
-//! Conversion of a table to UTF-8, piece by piece. UTF-16 is what Windows programs export as "Unicode text".
+//! Conversion of a table to UTF-8, piece by piece. Windows programs export UTF-16 as "Unicode text".
 
 use std::borrow::Cow;
 

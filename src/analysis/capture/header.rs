@@ -1,4 +1,4 @@
-//! Names and units of a table's columns. They tell which columns hold time, sine and cosine. Names follow SICK 8010701:
+//! Names and units of a table's columns. They show which columns hold time, sine and cosine. Names follow SICK 8010701:
 //! SIN, REFSIN, COS, REFCOS.
 
 /// Column numbers of a table, counted from 1.

@@ -1,5 +1,5 @@
 //! Comparison of two captures of one signal, for example with the drive off and on. The result lists what became worse,
-//! what only changed, and what cannot be compared. Both captures must be judged by the same limits.
+//! what only changed, and what cannot be compared. Both captures must be diagnosed with the same limits.
 
 use std::mem::discriminant;
 
@@ -24,13 +24,13 @@ pub enum ComparisonObstacle {
     NoSpectrum,
 }
 
-/// Factor above which a disturbance counts as increased.
+/// A disturbance has increased if it has grown by at least this factor.
 const DISTURBANCE_INCREASE: f64 = 1.5;
-/// Factor above which an ellipse parameter counts as further outside its limits.
+/// An ellipse parameter is further outside its limits if it has grown by at least this factor.
 const LIMIT_EXCESS_INCREASE: f64 = 1.1;
 /// Minimum noise increase that is reported, as a fraction of the amplitude.
 const MIN_NOISE: f64 = 0.001;
-/// Relative difference from which an amplitude counts as changed.
+/// Minimum relative difference of an amplitude that is reported as a change.
 const AMPLITUDE: f64 = 0.02;
 
 pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {

@@ -51,7 +51,7 @@ pub enum FindingKind {
         /// Combined peak of all mains lines, in volts.
         volts: f64,
         share: f64,
-        /// Whether the hum is in phase and about equally strong in both channels. It is if the screen or the ground
+        /// Whether the hum is in phase and about equally strong in both channels, as when the screen or the ground
         /// couples it in.
         common: bool,
     },
@@ -118,7 +118,7 @@ pub enum FindingKind {
     },
     /// Hum, interference or harmonics make offset, gain and phase uncertain.
     Uncertain {
-        /// Combined share of the disturbances.
+        /// Combined magnitude of the disturbances, as a fraction of the amplitude.
         share: f64,
     },
     CorrectionHarms {

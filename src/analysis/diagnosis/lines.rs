@@ -32,17 +32,17 @@ const MIN_PERIODS: f64 = 8.0;
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const HARMONIC_HALF_WIDTH: usize = 3;
-/// Fraction of the peak down to which lines count towards the width of the signal's line.
+/// Lines above this fraction of the peak belong to the signal's line.
 const WIDTH: f64 = 0.01;
 /// Number of lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
-/// Factor above the median of the neighbouring lines from which a line does not count as noise.
+/// Minimum ratio of a line to the median of its neighbours. Below it, the line is noise.
 const LINE_TO_NOISE_RATIO: f64 = 6.0;
 /// Maximum number of lines reported.
 const MAX_LINES: usize = 8;
-/// Permitted share of an interference line along the radius, which is the direction of the signal vector.
+/// Permitted radial fraction of an interference line. The radius is the direction of the signal vector.
 const RADIAL_SHARE: Range<f64> = 0.25..0.75;
-/// Phase difference in radians up to which both channels count as in phase.
+/// Maximum phase difference between channels that are in phase, in radians.
 const IN_PHASE_RAD: f64 = TAU / 12.0;
 
 /// Spectral line that is not a harmonic of the signal.

@@ -21,22 +21,22 @@ use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, is_within};
 use super::signal_analysis::{Analysis, AnalysisError};
 use super::wiring::Wire;
 
-/// Fraction of the amplitude below which hum and interference are not reported.
+/// Hum and interference below this fraction of the amplitude are not reported.
 pub const MIN_LINE: f64 = 0.002;
-/// Fraction of the amplitude from which a disturbance is a warning and not a notice. It corresponds to an error of 0.6
-/// electrical degrees.
+/// A disturbance of at least this fraction of the amplitude is a warning instead of a notice. It corresponds to an
+/// error of 0.6 electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
 /// Range of the ratio of both amplitudes in which the weaker channel has lost one of its two wires.
 const HALF_AMPLITUDE_RATIO: (f64, f64) = (0.4, 0.6);
-/// Voltage difference up to which both wires of a pair count as equal.
+/// Maximum voltage difference between two wires at the same level.
 const SAME_LEVEL_V: f64 = 0.1;
-/// Levels in volts below and above which a wire counts as shorted to ground or to a supply.
+/// Levels in volts below and above which a wire is shorted to ground or to a supply.
 const RAILS_V: (f64, f64) = (0.5, 4.5);
-/// Fraction of samples excluded from the fit from which spikes are a warning.
+/// Spikes are a warning if more than this fraction of the samples is excluded from the fit.
 const MANY_SPIKES: f64 = 1e-3;
-/// Number of consecutive outliers from which the cause is an intermittent contact and not a spike.
+/// Minimum number of consecutive outliers that indicate an intermittent contact. Fewer outliers are a spike.
 const INTERMITTENT_SAMPLES: usize = 16;
-/// Amplitude modulation over a revolution from which it is reported, and from which it is a warning.
+/// Thresholds of the amplitude modulation over a revolution: for a report, and for a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// Fraction of the residual's mean square that other findings must explain.
@@ -110,7 +110,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
 }
 
 impl Diagnosis {
-    /// Returns the diagnosis under other limits. The samples are not needed: findings that depend on limits are judged
+    /// Returns the diagnosis under other limits. The samples are not needed: findings that depend on limits are derived
     /// again from the analysis and from the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
     pub fn with_new_limits(

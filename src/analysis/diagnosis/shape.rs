@@ -19,10 +19,10 @@ const OF_REVOLUTION: usize = 36;
 /// Number of samples per period that suffices to follow the angle.
 const SAMPLES_PER_PERIOD: f64 = 16.0;
 
-/// Distance from the end of the range within which a sample counts as at the end, as a fraction of the amplitude.
+/// Maximum distance of a sample from the end of the range to be at that end, as a fraction of the amplitude.
 const END_DISTANCE: f64 = 0.002;
-/// Fraction of samples at the end of the range from which a channel counts as clipped. An unclipped sine has a third of
-/// it: √(2·0.002)/π = 2 %.
+/// A channel is clipped if at least this fraction of its samples is at the end of the range. An unclipped sine has a
+/// third of it: √(2·0.002)/π = 2 %.
 const CLIPPED_FRACTION: f64 = 3.0 * 0.0201;
 /// Minimum number of periods. All samples of a shaft at rest are at one level, which looks like clipping.
 const MIN_PERIODS: f64 = 2.0;

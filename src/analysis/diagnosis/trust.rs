@@ -6,7 +6,7 @@ use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::ErrorBasis;
 use crate::analysis::signal_analysis::Analysis;
 
-/// Range of the mean level, in volts, that identifies a single wire. A single wire has 2.0 … 3.0 V and 0.5 Vpp. The
+/// Range of the mean level, in volts, that identifies a single wire. A single wire has 2.0 V to 3.0 V and 0.5 Vpp. The
 /// range has a margin for signals outside their limits. See section 1 of the project's sine/cosine reference.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
@@ -29,8 +29,8 @@ pub(super) fn check_times(analysis: &Analysis, say: &mut dyn FnMut(Severity, Fin
     }
 }
 
-/// Checks for an ellipse that mistakes harmonics for gain or phase errors, which doubles them. Only the error from a
-/// motion reveals this, because the distance from the ellipse contains noise.
+/// Checks whether the ellipse mistakes harmonics for gain or phase errors. Such a correction doubles the harmonics.
+/// Only an error measured from the motion reveals this, because the distance from the ellipse contains noise.
 pub(super) fn check_correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ErrorBasis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_peak_to_peak_deg(), analysis.error.corrected_pp_deg);
@@ -39,7 +39,8 @@ pub(super) fn check_correction(analysis: &Analysis, say: &mut dyn FnMut(Severity
     }
 }
 
-/// Returns the uncertainty of the ellipse. It is approximately the combined share of the disturbances found.
+/// Returns the uncertainty of the ellipse. This is approximately the combined magnitude of the disturbances found, as a
+/// fraction of the amplitude.
 pub(super) fn uncertainty_finding(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     let share = |finding: &DiagnosisFinding| match finding.kind {
         FindingKind::Hum { share, .. }

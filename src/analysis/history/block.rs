@@ -95,7 +95,7 @@ pub(super) struct SampleBlock<T> {
     /// Bucket for the whole block, valid once the block is full.
     top: Bucket,
     /// Base of the buckets, or `None` until a bucket contains a value. The base is the median of the first few values,
-    /// because a single outlier would otherwise make all other distances coarse.
+    /// because all other distances would be coarse if the base were a single outlier.
     base: Option<T>,
     flags: FlagBlock,
     /// Spread of the whole block, present if the block is full and contains a value.
@@ -308,8 +308,8 @@ impl<T: Number> SampleBlock<T> {
         extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.to_f64_floor(), max: max.to_f64_ceil() })
     }
 
-    /// Returns the length of a run of samples without a value that begins at `at` and ends by `end`. The run is
-    /// measured by one check and may be longer.
+    /// Returns the length of a run of samples without a value that begins at `at` and ends by `end`. Only one check is
+    /// made, so the run may be longer.
     fn gap_length(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
@@ -319,7 +319,7 @@ impl<T: Number> SampleBlock<T> {
     }
 
     /// Returns the length of a run of samples without a value that ends before `end` and begins at or after `start`.
-    /// The run is measured by one check and may be longer.
+    /// Only one check is made, so the run may be longer.
     fn previous_gap(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;

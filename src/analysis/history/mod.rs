@@ -38,9 +38,9 @@ const PYRAMID_FACTOR: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// `f64`.
+    /// 64-bit floating-point numbers.
     Real,
-    /// `i64` without any rounding.
+    /// 64-bit integers, stored without rounding.
     Whole,
 }
 
@@ -57,7 +57,7 @@ enum Values<'a> {
 }
 
 impl<'a> ColumnPart<'a> {
-    /// Creates values for a [`Kind::Real`] column. An infinite or NaN value is kept and counts as [bad](Flags::BAD).
+    /// Creates values for a [`Kind::Real`] column. An infinite or NaN value is kept and marked as [bad](Flags::BAD).
     pub fn from_reals(values: &'a [f64]) -> Self {
         ColumnPart { values: Values::Real(values), flags: &[] }
     }

@@ -108,12 +108,12 @@ pub struct HistoryPicture {
     pub raw: bool,
 }
 
-/// Number of samples per pixel column up to which samples are included unchanged. They cost no more to draw than first,
-/// min, max and last.
+/// Maximum number of samples per pixel column that are included unchanged. Drawing them takes no longer than drawing
+/// first, min, max and last.
 const UNREDUCED_SAMPLES: u64 = 4;
 
-/// Divisor of a pixel column's width. The result is the distance by which the column may begin before its edge, in
-/// order to start at a pyramid bucket.
+/// Divisor of a pixel column's width. A column may begin earlier than its edge by the resulting time, to start at a
+/// pyramid bucket.
 const EDGE_SHIFT_DIVISOR: i64 = 16;
 /// Bucket sizes in samples, largest first.
 const BUCKETS: [u64; 3] = [

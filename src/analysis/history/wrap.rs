@@ -3,8 +3,8 @@
 use super::picture::{HistoryPicture, Pixel, ReducedSamples};
 
 impl HistoryPicture {
-    /// Maps counts into the range from 0 to `range`, at which they begin again with 0. No line crosses the picture there:
-    /// a pixel column in which the counts pass the end of the range once has two parts, one at each end.
+    /// Maps counts to the range from 0 to below `range`, where they start again from 0. The line is interrupted there:
+    /// a pixel column in which the counts cross the end of the range once has two parts, one at each end.
     pub fn wrap(&mut self, range: i64) {
         let range = range.max(1) as f64;
         let mut wrapped = Vec::with_capacity(self.pixels.len());
@@ -101,8 +101,8 @@ mod tests {
         assert_eq!(shown, expected);
     }
 
-    /// A shaft that passes the range once in 2000 samples, 100 samples a column: each column spans 50 counts, and no
-    /// bar reaches from one end of the range to the other.
+    /// With one cycle of the range in 2000 samples and 100 samples per column, each column spans 50 counts, and no bar
+    /// reaches from one end of the range to the other.
     #[test]
     fn no_column_crosses_the_picture_at_the_end_of_the_range() {
         let counts: Vec<i64> = (0..10_000).map(|at| 25 + at / 2).collect();
