@@ -40,7 +40,7 @@ pub enum Action {
     CloseSession(SessionId),
     Stop,
     StopMotion,
-    /// End all held motions, because the window has lost the keyboard or a dialog covers it.
+    /// End all held motions, because the window has lost the keyboard focus or a dialog covers it.
     LetGo,
     /// Handle the Escape key: stop the running job, or else close the dialog.
     Escape,
@@ -75,7 +75,7 @@ pub enum Action {
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording. The user is asked first if it is long.
     AskForget(RecorderOwner),
-    /// Ask for the file name of a table with a recording.
+    /// Ask for the name of the file to which a recording is exported as a table.
     AskTable {
         owner: RecorderOwner,
         /// Whether the table contains only the visible part of the recording.
@@ -87,8 +87,8 @@ pub enum Action {
     /// Report that a picture was requested of a plot that is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
-    /// Execute a command that every kind of device supports, for the given session. Another session may be shown by
-    /// then.
+    /// Execute a command that every kind of device supports, for the given session, which may no longer be the one
+    /// shown.
     Command(SessionId, DeviceCommand),
     /// Execute an action of one kind of device. See [`Action::device`].
     Device(SessionId, Payload),
@@ -182,7 +182,7 @@ pub enum TaskResult {
 
 pub struct ConnectAttempt {
     pub session: SessionId,
-    /// Number of the attempt. Only the latest attempt of a session counts.
+    /// Number of the attempt. Results of earlier attempts of a session are ignored.
     pub attempt: u32,
     pub(super) result: Result<Box<dyn OpenedSession>, Box<OpenFailure>>,
 }

@@ -34,7 +34,7 @@ type SessionStopHandles = (Box<dyn DriveStopHandle>, WorkerStopHandle);
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<SessionStopHandles>>,
-    /// Whether the drives have been released. No motion is allowed after that.
+    /// Whether the drives have been released. No motion can be started after that.
     released: AtomicBool,
     closing: AtomicBool,
 }

@@ -24,7 +24,7 @@ impl Studio {
     }
 
     /// Returns whether the window may close now. Either no drive is under control, nothing is running, and all data are
-    /// on disk, or the grace period has expired. Sessions that have been released count as well.
+    /// on disk, or the grace period has expired. This includes sessions that have been released.
     pub fn can_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());

@@ -17,7 +17,7 @@ pub struct ProfileConflict {
     theirs: Result<Box<ProfileDocument>, ReadError>,
     text: String,
     rows: Vec<Row>,
-    /// The reason why the last choice was impossible.
+    /// The reason why the last choice could not be carried out.
     problem: Option<Text>,
 }
 
@@ -40,7 +40,7 @@ pub enum ConflictResolution {
     Reload,
     KeepMine,
     Take(usize, Side),
-    /// Write each entry as in the version chosen for it.
+    /// Write each entry as in its chosen version.
     Merge,
     /// Close the dialog without writing anything. The edits are kept.
     Close,
@@ -108,8 +108,8 @@ impl ProfileConflict {
         self.theirs.is_ok()
     }
 
-    /// Returns whether the file can be overwritten. A file of a newer program version cannot, because its unknown
-    /// content would be lost.
+    /// Returns whether the file can be overwritten. This is not possible for a file of a newer program version, because
+    /// its unknown content would be lost.
     pub fn can_overwrite_file(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }

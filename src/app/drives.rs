@@ -1,5 +1,5 @@
-//! Data about drives that the settings store, because the drives do not: spindle pitch, position unit, limits that are
-//! not confirmed since the scaling changed, and values that are not saved.
+//! Data about drives that the program stores because the drives do not: spindle pitch, position unit, limits that have
+//! not been confirmed since the scaling changed, and values that are not saved.
 //!
 //! A drive may also be open in another session or window. Entries in one of them do not change the others. However,
 //! limits marked as unconfirmed in one of them lock all of them, and must be confirmed in each.
@@ -57,7 +57,7 @@ pub(crate) struct PartialDriveEntry {
     marks: BTreeMap<u8, u64>,
 }
 
-/// Whether the settings were read after control was taken. Another window may have marked limits in the settings.
+/// Whether the settings have been read since control was taken. Another window may have marked limits in the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SettingsReadState {
     Unread,
@@ -65,12 +65,12 @@ pub enum SettingsReadState {
     Read,
 }
 
-/// A device with drives, about which the settings store data.
+/// A device with drives for which the settings contain data.
 pub trait StoredDriveData {
     /// Returns the name of the entry in the settings, or `None` before the device has been read.
     fn storage_name(&self) -> Option<String>;
 
-    /// Adopts the stored data of the drives. Returns the data to store next, if they differ.
+    /// Adopts the stored data about the drives. Returns the data to store next, if they differ.
     ///
     /// All data are adopted once per device. After that, only limits marked elsewhere are adopted.
     fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
@@ -78,10 +78,10 @@ pub trait StoredDriveData {
     /// Locks the drives whose limits were marked elsewhere. The settings need not contain the mark yet.
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
-    /// Returns whether the settings were read after control was taken.
+    /// Returns whether the settings have been read since control was taken.
     fn read_state(&self) -> SettingsReadState;
 
-    /// Sets whether the settings were read after control was taken. Nothing moves before this.
+    /// Records whether the settings have been read since control was taken. Nothing moves until they have.
     fn set_read_state(&mut self, marks: SettingsReadState);
 }
 
@@ -120,8 +120,8 @@ impl RememberedDrives {
 
     /// Returns the drives whose limits were marked since `before`.
     ///
-    /// A mark with the same number may already be confirmed here, but not yet on disk. Programs that do not count marks
-    /// leave out the numbers.
+    /// A mark with the same number may already be confirmed here, but not yet on disk. Settings from programs that do
+    /// not count marks contain no numbers.
     pub(crate) fn newly_marked_drives(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.control_count(*drive);

@@ -11,7 +11,7 @@ pub trait EditBase: Default {
     type Location: Ord + Copy;
     type Value: Copy + PartialEq;
 
-    /// Returns whether a value is an edit. It is if it differs from the value that was read.
+    /// Returns whether a value differs from the value that was read, and is therefore an edit.
     fn is_edit(&self, at: Self::Location, value: Self::Value) -> bool;
 }
 
@@ -57,14 +57,14 @@ impl<B: EditBase> Edits<B> {
         self.history.apply_step(&mut self.edits, after);
     }
 
-    /// Reverts the edits for which `is_meant` is true, as one undo step. Returns `false` if there are none.
+    /// Reverts the edits for which `is_meant` returns true, as one undo step. Returns `false` if there are none.
     pub fn revert_matching(&mut self, is_meant: impl Fn(B::Location) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.apply_step(&mut self.edits, after)
     }
 
-    /// Adopts values that were read again. Edits are kept unless the device now contains their values.
+    /// Adopts values that were read again. An edit is removed if the device now contains the same value.
     pub fn update_base(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.remove_redundant();

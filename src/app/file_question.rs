@@ -48,8 +48,8 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
-    /// Creates the question for a file to write, with a suggested name. The content of the file may depend on the
-    /// language of the window.
+    /// Creates the question for a file to write, with a suggested name. The content of the file may be in the language
+    /// of the window.
     pub fn write_question<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),

@@ -1,4 +1,4 @@
-//! Undo and redo for any state. The owner holds the present state.
+//! Undo and redo for any state. The present state is stored by the owner.
 
 /// The states before the last steps, and the undone states.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,8 +66,8 @@ impl<T: PartialEq> History<T> {
         true
     }
 
-    /// Applies `follow` to the present state and all earlier ones, because the data below them have changed. Steps that
-    /// no longer change anything are removed.
+    /// Applies `follow` to the present state and all earlier ones, because the data on which they are based have
+    /// changed. Steps that no longer change anything are removed.
     pub(crate) fn update_all_states(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);

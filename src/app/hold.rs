@@ -13,8 +13,8 @@
 //! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
 //! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
 //!
-//! After its end it starts again only by another press; by a key only if that press is [fresh](KeyStates), which none
-//! is immediately after another key.
+//! After its end, a hold starts again only with another press. The press of a key must be [fresh](KeyStates). A press
+//! immediately after another key is never fresh.
 
 use super::press::{KeyStates, PressKey};
 
@@ -24,8 +24,8 @@ pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether something moves or was stopped just now that this button does not hold. A key press then stops the
-    /// motion.
+    /// Whether a motion that this button does not hold is in progress or was stopped just now. A key press then stops
+    /// it.
     pub moving: bool,
 }
 
@@ -61,7 +61,7 @@ pub enum HoldEvent {
     Press,
     Hold,
     Release,
-    /// A key was pressed during a motion that this button does not hold. Everything must stop.
+    /// A key was pressed during a motion that this button does not hold. All motion must stop.
     Stop,
 }
 

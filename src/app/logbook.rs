@@ -16,7 +16,7 @@ pub const LOGBOOK_TAB: Tab = Tab::named("Logbook");
 /// Maximum number of characters of a note.
 pub const MAX_NOTE: usize = 1_000;
 
-/// State of the page.
+/// State of the logbook page.
 #[derive(Debug, Default)]
 pub struct LogbookPage {
     filter: EntryFilter,
@@ -48,8 +48,8 @@ impl LogbookPage {
         &self.filter
     }
 
-    /// Returns the entries that were last found, or the reason why the logbook cannot be read. Returns `None` before
-    /// the first search has ended.
+    /// Returns the result of the last search: the entries, or the reason why the logbook cannot be read. Returns `None`
+    /// before the first search has ended.
     pub fn matches(&self) -> Option<&Result<LogbookMatches, Text>> {
         self.matches.as_ref()
     }

@@ -22,7 +22,7 @@ impl Studio {
         self.motion_controls().any(MotionControl::is_moving)
     }
 
-    /// Returns whether a motion requested in this window is running. Escape stops it before anything else.
+    /// Returns whether a motion requested in this window is running. Escape stops this motion first.
     pub fn is_turned_by_hand(&self) -> bool {
         self.motion_controls().any(MotionControl::is_turned_by_hand)
     }
@@ -37,8 +37,8 @@ impl Studio {
         self.motion_controls().any(MotionControl::has_control)
     }
 
-    /// Returns whether STOP has an effect on drives. This window must control some, or have requested a motion that has
-    /// not ended. STOP cannot stop the motion of another controller.
+    /// Returns whether STOP has an effect on drives. This is so if this window controls a drive, or has requested a
+    /// motion that has not ended. STOP cannot stop the motion of another controller.
     pub fn can_stop_motion(&self) -> bool {
         self.has_control() || self.is_turned_by_hand()
     }
@@ -47,7 +47,8 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Ends all held motions and runs without an end, because the window has lost the keyboard or a dialog covers it.
+    /// Ends all held motions and runs without an end, because the window has lost the keyboard focus or a dialog covers
+    /// it.
     pub(super) fn release_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::release_motion);
     }

@@ -17,8 +17,8 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns how much longer a notice is displayed that has been shown for `shown`. Returns `None` if it stays until
-    /// the user closes it.
+    /// Returns the remaining display time of a notice that has been displayed for `shown`. Returns `None` if it is
+    /// displayed until the user closes it.
     pub fn display_time(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
@@ -47,7 +47,7 @@ impl Notice {
     }
 }
 
-/// The log of notices, with the newest last. The oldest ones are removed.
+/// The log of notices, newest last. The oldest ones are removed.
 #[derive(Debug, Default)]
 pub struct NoticeLog {
     notices: VecDeque<Notice>,
@@ -89,7 +89,7 @@ impl NoticeLog {
         self.standing.as_ref()
     }
 
-    /// Removes a notice about a session from the window, because it is no longer true.
+    /// Removes a notice about a session from the window, because it is no longer valid.
     pub(crate) fn remove_from_window(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);

@@ -3,7 +3,7 @@
 
 use super::Text;
 
-/// Maximum number of signal periods per revolution that can be entered. Encoders do not have more.
+/// Maximum number of signal periods per revolution that can be entered. No encoder has more.
 pub(crate) const MAX_PERIODS: u32 = 65_536;
 
 /// Parses a decimal number with an optional exponent. Returns `None` if the text is invalid.

@@ -1,4 +1,4 @@
-//! Opening of links. A link is opened on a thread after the present user of the connection has released it. If a
+//! Opening of links. A link is opened on a thread as soon as the previous user of the connection has released it. If a
 //! session already uses the connection, the link is opened in that session.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -24,7 +24,7 @@ const FRAME_BYTES: usize = 8 << 20;
 impl Studio {
     /// Returns the tab of the device to which a link refers.
     ///
-    /// If several kinds of devices are possible, the kind last used with the link is chosen, or else the open tab.
+    /// If several kinds of devices are possible, this is a tab in which the link has been used, or else the open tab.
     /// Without a link, the open tab is returned.
     pub(super) fn tab_for_link(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
@@ -131,8 +131,8 @@ impl Studio {
         self.open_session_link(id, url);
     }
 
-    /// Opens a link for a session. If a drive may be on the line, the user is asked first. Listening is not sufficient,
-    /// because a drive may have read the encoder at power-up and be silent since then.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked first. Listening on the line is not
+    /// sufficient, because a drive may read the encoder at power-up only and then be silent.
     fn open_session_link(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };

@@ -1,5 +1,5 @@
-//! Actions of a kind of device on their way through code that is independent of their type. Only [`Payload::open`] can
-//! find an action of another kind.
+//! Actions of a kind of device, passed through code that does not know their type. Only [`Payload::open`] can detect an
+//! action of another kind.
 
 use std::any::Any;
 use std::fmt;

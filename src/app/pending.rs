@@ -25,7 +25,7 @@ pub trait PendingEdits {
     fn clear_undo_steps(&mut self);
 }
 
-/// Edits that are stored as a complete copy of the values, with their undo steps.
+/// Edits stored as a complete copy of the values, with their undo steps.
 pub(crate) trait SnapshotEdits {
     type Values: Clone + PartialEq;
 

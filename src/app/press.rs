@@ -1,12 +1,12 @@
-//! Detection of fresh key presses. A press is fresh if the user has made it, rather than a held key that repeats
-//! itself.
+//! Detection of fresh key presses. A press is fresh if the user has just made it. Repetitions of a held key are not
+//! fresh.
 //!
-//! A press alone does not prove anything. Toolkits forget which keys are down when the window loses the keyboard focus.
-//! The next repetition of a held key then looks like a first press, and the release reported at that moment is
-//! artificial.
+//! A press alone does not prove that it is fresh. Toolkits forget which keys are down when the window loses the
+//! keyboard focus. The next repetition of a held key then looks like a first press, and the release reported at that
+//! moment is artificial.
 //!
-//! A release is a proof if the window has the focus when it arrives, and a later frame still sees the key up. A release
-//! and a press made at the same time may arrive in two frames, however far apart.
+//! A release proves that the next press is fresh if the window has the focus when it arrives, and a later frame still
+//! sees the key up. A release and a press made at the same time may arrive in two frames, however far apart.
 //!
 //! This module has no access to the system: inputs are arguments in order, with the time of their frame in seconds.
 
@@ -18,7 +18,7 @@ pub enum PressKey {
 }
 
 /// Minimum time in seconds between the release of a key and a fresh press. Some remote desktops and displays repeat a
-/// key by a release and an immediate press.
+/// key as a release and an immediate press.
 const MIN_RELEASE_S: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,8 +27,8 @@ enum KeyState {
     #[default]
     Nothing,
     Down,
-    /// The key was released or another key was pressed, in the frame at this time. The key has not been up long enough
-    /// since then.
+    /// At this time, the key was released or another key was pressed. The key has not been up for long enough since
+    /// then.
     Released(f64),
     Up,
 }
@@ -80,8 +80,8 @@ impl KeyStates {
         }
     }
 
-    /// Ends a frame. Returns the time in seconds after which another frame is needed, if the state of a key depends on
-    /// it. A release alone causes no further frame.
+    /// Ends a frame. Returns the time in seconds after which another frame is needed to determine the state of a key. A
+    /// release alone causes no further frame.
     #[must_use]
     pub fn finish_ui_frame(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
@@ -158,8 +158,8 @@ mod tests {
         assert!(!keys.is_fresh_press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// Issue 21.2: a release followed immediately by a press counts as a repetition, in one frame or in two, however
-    /// far apart the frames are.
+    /// Issue 21.2: a release followed immediately by a press is a repetition, in one frame or in two, regardless of the
+    /// time between the frames.
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
@@ -179,7 +179,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.2: a user's press counts even if nothing else happened after the release, because a frame was
+    /// Issue 21.2: a user's press is fresh even if nothing else happened after the release, because a frame was
     /// requested.
     #[test]
     fn a_users_press_is_fresh_after_the_requested_frame() {

@@ -1,7 +1,7 @@
 //! Remote sessions: the window is shown and operated on another computer.
 
-/// Returns whether the user operates this computer over a remote desktop. Over such a connection the release of a button
-/// may arrive late, while the window here continues to draw it as pressed.
+/// Returns whether the user operates this computer over a remote desktop. The release of a button may then arrive late,
+/// and the window shows the button as pressed until then.
 #[cfg(windows)]
 pub(super) fn is_remote_session() -> bool {
     // The variable is that of the logon and may be outdated: a session can be continued from another computer.
@@ -9,7 +9,7 @@ pub(super) fn is_remote_session() -> bool {
     winsafe::GetSystemMetrics(winsafe::co::SM::REMOTESESSION) != 0 || logged_on_remotely()
 }
 
-/// Other systems do not report it.
+/// Always `false`, because other systems do not report remote sessions.
 #[cfg(not(windows))]
 pub(super) const fn is_remote_session() -> bool {
     false

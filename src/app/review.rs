@@ -31,13 +31,13 @@ pub enum ReviewState<K: Reviewable> {
     Writing(Box<K::Prepared>),
     /// The plan was executed, and the values were read back.
     Done(Box<K::Prepared>, CommitResult<K::Written>),
-    /// The write is impossible or ended early.
+    /// The write is impossible or was aborted.
     Failed {
         /// Texts that state what happened and what to do.
         texts: Vec<Text>,
-        /// Whether the device had been written to before the write ended.
+        /// Whether the device had been written to before the write was aborted.
         begun: bool,
-        /// The plan that was being executed, and the number of operations that are known to be completed.
+        /// The plan that was being executed, and the number of operations known to be complete.
         cut_off: Option<(Box<K::Prepared>, usize)>,
     },
 }
@@ -58,7 +58,7 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    /// Returns the displayed plan. There is one until the review ends.
+    /// Returns the displayed plan. It exists until the review ends.
     pub fn prepared_plan(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
@@ -85,7 +85,7 @@ impl<K: Reviewable> Review<K> {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// Ends the review early. If the execution had begun, `done` operations had been completed.
+    /// Aborts the review. If the execution had begun, `done` operations had been completed.
     pub(in crate::app) fn end_early(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.plan_in_progress().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
@@ -151,7 +151,7 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
-    /// The plan is executed step by step, and the user takes part at the device.
+    /// The plan is executed step by step, with actions of the user at the device.
     Leads,
     /// The plan is executed step by step and does not write anything.
     Tests,
@@ -185,10 +185,10 @@ pub struct ReviewSheet {
     pub warnings: Vec<Text>,
     /// Actions at the device that the plan requires from the user.
     pub needs: Vec<Text>,
-    /// Values from another device that must be set up again later. They are shown while planning, while writing and at
-    /// the end.
+    /// Values from another device that must be set up again later. They are displayed while planning, while writing and
+    /// at the end.
     pub redo: Option<Text>,
-    /// Cost in addition to the write cycles counted by this computer.
+    /// Wear in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
     pub execution_mode: ExecutionMode,
     pub toggles: Vec<PermitToggle>,
@@ -214,10 +214,10 @@ pub enum Stage {
         backup: Option<PathBuf>,
         logbook: Option<Text>,
     },
-    /// The write is impossible or ended early.
+    /// The write is impossible or was aborted.
     Failed {
         texts: Vec<Text>,
-        /// Whether the device had already been written to when the write ended.
+        /// Whether the device had been written to before the write was aborted.
         begun: bool,
         done: usize,
     },
@@ -233,7 +233,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     /// Returns the flag for a permit in a change, or `None` if the permit does not apply.
     fn permit_flag(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
-    /// Returns whether some values depend on the mounting, differ, and are not written.
+    /// Returns whether some values differ but are not written, because they depend on the mounting.
     fn skips_mounting_values(_prepared: &Self::Prepared) -> bool {
         false
     }

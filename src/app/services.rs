@@ -78,7 +78,7 @@ pub struct Services {
     jobs: VecDeque<JobRecord>,
     pub(crate) file_question: Option<FileQuestion>,
     pub(crate) brakes: DriveStopHandles,
-    /// Sessions that have been released and are still ending.
+    /// Released sessions that have not ended yet.
     pub(super) closing_sessions: Vec<ClosingSession>,
     pub(super) opening_files: Vec<std::path::PathBuf>,
     pub(super) drafts_on_their_way: usize,

@@ -25,7 +25,7 @@ pub enum ColorScheme {
 pub struct Settings {
     pub theme: ColorScheme,
     pub language: Language,
-    /// Links used in each tab, with the latest first. They contain no access codes.
+    /// Links used in each tab, most recent first. They contain no access codes.
     links: Links,
     /// Layout of the panels. Only the window interprets it.
     pub layout: Option<String>,
@@ -66,7 +66,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns the settings for the first start of the program.
+    /// Returns the settings for the first run of the program.
     pub fn initial(kinds: KindRegistry) -> Self {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
@@ -169,7 +169,7 @@ impl Settings {
         self.drives.insert(device, what);
     }
 
-    /// Returns the links used in a tab, with the latest first.
+    /// Returns the links used in a tab, most recent first.
     pub fn links_of(&self, tab: Tab) -> &[String] {
         self.links.links_of(tab)
     }

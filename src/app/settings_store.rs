@@ -1,8 +1,8 @@
 //! Storage of the settings. Changes are written on a thread, one write at a time.
 //!
 //! Other windows write to the same file. Under a lock, a write merges the present content of the file with the changes
-//! that this window has made since the last read or write. Changes of others are adopted only if they lock drives or
-//! concern devices that are not open here.
+//! that this window has made since the last read or write. Changes made by other windows are adopted only if they lock
+//! drives or concern devices that are not open here.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::store::{FileError, FileErrorKind, read_text, update_text};
 
-/// Maximum time for which the program waits for the settings when it starts.
+/// Maximum time to wait for the settings at the start of the program.
 const START_TIMEOUT: Duration = Duration::from_millis(300);
 
 const SETTINGS_NOT_SAVED_ID: &str = "session.settings_not_kept";
@@ -190,7 +190,7 @@ impl SettingsStore {
         true
     }
 
-    /// Handles a failed read. The settings still count as not read, because they may contain locks.
+    /// Handles a failed read. The settings remain unread, because they may contain locks.
     pub(crate) fn handle_read_failure(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
@@ -243,7 +243,7 @@ fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
     }
 }
 
-/// Parses settings as far as possible, and returns whether they are complete. Returns `None` if there is no file.
+/// Parses as many settings as possible, and returns whether they are complete. Returns `None` if there is no file.
 fn parse_settings(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
@@ -262,7 +262,7 @@ fn parse_settings(text: Result<String, FileError>, kinds: KindRegistry) -> Resul
     }
 }
 
-/// Reads the settings, or returns `None` if no window can have written them.
+/// Reads the settings. Returns `None` if no window can have written any.
 fn read_settings(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, FileError> {
     use FileErrorKind::{IsFolder, NoFolder, NotAFile, NotFolder};
     match parse_settings(read_text(path), kinds) {

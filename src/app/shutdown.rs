@@ -16,16 +16,15 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::StreamEnd;
 use crate::worker::{EndingWorker, JobId, Worker};
 
-/// Maximum waiting times when sessions or the window are closed, and when a link is opened whose connection is still in
-/// use.
+/// Maximum waiting times for closing sessions or the window, and for opening a link whose connection is still in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
     pub drives: Duration,
     pub disk: Duration,
     /// Maximum waiting time for a job that does not write anything.
     pub job: Duration,
-    /// Maximum waiting time for a write. In this time it must reach a point at which it can end, and lock what it has
-    /// unlocked.
+    /// Maximum waiting time for a write. Within this time, the write must reach a point at which it can end, and lock
+    /// the memory again.
     pub write: Duration,
 }
 
@@ -56,7 +55,7 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the connection is free.
     fn is_finished(&self) -> bool;
 
-    /// Waits for the end, for at most `patience`. Returns whether it has been reached.
+    /// Waits for the end, for at most `patience`. Returns whether the session has ended.
     fn wait_for_end(&self, patience: Duration) -> bool;
 
     fn job_completions(&self) -> Vec<JobCompletion>;

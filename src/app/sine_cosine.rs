@@ -43,7 +43,6 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Returns the requested reading or the reason why there is none, and removes it. Returns `None` if there is
-    /// neither.
+    /// Removes and returns the requested reading, or the reason why it failed. Returns `None` if there is neither.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

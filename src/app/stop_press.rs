@@ -1,8 +1,8 @@
 //! Presses that closely follow a stop. A user who stops a machine may press twice, hold the key, or release the button
-//! after the machine has stopped. Such presses must not have any other effect. However, they still stop motion, which
-//! may have started in the meantime. Times are those of the frames, in seconds.
+//! after the machine has stopped. Such presses must have no other effect. They still stop a motion that has started in
+//! the meantime. Times are those of the frames, in seconds.
 
-/// Time in seconds after a stop in which another press is also a stop.
+/// Time in seconds after a stop during which another press is also a stop.
 const REPEAT_WINDOW_S: f64 = 0.5;
 
 /// Times of the last stop of a motion, and of the last press of a stop button.
@@ -14,7 +14,7 @@ pub struct StopPresses {
 
 impl StopPresses {
     /// Returns whether a press at the given time is meant for a motion that is running or has just ended. Such a press
-    /// counts as another stop.
+    /// is another stop.
     pub fn register_stop_press(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_recently_stopped(pressed);
         if means {
@@ -32,7 +32,7 @@ impl StopPresses {
         self.pressed = Some(now);
     }
 
-    /// Returns the time of the press that belongs to the present click. A click by the keyboard has no separate press.
+    /// Returns the time of the press that started the present click. A click by the keyboard has no separate press.
     pub fn press_time(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }

@@ -69,7 +69,7 @@ impl Studio {
         }
     }
 
-    /// Begins with a link or a profile, or with the virtual encoder if neither is given.
+    /// Opens a link or a profile, or the virtual encoder if neither is given.
     pub fn start_with(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
         let tab = self.tab_for_link(link.as_ref());
         let is_empty = link.is_none() && profile.is_none();

@@ -21,7 +21,7 @@ pub trait ToolKind: Sync {
     /// Returns the tab in which the tool is shown.
     fn tab(&self) -> Tab;
 
-    /// Creates the tool. `links` are the links used in it before, with the latest first.
+    /// Creates the tool. `links` are the links previously used in it, most recent first.
     fn create_tool(&self, links: &[String]) -> Box<dyn Tool>;
 }
 
@@ -99,8 +99,8 @@ impl ToolContext<'_> {
         &mut self.studio.services
     }
 
-    /// Releases the session on a connection, unless it is writing. The session then shows `why`. If a channel is
-    /// returned, the connection is free when it closes.
+    /// Releases the session on a connection, unless it is writing. The session then shows `why`. The connection is free
+    /// as soon as the returned channel, if any, closes.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -108,7 +108,7 @@ impl ToolContext<'_> {
         self.studio.release_connection(url, why)
     }
 
-    /// Adds a link to those used before.
+    /// Adds a link to the list of recently used links.
     pub fn use_link(&mut self, link: &str) {
         self.studio.settings.use_link(self.tab, link);
     }

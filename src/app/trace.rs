@@ -15,7 +15,7 @@ pub struct TraceLine {
     pub direction: Direction,
     /// Bytes of the frame. A masked byte is `**`.
     pub bytes: String,
-    /// Number of bytes at the beginning that only transport the message.
+    /// Number of bytes at the beginning of the frame that belong to the transport.
     pub header: usize,
     pub meaning: Vec<Text>,
     /// Fault at the end of the frame, if any.
@@ -32,7 +32,7 @@ pub enum TraceFault {
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrameExplanation {
-    /// Number of bytes at the beginning that only transport the message.
+    /// Number of bytes at the beginning of the frame that belong to the transport.
     pub header: usize,
     pub meaning: Vec<Text>,
     pub fault: Option<TraceFault>,
@@ -70,7 +70,7 @@ impl TraceLine {
 /// Selection of the frames to show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TraceFilter {
-    /// Text contained in the bytes or in the meaning of a frame; upper and lower case are equal.
+    /// Text contained in the bytes or in the meaning of a frame, ignoring case.
     pub search: String,
     /// Only frames that are broken or report an error or a warning.
     pub faults_only: bool,
@@ -91,7 +91,7 @@ impl TraceFilter {
     }
 }
 
-/// The frames of a log that match a filter. Each frame is compared once, not whenever it is drawn.
+/// The frames of a log that match a filter. Each frame is compared only once, not each time it is drawn.
 #[derive(Debug, Default)]
 pub struct TraceMatches {
     filter: TraceFilter,
@@ -100,12 +100,12 @@ pub struct TraceMatches {
     numbers: VecDeque<u64>,
     /// Number of matching frames that the log has removed since the filter was set.
     removed: u64,
-    /// Number of the first frame that was not compared yet.
+    /// Number of the first frame that has not been compared.
     next: u64,
 }
 
 impl TraceMatches {
-    /// Updates the matches for the frames numbered below `end`. A new filter or language starts again.
+    /// Updates the matches for the frames numbered below `end`. A new filter or language discards the previous matches.
     pub fn update_matches(&mut self, log: &TraceLog, filter: &TraceFilter, language: Language, end: u64) {
         if self.filter != *filter || self.language != Some(language) || self.next > end {
             *self = TraceMatches { filter: filter.clone(), language: Some(language), ..TraceMatches::default() };
@@ -179,7 +179,7 @@ impl TraceLog {
         &self.lines
     }
 
-    /// Returns the number that the next frame will get. Frames are numbered from 0 since the connection was opened.
+    /// Returns the number of the next frame. Frames are numbered from 0 since the connection was opened.
     pub fn next_number(&self) -> u64 {
         self.gone + self.lines.len() as u64
     }
@@ -205,7 +205,7 @@ impl TraceLog {
         text
     }
 
-    /// Returns the number of frames that arrived too fast to be shown.
+    /// Returns the number of frames that arrived too fast to be stored.
     pub fn dropped_count(&self) -> u64 {
         self.dropped
     }

@@ -22,8 +22,8 @@ pub use watchable::{Watchable, WatchedValue};
 
 /// Maximum number of positions. It is enough for more than a day at the highest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
-/// Maximum time in nanoseconds between two positions that are joined by a line. A line across a longer time would show
-/// a motion that was not observed.
+/// Maximum time in nanoseconds between two positions that are joined by a line. A longer line would suggest a motion
+/// that was not observed.
 const MAX_JOINED_GAP_NS: i64 = 5_000_000_000;
 /// Delay of a position in nanoseconds that is tolerated in addition to four intervals. A lost reply that is requested
 /// again causes such a delay.
@@ -33,13 +33,13 @@ const TOLERATED_DELAY_NS: i64 = 400_000_000;
 const MAX_WATCHED_GAP_NS: i64 = MAX_JOINED_GAP_NS;
 /// Maximum number of samples of a watched value.
 const MAX_WATCHED_SAMPLES: usize = 500_000;
-/// Duration in nanoseconds that is displayed at first.
+/// Initially displayed duration in nanoseconds.
 const SPAN: i64 = 30_000_000_000;
 
 /// Kinds of the columns for position, speed and acceleration.
 const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
-/// A sampled position. The sample may also be without a position.
+/// A sample with or without a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
     pub at: Moment,
@@ -60,7 +60,7 @@ pub struct DeviceRecorder<W> {
     /// Tracking of positions, or `None` before the first position.
     follower: Option<PositionTracker>,
     dropped: u64,
-    /// Start of the first session, and offset of the present session's clock from it.
+    /// Start of the first session, and offset of the present session's clock from that start.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<SampleTime>,
@@ -316,8 +316,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.set_watched(&watched);
     }
 
-    /// Prepares to decode the recording again from the `kept` words that are stored. The times do not change. If not
-    /// all words are stored, the old recording is kept as well.
+    /// Prepares to decode the recording again from the `kept` stored words. The times do not change. If some words are
+    /// missing, the old recording is kept as well.
     pub fn prepare_redecoding(&mut self, kept: usize) {
         if usize::try_from(self.position_count()).is_ok_and(|own| own > kept) {
             self.replace_series(&PositionScales::for_steps(None));
@@ -329,7 +329,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.handle_action(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the meaning of the positions that follow. Positions with another meaning stay in lines that end here.
+    /// Sets the meaning of the subsequent positions. Lines of positions with another meaning end here.
     fn set_scales(&mut self, meaning: &PositionScales) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_location(meaning)) {
             if own.meaning != *meaning {
@@ -366,7 +366,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.end_line(line, name, heading);
     }
 
-    /// Returns the name and the heading of a line that ends now.
+    /// Returns the name and the heading for a line that ends now.
     fn ended_line_name(&self, line: SeriesId) -> (Text, String) {
         let newest = self.newest.map_or(0, SampleTime::as_nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());

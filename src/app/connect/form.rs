@@ -14,7 +14,7 @@ use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// A form whose entries make up a link to a kind of device. Entries for another type of connection are preserved.
+/// A form with entries that define a link to a kind of device. Entries for another type of connection are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// The search for devices, or [`NoFinder`] if the form has none.
     type Finder: Finder<Form = Self>;
@@ -42,7 +42,7 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
 pub trait Finder: Default + 'static {
     /// The form that the search fills in.
     type Form;
-    /// The actions of the search.
+    /// Type of the user's actions in the search.
     type Action: Any + Send;
     /// The results of the search tasks.
     type TaskResult: Any + Send;
@@ -67,7 +67,8 @@ pub trait Finder: Default + 'static {
     /// Stops the search.
     fn stop(&mut self) {}
 
-    /// Ends the search and discards its results. If a channel is returned, the connection is free when it closes.
+    /// Ends the search and discards its results. The connection is free as soon as the returned channel, if any,
+    /// closes.
     fn finish(&mut self, _services: &mut Services) -> Option<Receiver<()>> {
         None
     }
@@ -137,7 +138,7 @@ pub trait AnyForm {
     fn is_running(&self) -> bool;
     /// Stops the finder.
     fn stop(&mut self);
-    /// Ends the search. If a channel is returned, the connection is free when it closes.
+    /// Ends the search. The connection is free as soon as the returned channel, if any, closes.
     fn finish(&mut self, services: &mut Services) -> Option<Receiver<()>>;
 }
 

@@ -56,7 +56,7 @@ pub struct ConnectDialog {
     pub device: Tab,
     kinds: KindRegistry,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The link as entered, or `None` after the form has been edited. The form then defines the link.
+    /// The link as entered. `None` after the form has been edited, because the form then defines the link.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<PortEntry>, Text>>,
@@ -141,7 +141,7 @@ impl ConnectDialog {
     }
 }
 
-/// Starts a task that lists the serial ports. `links` are the links used before, with the latest first.
+/// Starts a task that lists the serial ports. `links` are the previously used links, most recent first.
 pub(super) fn list_ports(services: &Services, links: &[String]) {
     let (ports, links) = (services.world.ports.clone(), links.to_vec());
     services.tasks.run("ports", move || {

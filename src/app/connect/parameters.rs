@@ -85,8 +85,8 @@ impl Parameters {
         self.add_others(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
-    /// Adds the parameters without an entry that belong to the link. An entry takes precedence over an older parameter
-    /// of the same name.
+    /// Adds the parameters without an entry that belong to the link. An entry overrides an older parameter of the same
+    /// name.
     pub(crate) fn add_others(&mut self, rest: &[NameAndValue], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
@@ -98,7 +98,7 @@ impl Parameters {
     /// Returns the link with these parameters.
     ///
     /// # Errors
-    /// Returns a message if a character would end a part of the link, or if the parts do not make up a link.
+    /// Returns a message if a character would end a part of the link, or if the parts do not form a link.
     pub(crate) fn build_link(&self, (scheme, target): (LinkScheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])

@@ -9,14 +9,14 @@ pub struct PortEntry {
     /// Description of the adapter by the system. It may be empty.
     pub description: String,
     pub used: bool,
-    /// Whether the port exists at present. Either the system lists it, or its path exists, for example for a
-    /// pseudo-terminal. A port used before may have been unplugged.
+    /// Whether the port exists at present: either the system lists it, or its path exists, as for a pseudo-terminal. A
+    /// previously used port may have been unplugged.
     pub listed: bool,
 }
 
-/// Returns the ports used before with the latest first, then USB adapters, then all other ports.
+/// Returns the previously used ports, most recent first, then USB adapters, then all other ports.
 ///
-/// `links` are the links used before, with the latest first. `exists` checks a path that the system does not list.
+/// `links` are the previously used links, most recent first. `exists` checks a path that the system does not list.
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
     let mut offers: Vec<PortEntry> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {

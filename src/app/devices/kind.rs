@@ -52,7 +52,7 @@ pub trait DeviceType: DeviceModel + Sized {
         false
     }
 
-    /// Creates a device. Nothing is known about it except the opened profile, if any, with the tables for reading it.
+    /// Creates a device from an opened profile and the tables for reading it, or a device about which nothing is known.
     fn create(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,

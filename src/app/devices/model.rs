@@ -176,7 +176,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Adopts a profile. Depending on the kind of device, this opens the review of a write or edits the layout.
     ///
     /// # Errors
-    /// The profile belongs to another kind of device.
+    /// Returns an error if the profile belongs to another kind of device.
     fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
         self.with_memory(services, |memory, services| memory.restore(body, services)).unwrap_or(Ok(()))
     }
@@ -244,7 +244,7 @@ impl<'a> ActionContext<'a> {
     /// Returns the profile as edited in another session, if there is one.
     ///
     /// # Errors
-    /// The profile is read-only.
+    /// Returns a message if the profile is read-only.
     pub(crate) fn edited_profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
         read_only_reason(other.source()).map_or_else(|| Ok(other.edited_body()), Err)
@@ -257,7 +257,7 @@ pub trait MotionControl {
     /// Stops all motion.
     fn stop(&mut self);
 
-    /// Ends every motion that would otherwise continue until a button is released or without an end.
+    /// Ends every motion that would otherwise continue without an end or until a button is released.
     fn release_motion(&mut self);
 
     /// Returns whether a drive is moving or about to move.
@@ -290,7 +290,7 @@ pub trait DeviceMemory {
     /// Closes the review. A write in progress continues.
     fn close_review(&mut self);
 
-    /// Returns the edited profile, or `None` for a device.
+    /// Returns the edited profile, or `None` if the session is a device.
     fn edited_body(&self) -> Option<Body>;
 
     /// Returns the profile of the last reading, or `None` if no data has been read.
@@ -302,7 +302,7 @@ pub trait DeviceMemory {
     /// Opens the review of restoring a profile.
     ///
     /// # Errors
-    /// The profile belongs to another kind of device.
+    /// Returns an error if the profile belongs to another kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
     /// Saves a profile.

@@ -66,7 +66,7 @@ pub trait OpenDevice: Any {
     fn can_redo(&self) -> bool;
     /// Returns whether edits are restored if the device is closed and opened again.
     fn preserves_edits(&self) -> bool;
-    /// Returns whether every edit has been written to disk, unless writing fails.
+    /// Returns whether every edit has been stored on disk. A failed write is disregarded.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped_count(&self) -> u64;

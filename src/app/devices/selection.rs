@@ -30,8 +30,8 @@ impl Selection {
 
     /// Removes a device. `left` contains the remaining devices.
     ///
-    /// Its tab then shows the device that was opened last there. If the removed device was the one shown last in any
-    /// tab, the device of the last tab takes its place.
+    /// Its tab then shows the device that was opened last in it. If the removed device was shown last among all tabs,
+    /// the device of the last tab replaces it.
     pub(in crate::app) fn remove(&mut self, kinds: KindRegistry, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id

@@ -1,6 +1,6 @@
-//! Random sessions at a keyboard and a mouse, with what the system reports of them: keys that repeat themselves, also as
-//! releases followed by presses, and across a change of focus; releases that are not reported while another window has
-//! the keyboard, and artificial ones when the window loses it.
+//! Random sessions with a keyboard and a mouse, and the events that the system reports: keys that repeat, also as
+//! releases followed by presses and across a change of focus; releases that are not reported while another window has
+//! the keyboard focus; and artificial releases when the window loses it.
 
 use super::*;
 
@@ -8,18 +8,18 @@ const SESSIONS: u64 = 60;
 const FRAMES: u64 = 3_000;
 const READY: HoldContext = HoldContext { enabled: true, window: true, keyboard: true, moving: false };
 const KEYS: [PressKey; 2] = [PressKey::Space, PressKey::Enter];
-/// Index of a key that does not hold anything, and of the pointer, behind those of [`KEYS`].
+/// Indices of a key that cannot hold the button, and of the pointer. They follow those of [`KEYS`].
 const OTHER: usize = 2;
 const POINTER: usize = 3;
 
-/// What is really pressed, apart from what is reported of it.
+/// The actual state of the keys and the pointer, which may differ from the reported one.
 #[derive(Default)]
 struct TestOperator {
-    /// Time of the press, for everything that is down.
+    /// Times at which the keys and the pointer that are down were pressed.
     down: [Option<f64>; 4],
-    /// What was pressed last, which alone repeats itself.
+    /// The key that was pressed last. Only this key repeats.
     last: Option<usize>,
-    /// Whether the pointer went down on the button, and has not left it since.
+    /// Whether the pointer was pressed on the button and has not left it.
     is_on_button: bool,
 }
 

@@ -22,7 +22,7 @@ impl Cursor {
     }
 }
 
-/// Readings of both cursors on a line, in the unit of the line. A reading is `None` if there is no valid sample.
+/// Readings of both cursors on a line, in the unit of the line. A reading is `None` without a valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorReadings {
     pub a: Option<f64>,
@@ -100,7 +100,7 @@ impl Recorder {
 
     /// Returns the sample of a line nearest to a point in time, or `None` if nothing was recorded at that time.
     pub fn sample_at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
-        /// Divisor of the visible range. The result is the maximum distance of a cursor from the first or last sample.
+        /// Divisor of the visible range. A cursor is at most the resulting time away from the first or last sample.
         const EDGE_DIVISOR: i64 = 200;
         let history = self.history(line)?;
         let all = history.indices();

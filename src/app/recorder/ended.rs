@@ -6,7 +6,7 @@ use crate::app::Text;
 
 impl Recorder {
     /// Replaces a line by a new one, which has the same colour and, if possible, the same unit. The old line ends and
-    /// gets the given name.
+    /// receives the given name.
     pub(in crate::app) fn continue_line(
         &mut self,
         old: SeriesId,

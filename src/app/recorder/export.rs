@@ -54,7 +54,7 @@ pub struct ExportResult {
     pub rows: Result<Option<u64>, FileError>,
 }
 
-/// Position in the samples of a group up to which they have been passed on.
+/// Position in a group's samples up to which they have been passed on.
 #[derive(Debug)]
 struct ExportPosition {
     group: GroupId,
@@ -208,8 +208,8 @@ impl Recorder {
         self.export = Some(export);
     }
 
-    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread has written an
-    /// earlier table.
+    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread wrote an earlier
+    /// table.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
         if written && export.until.is_some() {

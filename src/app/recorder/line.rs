@@ -14,7 +14,7 @@ pub struct Scale {
     pub factor: f64,
     /// Useful number of decimals.
     pub decimals: usize,
-    /// Range of the samples at whose end a displayed value begins again with 0, or `None` for continuous values.
+    /// Range of the samples after which the displayed value starts again from 0, or `None` for continuous values.
     pub range: Option<i64>,
 }
 
@@ -37,7 +37,7 @@ pub struct Series {
     pub name: Text,
     /// Heading of the column in a table.
     pub heading: String,
-    /// Index of the colour. There are eight colours, which are then used again.
+    /// Index of the colour, 0 to 7. Further lines use the same eight colours again.
     pub colour: usize,
     pub shown: bool,
     /// Displayed range of values in the unit of the line. `None` shows all visible samples.
@@ -118,7 +118,7 @@ impl Series {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 
-    /// Returns the range at whose end a displayed value begins again with 0, in units of the samples.
+    /// Returns the range after which a displayed value starts again from 0, in units of the samples.
     pub fn range_of_samples(&self) -> Option<i64> {
         self.scale().and_then(|scale| scale.range)
     }
@@ -137,7 +137,8 @@ impl Series {
     }
 }
 
-/// Returns the value of a sample within a range of counts. Values without a range, and real ones, stay as they are.
+/// Returns the value of a sample within a range of counts. Real values and values without a range are returned
+/// unchanged.
 pub(super) fn within_range(value: Value, range: Option<i64>) -> f64 {
     match (value, range) {
         (Value::Whole(count), Some(range)) => count.rem_euclid(range.max(1)) as f64,

@@ -54,10 +54,10 @@ pub enum RecorderAction {
     CancelExport,
 }
 
-/// Nanoseconds between two samples whose interval is unknown.
+/// Assumed time between two samples whose interval is unknown, in nanoseconds.
 pub const SAMPLE: i64 = 1_000;
 
-/// Number of a group of samples that are taken together.
+/// Number of a group of samples that are acquired together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GroupId(u32);
 
@@ -121,13 +121,13 @@ impl Recorder {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
-    /// Creates a recorder for samples without times. The time of a sample is its number times [`SAMPLE`]. The view
-    /// follows the samples and shows the given number of them.
+    /// Creates a recorder for samples without time stamps. The sample with index n is displayed at n times [`SAMPLE`].
+    /// The view follows the samples and shows the given number of them.
     pub fn without_times(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Marks the recording as complete. No more samples arrive, so a trigger that has not fired is missed.
+    /// Marks the recording as complete. A trigger that has not fired is then missed, because no more samples arrive.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }

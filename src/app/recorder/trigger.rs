@@ -59,7 +59,7 @@ pub(super) struct TriggerDetector {
     when: TriggerCondition,
     level: f64,
     state: TriggerState,
-    /// Range at whose end the values of the line begin again with 0, if they do.
+    /// Range after which the values of the line start again from 0, if any.
     range: Option<i64>,
     /// Last valid value, which is needed to detect an edge. It is `None` after a gap.
     last: Option<f64>,
@@ -100,8 +100,9 @@ impl TriggerDetector {
         }
     }
 
-    /// Returns whether the level lies on the way from `last` to `value`, whose signs are exchanged for a falling edge.
-    /// Values within a range pass the level once in each range. The step from the end of the range to 0 is no edge.
+    /// Returns whether the value rises to or through the level between `last` and `value`. For a falling edge, the
+    /// caller inverts the signs of both. Values with a range pass the level once per range. The step from the end of
+    /// the range to 0 is not an edge.
     fn passes(&self, last: f64, value: f64) -> bool {
         let level = if self.when == TriggerCondition::Falling { -self.level } else { self.level };
         match self.range {

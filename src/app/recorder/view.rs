@@ -85,9 +85,9 @@ impl Recorder {
         };
     }
 
-    /// Returns the longest view. The view of a complete recording shows little more than the recording.
+    /// Returns the maximum length of the view. For a complete recording, it is little more than the recording.
     fn longest(&self) -> i64 {
-        /// Length of the longest view in lengths of the recording.
+        /// Ratio of the longest view to the length of the recording.
         const TIMES: i64 = 4;
         let recorded_span = self.recorded_span().filter(|_| self.finished);
         recorded_span.map_or(MAX_LENGTH_NS, |(first, last)| {

@@ -14,7 +14,7 @@ const NOT_SAVED: &str = "session.not_saved";
 
 type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
-/// A session with edits.
+/// A session whose edits are stored as a draft.
 pub trait HasDraft: HasSession {
     /// Returns the key of the device in the logbook. Returns `None` before the device has been read, and for a device
     /// that has no identity.
@@ -22,8 +22,8 @@ pub trait HasDraft: HasSession {
 
     /// Returns the type and serial number that name the draft of the device, or `None` if no data has been read.
     ///
-    /// The type is included because another type may use the same number. The serial number is empty for a device that
-    /// has no identity.
+    /// The type is included because devices of different types may have the same serial number. The serial number is
+    /// empty for a device that has no identity.
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.device_key().map(|key| (key.device_type, key.serial_number))
     }
@@ -37,7 +37,7 @@ pub trait HasDraft: HasSession {
     /// Adopts a profile that was read again from its file. Edits are kept.
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument);
 
-    /// Returns the edits for counting.
+    /// Returns the edits, for counting them.
     fn pending_edits(&self) -> &dyn PendingEdits;
 
     /// Returns the edits for undo and redo.
@@ -111,8 +111,8 @@ pub trait HasDraft: HasSession {
         self.session_mut().drafting.leave_on_disk(key, edits, services);
     }
 
-    /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and leaves none
-    /// behind.
+    /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and does not leave
+    /// one behind.
     fn handle_profile_written(
         &mut self,
         saving: SaveRequest,

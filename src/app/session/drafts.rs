@@ -1,5 +1,5 @@
-//! Drafts, with which edits survive a crash. Each edit is stored at once together with the other data of the studio, in
-//! one file for each device or profile.
+//! Drafts, which preserve edits across a crash. Each edit is stored at once together with the other data of the studio,
+//! in one file for each device or profile.
 //!
 //! A draft has a single owner. A second session with the same device, in this or another window, neither adopts nor
 //! overwrites it. Only the kind of device knows the content of an edit.
@@ -67,12 +67,12 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct ActiveDraft<E> {
     session: SessionId,
-    /// Edits that were last passed on for storing.
+    /// Edits that were last passed on for storage.
     kept: E,
     busy: bool,
-    /// Whether the edits may have changed since they were last passed on.
+    /// Whether the edits may have changed since they were last passed on for storage.
     due: bool,
-    /// Whether an earlier draft has been looked for. The draft is not overwritten before that.
+    /// Whether a search for an earlier draft has been completed. The draft is not overwritten before that.
     is_loaded: bool,
     /// Right to store the draft. If it is `None`, another window or session has it.
     claim: Option<Arc<Claim>>,
@@ -92,7 +92,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 }
 
 impl<E: DraftEdits> ActiveDraft<E> {
-    /// Creates the state of a draft that has not been looked for.
+    /// Creates the state of a draft for which no search has been made.
     pub(in crate::app) fn new(session: SessionId) -> Self {
         ActiveDraft {
             session,
@@ -109,8 +109,8 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.claim_draft(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Takes over the draft of a newly saved profile. The profile has no edits, and an earlier draft belongs to the
-    /// file that it replaced.
+    /// Claims the draft of a newly saved profile, which has no edits. An earlier draft belongs to the replaced file and
+    /// is removed.
     pub(in crate::app) fn begin_for_profile(&mut self, key: DraftKey, services: &Services) {
         self.claim_draft(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
@@ -142,7 +142,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
 
     /// Handles the result of a task. Returns the edits of an earlier session, if any.
     ///
-    /// A result about a draft other than `own` is outdated. If `dirty` is set, new edits take precedence over earlier
+    /// A result for a draft other than `own` is outdated. If `dirty` is set, new edits take precedence over earlier
     /// ones.
     pub(in crate::app) fn handle_outcome(
         &mut self,
@@ -223,7 +223,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.due = true;
     }
 
-    /// Returns whether the edits must be compared again, because there were events since the last check.
+    /// Returns whether the edits must be compared again, because events have arrived since the last check.
     pub(in crate::app) fn is_due(&self) -> bool {
         self.due && !self.busy
     }
@@ -251,7 +251,8 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Returns whether an earlier draft has been looked for. Edits are then restored after the session was closed.
+    /// Returns whether a search for an earlier draft has been completed. Edits are then restored when the device is
+    /// opened again.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
     }

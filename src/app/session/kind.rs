@@ -25,7 +25,7 @@ pub trait Kind: Device + Sized {
     /// Review of a write. It is [`Review`](crate::app::review::Review) for a kind with a memory.
     type Review;
 
-    /// Whether live values may start automatically on a line without another master.
+    /// Whether live values may start automatically on a line that has no other master.
     const STARTS_LIVE: bool = true;
 
     /// Returns the handle that stays with the window when the session moves to its thread.
@@ -66,7 +66,7 @@ pub trait Kind: Device + Sized {
         None
     }
 
-    /// Returns the reason why a job ended early, and what to do.
+    /// Returns the reason why a job was aborted, and what to do.
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
     /// Returns the reason for the loss of the connection, or `None` if the error does not end it.

@@ -1,5 +1,5 @@
-//! Writing to the memory of a device with a review: a change results in a plan, and the approved plan is executed by a
-//! job that has a result. Each kind of device defines its changes, plans and jobs, and their further effects.
+//! Writes to the memory of a device after a review: a plan is made for a change, and the approved plan is executed by a
+//! job. Each kind of device defines its changes, plans, jobs and their further effects.
 
 #![warn(missing_docs)]
 
@@ -49,7 +49,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Returns whether a change was made for a device other than the connected one.
     fn is_for_other_device(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for another type of device. This is only checked if it requires a separate
+    /// Returns whether a change was made for another type of device. This is checked only if it requires a separate
     /// permit.
     fn is_for_other_type(&self, _change: &Change<Self>) -> bool {
         false
@@ -72,7 +72,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Prepares the display of a review.
     fn prepare_review(&mut self) {}
 
-    /// Returns the reason why a change is impossible, if this is known without asking the device.
+    /// Returns the reason why a change is impossible, if this is known without a request to the device.
     fn change_rejection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
@@ -82,7 +82,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         None
     }
 
-    /// Marks the values that the running plan changes as not read. Called however the plan ends.
+    /// Marks the values that the running plan changes as not read. Called regardless of how the plan ends.
     fn schedule_rereads(&mut self) {}
 
     /// Handles the end of a plan that has been executed.
@@ -242,8 +242,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         self.submit(Self::Device::survey_job(), services);
     }
 
-    /// Handles an interruption of planning or writing. Returns whether the review reports it. A plan that is cancelled
-    /// while it is prepared leaves no review.
+    /// Handles an interruption while a plan is prepared or executed. Returns whether the review reports it. If the user
+    /// cancels during preparation, the review is closed.
     fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.open_review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {

@@ -28,8 +28,8 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles the values that were read to save them to a file. `edits` is the number of edits that are not saved, and
-    /// `remarks` name other missing values.
+    /// Handles values that were read in order to save them to a file. `edits` is the number of edits that are not
+    /// saved, and `remarks` name other missing values.
     pub fn save_read_values(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
@@ -115,13 +115,13 @@ impl SessionState {
 
 pub struct DeviceHistory {
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes in the logbook with the newest first, or the reason why there are none.
+    /// Writes in the logbook, newest first, or the reason why there are none.
     pub writes: Result<Vec<Entry>, LogbookError>,
     /// Total number of write cycles, or `None` if the logbook does not contain it.
     pub cycles: Option<u64>,
     /// Asset to which the device is assigned.
     pub asset: Option<String>,
-    /// Status codes that were read, with the newest first. An error of the logbook is reported in `writes`.
+    /// Status codes that were read, newest first. An error of the logbook is reported in `writes`.
     pub statuses: Vec<Entry>,
 }
 

@@ -33,7 +33,7 @@ pub trait HasProfile: HasMemory {
     /// Returns a message for each part of a profile that was not read.
     fn last_read_profile(&self) -> Option<KnownProfile>;
 
-    /// Returns whether a profile would be saved from earlier readings. This is done if the device no longer replies.
+    /// Returns whether earlier readings are saved as the profile. This is done if the device no longer replies.
     fn saves_last_reading(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()
     }

@@ -1,5 +1,5 @@
-//! Saving of a profile to a file. The user is asked before changes of others are overwritten, and comments between the
-//! entries are preserved.
+//! Saving of a profile to a file. The user is asked before changes made by other programs are overwritten, and comments
+//! between the entries are preserved.
 
 use std::path::{Path, PathBuf};
 
@@ -43,9 +43,10 @@ pub struct SaveRequest {
     pub remarks: Vec<Text>,
     /// Expected state of the open file. Another file is replaced without a check.
     pub opened: Option<FileSnapshot>,
-    /// Whether the user has agreed to lose comments.
+    /// Whether the user has agreed to the loss of comments.
     pub may_lose: bool,
-    /// Whether the edits were merged with those of others. They are then no longer edits of this session.
+    /// Whether the edits were merged with changes made by another program. They are then no longer edits of this
+    /// session.
     pub is_merged: bool,
 }
 
@@ -89,8 +90,8 @@ pub(in crate::app) struct DivergedFile {
     pub(in crate::app) document: Result<Box<ProfileDocument>, ReadError>,
 }
 
-/// Returns the text to be replaced, or the content of the file if others have changed it. A missing file is not a
-/// change.
+/// Returns the text to be replaced, or the content of the file if another program has changed it. A missing file is not
+/// a change.
 fn text_to_replace(
     path: &Path,
     opened: &str,

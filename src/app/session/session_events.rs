@@ -1,5 +1,5 @@
-//! Events of a line: samples, results of jobs, interruptions, and loss of the connection. Each kind of device handles
-//! its results. The end of a job is reported in the same way for all kinds.
+//! Events of a session: samples, results of jobs, interruptions, and loss of the connection. Each kind of device
+//! handles its results. The end of a job is reported in the same way for all kinds.
 
 #![warn(missing_docs)]
 
@@ -18,17 +18,17 @@ type DeviceMessage<T> = <<T as HasSession>::Device as Device>::DeviceMessage;
 type Sample<T> = <<T as HasSession>::Device as Device>::Sample;
 type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
-/// The reason why a request ended early.
+/// The reason why a request was interrupted.
 pub enum EarlyEnd<'e, E> {
-    /// The request was cancelled by the user.
+    /// The user cancelled the request.
     Cancelled(&'e E),
-    /// The request has failed.
+    /// The request failed with this error.
     Failed(&'e E),
     /// The connection was lost.
     Lost,
 }
 
-/// A device that handles the events of its line.
+/// A device that handles the events of its session.
 pub trait SessionEvents: HasSession {
     /// Records samples. `dropped` samples before them were lost.
     fn handle_samples(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
@@ -51,7 +51,7 @@ pub trait SessionEvents: HasSession {
     /// Discards pending requests, because their replies will not arrive.
     fn discard_requests(&mut self);
 
-    /// Prepares the release of the line.
+    /// Prepares for the release of the connection.
     fn prepare_release(&mut self) {}
 
     /// Handles progress of the running job.
@@ -80,12 +80,12 @@ pub trait SessionEvents: HasSession {
         self.try_submit(job, services);
     }
 
-    /// Processes the events of the line since the last call.
+    /// Processes the session's events received since the last call.
     fn process_events(&mut self, services: &mut Services) {
         self.poll_line(services);
     }
 
-    /// Handles the line. Kinds of devices that have more to do at this point override it.
+    /// Processes the session's pending events. Kinds of devices with additional work override this method.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples that precede a job are handled before its result. Later ones are handled in the next call.
         self.fetch_samples_and_frames();
@@ -112,7 +112,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles an event of the line.
+    /// Handles one event that the session has reported.
     fn handle_event(&mut self, event: Event<Self::Device>, services: &mut Services) {
         match event {
             Event::Started(_) => {}
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.mark_draft_due();
     }
 
-    /// Handles a sample that failed. Polling has stopped because of it.
+    /// Handles a failed sample, because of which polling has stopped.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.on_polling_end();
         match Self::Device::connection_error(error) {
@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the first text, where there is room for only one.
+/// Returns the first text, for places with room for only one.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

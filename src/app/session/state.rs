@@ -20,15 +20,15 @@ pub struct SessionState {
     pub(crate) opening: Option<PendingOpen>,
     pub title: Option<String>,
     pub trace: TraceLog,
-    /// Backups, or the reason why there are none.
+    /// Backups, or the reason why there are none. `None` before they have been requested.
     pub backups: Option<Result<Vec<Backup>, Text>>,
     /// Writes in the logbook, or the reason why there are none.
     pub writes: Option<Result<Vec<Entry>, Text>>,
-    /// Write cycles recorded in the logbook, or `None` if there are none or they have not been read.
+    /// Number of write cycles in the logbook, or `None` if it is unknown.
     pub cycles: Option<u64>,
     /// Asset to which the device is assigned in the logbook.
     pub asset: Option<String>,
-    /// Status codes in the logbook, with the newest first.
+    /// Status codes in the logbook, newest first.
     pub statuses: Vec<Entry>,
     /// Whether nothing has been read since the link was opened.
     pub just_connected: bool,
@@ -111,8 +111,8 @@ impl SessionState {
         services.log_only(Severity::Error, why, Some(&self.name()));
     }
 
-    /// Reports a message about this device. It is only logged if it is already shown where it was requested
-    /// (`stands_there`).
+    /// Reports a message about this device. If `stands_there` is set, the message is only logged, because it is already
+    /// displayed where it was requested.
     pub(crate) fn report_message(
         &self,
         severity: Severity,

@@ -35,8 +35,8 @@ impl PositionTracker {
 
     /// Returns whether the next position is joined to the last one.
     ///
-    /// It must arrive soon enough. If there were samples without a position in between, the shaft must be too slow to
-    /// have passed the range unnoticed.
+    /// It must arrive within `apart` nanoseconds. If there were samples without a position in between, the shaft must
+    /// be too slow to have turned through the whole range in that time.
     pub(super) fn is_contiguous_with_last(&self, time: SampleTime, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {

@@ -51,7 +51,7 @@ impl PositionScales {
         PositionScales { range, scales, is_linear: false, step: Some(turns) }
     }
 
-    /// Displays positions within the range at first, as the device sends them, instead of continuous ones.
+    /// Displays positions within the range by default, as the device sends them, instead of continuous positions.
     #[must_use]
     pub fn within_range(mut self) -> Self {
         let [positions, ..] = &mut self.scales;

@@ -12,8 +12,7 @@ pub trait Watchable: Clone + PartialEq {
 
     fn create_series(&self, group: GroupId) -> Series;
 
-    /// Returns whether the samples of this value can be continued by samples of `other`, which may have different
-    /// units.
+    /// Returns whether samples of `other` can continue the samples of this value. The units may differ.
     fn can_continue_as(&self, other: &Self) -> bool {
         self == other
     }
