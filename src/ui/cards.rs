@@ -7,7 +7,7 @@ use super::label_column::with_label_column;
 use super::{Theme, icons};
 use crate::app::Text;
 
-/// Window height in points below which folding cards are closed at first.
+/// Window height in points below which folding cards are initially closed.
 const LOW_WINDOW_HEIGHT: f32 = 720.0;
 
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
@@ -50,8 +50,8 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
     is_clicked
 }
 
-/// Draws a card with reference information. In a low window, the card shows only its heading at first. A click opens
-/// it, and it then stays open until the program ends.
+/// Draws a card with reference information. In a low window, the card initially shows only its heading. A click opens
+/// the card, which then stays open until the program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
     folding_card_with_trailing(ui, theme, title, |_| {}, content);
 }

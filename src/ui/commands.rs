@@ -23,13 +23,13 @@ const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 pub(super) struct Command {
-    /// Name of the device or tab that the command acts on. Empty for a command that acts on the whole program.
+    /// Name of the device or tab on which the command acts. Empty for a command that acts on the whole program.
     pub(super) about: String,
     pub(super) name: String,
     /// Name in the other language, by which the command is also found.
     pub(super) other_name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
-    /// Whether text editing receives the key while the user is typing.
+    /// Whether a text entry receives the key instead while the user is typing.
     pub(super) yields_to_typing: bool,
     pub(super) is_enabled: bool,
     pub(super) effect: CommandEffect,
@@ -198,7 +198,7 @@ fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     backups.iter().map(restore).collect()
 }
 
-/// Returns the commands that write an open profile to a connected device of the matching kind.
+/// Returns the commands that write an open profile to connected devices of the matching kind.
 fn write_commands(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
     let is_target = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let write = |target: &AnyDevice| {
@@ -211,7 +211,7 @@ fn write_commands(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Com
 }
 
 impl NamedAction {
-    /// Creates an action with the name of its button. `word` is a text of the catalogue of common messages.
+    /// Creates an action with the name of its button. `word` is a text id of the common catalogue.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
         NamedAction { name: theme.translate(word), is_enabled, action }
     }

@@ -98,8 +98,8 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// Draws the buttons at the end of a dialog, on a line as high as a button. The first one is at the far right. If the
-/// buttons were centred in the remaining space, the dialog could not shrink.
+/// Draws the buttons at the end of a dialog, on a line as high as a button. The first button is at the far right.
+/// Centring the buttons in the remaining space would prevent the dialog from shrinking.
 pub(super) fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -114,7 +114,7 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
-/// Draws a STOP button, which acts when it is pressed down. Its word stays readable while the button is disabled.
+/// Draws a STOP button, which acts on press instead of release. Its label stays readable while the button is disabled.
 pub(crate) fn stop_button(ui: &mut Ui, theme: &Theme, active: bool, button: Button<'_>, size: egui::Vec2) -> Response {
     let palette = theme.palette;
     let button = if active { button } else { button.fill(palette.surface).stroke(Stroke::new(1.0, palette.line)) };
@@ -157,7 +157,7 @@ pub(crate) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) ->
     name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
 }
 
-/// Sets the name of a widget. Screen readers and tests find the widget by it.
+/// Sets the name by which screen readers and tests find a widget.
 pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, enabled, word));
     response
@@ -173,7 +173,7 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, word));
 }
 
-/// Draws a placeholder for missing content, with the one action that adds content.
+/// Draws a placeholder for missing content, with an action that adds the content.
 pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
@@ -341,8 +341,8 @@ pub(crate) fn encoder_page<C>(
     two_columns(ui, theme, context, left, |ui, context| if is_profile { wiring(ui) } else { status(ui, context) });
 }
 
-/// Draws two columns of cards. `share` of the width is for the left one. Below the minimum width, draws a single
-/// column.
+/// Draws two columns of cards. `share` is the fraction of the width for the left column. Below the minimum width, draws
+/// a single column.
 pub(crate) fn split<C>(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,5 +1,5 @@
-//! View of a device. It is typed in the device's folder and object-safe for the window. A single adapter connects the
-//! two.
+//! View of a device. The device's folder implements a typed trait, and the window uses an object-safe one. A single
+//! adapter connects the two.
 
 #![warn(missing_docs)]
 
@@ -22,13 +22,13 @@ pub struct PageInfo {
 }
 
 impl PageInfo {
-    /// Creates a page.
+    /// Creates a page from its icon and the ids of its name and help texts.
     pub const fn new(icon: &'static str, word: &'static str, help: &'static str) -> Self {
         PageInfo { icon, word, help }
     }
 }
 
-/// Pages of a tab.
+/// Type whose values are the pages of a tab.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
     /// All pages, in navigation order.
     const PAGES: &'static [(Self, PageInfo)];
@@ -59,7 +59,7 @@ pub trait TypedDeviceView: Sync + 'static {
     /// The form that edits a link to this device.
     type ConnectForm: TypedConnectForm;
 
-    /// Whether the undo and redo keys act on the device's edits. False if an editor handles these keys.
+    /// Whether the undo and redo keys act on the device's edits. `false` if an editor handles these keys.
     const HAS_UNDO_KEYS: bool;
 
     /// Returns the serial number that distinguishes a device from others of its kind. Returns `None` if it is unknown
@@ -125,13 +125,13 @@ pub trait TypedDeviceView: Sync + 'static {
 /// View of a kind of device, object-safe for the window. For a device of another kind, it does not draw anything and
 /// reports no edits.
 pub trait DeviceView: Sync {
-    /// Returns the kind of device.
+    /// Returns the kind of device that the view displays.
     fn kind(&self) -> &'static dyn DeviceKind;
 
     /// Returns all pages, in navigation order.
     fn pages(&self) -> Vec<PageInfo>;
 
-    /// Returns whether the undo and redo keys act on the edits of the device.
+    /// Returns whether the undo and redo keys undo and redo edits of the device.
     fn has_undo_keys(&self) -> bool;
 
     /// Returns the header text of a moving device. Returns `None` while the device stands still.
@@ -226,7 +226,7 @@ struct Memory<M> {
 }
 
 impl<M: Default> Memory<M> {
-    /// Returns the memory for the given device. The text and selections of another device are cleared first.
+    /// Returns the memory for the given device. The texts and selections of a previous device are cleared first.
     fn for_device(&mut self, serial_number: Option<&str>) -> &mut M {
         if let Some(own) = serial_number
             && self.serial_number.as_deref() != Some(own)
@@ -269,9 +269,9 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     }
 }
 
-/// View of a tab that does not require a device.
+/// View of a tab that does not require a device, before a window is open.
 pub trait ToolView: Sync {
-    /// Returns the tool.
+    /// Returns the tool that the view displays.
     fn kind(&self) -> &'static dyn ToolKind;
 
     /// Returns the text id of the tab's name.

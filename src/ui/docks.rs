@@ -1,5 +1,5 @@
-//! The panels around the workspace. They can be docked and resized, and the layout is restored at the next start. If a
-//! layout does not load, the default is used.
+//! The panels around the workspace. They can be docked and resized, and the layout is restored at the next start. If
+//! the stored layout cannot be loaded, the default layout is used.
 
 use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub(super) enum Pane {
     Log,
 }
 
-/// Initial share of the row width taken by the Live panel.
+/// Initial fraction of the row width taken by the Live panel.
 const LIVE_SHARE: f32 = 0.3;
 /// Width in points of the Live panel without its plot.
 const VALUES_WIDTH: f32 = 248.0;
@@ -31,7 +31,7 @@ pub(super) struct Docks {
     edited: bool,
     /// Whether the Live panel was drawn without its plot in the last frame. `None` before the first frame.
     alone: Option<bool>,
-    /// Share of the row width of the Live panel with its plot.
+    /// Fraction of the row width of the Live panel with its plot.
     with_plot: f32,
 }
 

@@ -8,8 +8,7 @@ use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
-/// Width in points below which some buttons have no labels. It applies beside a profile, and beside a device's number
-/// of edits.
+/// Width in points below which some buttons have no labels, next to a profile or to the number of a device's edits.
 const NARROW_WIDTH: f32 = 660.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +83,7 @@ fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     label.on_hover_text(words);
 }
 
-/// Draws the list of connected devices of the matching kind. The profile can be written to them.
+/// Draws the list of connected devices to which the profile can be written.
 fn write_targets_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

@@ -1,5 +1,5 @@
-//! The end of the program by a signal or a lost display instead of the window. Drives are stopped and released before,
-//! on any thread that can do it.
+//! The end of the program by a signal or the loss of the display. Drives are stopped and released first, on any thread
+//! that can do so.
 
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,8 +22,8 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// Guard in the window's thread. It releases the drives when the display is lost. The display library then ends the
-    /// program, but thread-local values are still dropped.
+    /// Guard on the window's thread, which releases the drives when the display is lost. The display library then ends
+    /// the program, but thread-local values are still dropped.
     static RELEASE_GUARD: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
@@ -43,7 +43,7 @@ pub(super) fn install_handlers(studio: &Studio) {
     }
 }
 
-/// Ends the drives first. Then closes the window without any question. Returns whether the window closes.
+/// Stops and releases the drives, and then closes the window without any question. Returns whether the window closes.
 fn stop_and_close(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
     brakes.begin_stop();
     mailbox.send(Action::Quit);

@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::entry;
 use crate::app::Text;
 
-/// Inner margin of a text entry. With it, the entry is as high as a button.
+/// Inner margin of a text entry, which makes the entry as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     sized_entry(ui, text, width, label, hint, egui::TextStyle::Body.into())
@@ -50,7 +50,7 @@ pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &s
     response
 }
 
-/// Clears a secret entry and any state from which the secret could be restored.
+/// Clears a secret entry and any state from which the secret could be recovered.
 pub(crate) fn clear_secret(ui: &Ui, response: &Response, text: &mut String) {
     text.clear();
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
@@ -70,7 +70,7 @@ pub(crate) fn labelled_entry(
 }
 
 /// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then.
-/// If `take` rejects the text, it stays in the entry, with the reason below.
+/// If `take` rejects the text, the text stays in the entry, and the reason is drawn below it.
 pub fn committed_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,

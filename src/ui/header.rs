@@ -9,7 +9,7 @@ use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
 
-/// Width in points of the STOP button without any motion.
+/// Width of the STOP button in points while no motion is in progress.
 const STOP_BUTTON_WIDTH: f32 = 72.0;
 
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -215,8 +215,8 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Draws the STOP button. It ends every running job and every motion in all sessions. Its width doubles while a drive
-/// moves. While this window moves a drive, the button acts on press instead of release and ends only motion.
+/// Draws the STOP button. The button ends every running job and every motion in all sessions. Its width doubles while a
+/// drive moves. While this window moves a drive, the button acts on press instead of release and ends only motion.
 fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
@@ -250,12 +250,12 @@ fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec
     }
 }
 
-/// Returns whether a drive is moving that can be stopped from here.
+/// Returns whether a drive is moving that this window can stop.
 fn shows_stop_overlay(studio: &Studio) -> bool {
     studio.is_moving() && studio.can_stop_motion()
 }
 
-/// Draws the STOP button in its usual position while a drive moves. It is on top of anything that covers the window.
+/// Draws the STOP button in its usual position while a drive moves, on top of anything that covers the window.
 pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !shows_stop_overlay(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;

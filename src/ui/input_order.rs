@@ -1,6 +1,6 @@
 //! The order of input within a frame. On a busy computer, a click on an entry and the text typed after it can be in the
-//! same frame. However, the entry has the keyboard only from the next frame on. Text after such an event is therefore
-//! held back for a frame.
+//! same frame. However, the entry does not have the keyboard focus until the next frame. Text after such an event is
+//! therefore held back for a frame.
 
 use egui::{Event, Key};
 

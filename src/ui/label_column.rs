@@ -6,7 +6,7 @@ use super::Theme;
 
 /// Default width of the label column. A longer label widens it.
 const DEFAULT_LABEL_WIDTH: f32 = 132.0;
-/// Largest shares of the width for the label column, by default and for long labels.
+/// Maximum fractions of the width for the label column, by default and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
 #[derive(Clone, Copy, Default)]

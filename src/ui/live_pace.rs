@@ -1,20 +1,20 @@
 //! Interval of frames while live values arrive. Where software draws the window, as in a virtual machine, a frame costs
-//! far more processor time. Frames are then further apart, which leaves the processor to other programs.
+//! far more processor time. Frames are then further apart, which leaves processor time to other programs.
 
 use std::time::Duration;
 
-/// Shortest interval, at which motion looks smooth.
+/// Minimum interval, at which motion looks smooth.
 const MIN_INTERVAL: Duration = Duration::from_millis(50);
-/// Longest interval, at which values can still be followed.
+/// Maximum interval, at which the user can still follow the values.
 const MAX_INTERVAL: Duration = Duration::from_millis(125);
-/// Share of one processor core that the whole program may use while it displays live values.
+/// Fraction of one processor core that the whole program may use while it displays live values.
 const PROCESSOR_SHARE: f64 = 0.2;
-/// Time over which the share is measured.
+/// Time over which the processor usage is measured.
 const MEASURING_TIME: Duration = Duration::from_secs(1);
 
 pub(super) struct LivePace {
     interval: Duration,
-    /// Time of the last measurement, and the processor time used by then.
+    /// Time of the last measurement, and the processor time used until then.
     last: Option<(Duration, Duration)>,
 }
 
@@ -25,8 +25,8 @@ impl Default for LivePace {
 }
 
 impl LivePace {
-    /// Returns the interval to the frame after the one at `now`, on the clock of the window. `used` is the processor
-    /// time of the program so far, if the system reports it.
+    /// Returns the interval between the frame at `now`, on the clock of the window, and the next frame. `used` is the
+    /// processor time of the program so far, if the system reports it.
     pub(super) fn next(&mut self, now: Duration, used: Option<Duration>) -> Duration {
         let Some(used) = used else { return self.interval };
         let Some((since, before)) = self.last else {

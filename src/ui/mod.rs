@@ -1,5 +1,5 @@
 //! The window, which only draws. A view reads the state and pushes actions. It stores only its text buffers and
-//! selection, and never does I/O, decodes, sorts or blocks.
+//! selection, and never performs I/O, decodes, sorts or blocks.
 
 pub mod backups;
 mod cards;

@@ -60,8 +60,8 @@ fn open_pages_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views)
     }
 }
 
-/// Draws the page entries of a tab and returns the index of the clicked entry. `edited` identifies which pages have
-/// edits that are not written. They are marked.
+/// Draws the page entries of a tab and returns the index of the clicked entry. `edited` returns whether a page has
+/// edits that have not been written. Such pages are marked.
 fn pages_ui(
     ui: &mut Ui,
     theme: &Theme,

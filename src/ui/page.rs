@@ -31,9 +31,9 @@ pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: i
     });
 }
 
-/// Draws widgets whose ids do not depend on the widgets drawn before them. `name` must be unique in `ui`. Without this,
-/// a widget that appears or disappears above would change their ids. The keyboard focus would be lost, and a click
-/// between press and release.
+/// Draws widgets whose ids do not depend on the widgets drawn before them. `name` must be unique in `ui`. Otherwise, a
+/// widget that appears or disappears above would change their ids, which would lose the keyboard focus and clicks in
+/// progress.
 pub(super) fn with_stable_ids<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(name);
     ui.scope_builder(UiBuilder::new().scope_id(id), content).inner

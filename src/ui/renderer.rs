@@ -1,11 +1,13 @@
-//! The renderers of the window. They are tried in their order until one opens it.
+//! The renderers of the window. They are tried in order until one of them opens the window.
 //!
-//! OpenGL 2 exists wherever a graphics card has a driver, and on Linux also without a card. Windows without such a driver,
-//! as on remote desktops and in virtual machines, has only OpenGL 1.1; Direct3D 12 draws there in software.
+//! OpenGL 2 is available on every computer with a driver for its graphics card, and on Linux also without a card.
+//! Windows without such a driver, as on remote desktops and in virtual machines, has only OpenGL 1.1. Direct3D 12 then
+//! draws in software.
 
 use eframe::Renderer;
 
-/// Environment variable that selects a renderer, for a computer on which one opens the window but does not draw well.
+/// Environment variable that selects a renderer, for computers on which a renderer opens the window but does not draw
+/// properly.
 const RENDERER_VARIABLE: &str = "ENCODER_STUDIO_RENDERER";
 
 /// Names of the renderers in [`RENDERER_VARIABLE`].
@@ -15,12 +17,12 @@ const NAMES: &[(&str, Renderer)] = &[
     ("direct3d", Renderer::Wgpu),
 ];
 
-/// Returns the renderers to be tried: the one that the user has selected, or else all.
+/// Returns the renderers to try: the one selected by the user, or else all of them.
 pub(super) fn renderers_to_try() -> Vec<Renderer> {
     renderers_for(std::env::var(RENDERER_VARIABLE).ok().as_deref())
 }
 
-/// With another word, such as `none`, no renderer is left.
+/// Returns the renderers for the value of the variable. The list is empty for an unknown name, such as `none`.
 fn renderers_for(selected: Option<&str>) -> Vec<Renderer> {
     let is_wanted = |name: &str| selected.is_none_or(|selected| selected.eq_ignore_ascii_case(name));
     NAMES.iter().filter(|(name, _)| is_wanted(name)).map(|(_, renderer)| *renderer).collect()

@@ -1,9 +1,9 @@
-//! The arrow keys in a list of which one row is selected.
+//! Arrow keys in a list with one selected row.
 
 use egui::{EventFilter, Id, Key, Modifiers, Rect, Sense, Ui};
 
-/// Returns by how many rows the arrow keys move the selection. They do so after a click on a row, while `keys` has the
-/// keyboard focus.
+/// Returns the number of rows by which the arrow keys move the selection. They do so after a click on a row, while
+/// `keys` has the keyboard focus.
 pub(super) fn selection_step(ui: &Ui, keys: Id) -> Option<isize> {
     ui.interact(Rect::NOTHING, keys, Sense::focusable_noninteractive());
     if !ui.memory(|memory| memory.has_focus(keys)) {

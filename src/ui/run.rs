@@ -126,7 +126,8 @@ const NOT_OPENED: &str = "The window cannot be opened: neither OpenGL 2 nor Dire
 const NOT_OPENED: &str = "The window cannot be opened: the display does not answer, or a run-time package is missing (the \
                           README lists them; the log file says more). Without a window: encoder-studio help.";
 
-/// Shows a message in a box of the system if there is no terminal for it: the program was started from the start menu.
+/// Shows a message in a dialog of the system if there is no terminal for it, because the program was started from the
+/// start menu.
 #[cfg(windows)]
 fn show_without_terminal(message: &str) {
     use std::os::windows::io::AsRawHandle as _;
@@ -136,7 +137,7 @@ fn show_without_terminal(message: &str) {
     }
 }
 
-/// Other systems have no box without a window; their desktops keep the message in a log.
+/// Does not show a message. Other systems cannot show a dialog without a window, and their desktops log the message.
 #[cfg(not(windows))]
 const fn show_without_terminal(_message: &str) {}
 

@@ -1,6 +1,6 @@
-//! The line at the bottom of the window. Its space is reserved, so nothing moves when a message appears. It shows the
-//! notice, the reason for a missing connection, or the running job, and otherwise the last frame or message. Its
-//! buttons open the lower panel.
+//! The line at the bottom of the window. Its space is reserved, so nothing moves when a message appears. It displays
+//! the notice, the reason for a missing connection, or the running job. Otherwise, it displays the last frame or
+//! message. Its buttons open the lower panel.
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, Layout, Panel, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
@@ -15,7 +15,7 @@ use crate::link::Direction;
 
 /// Height of the status line, enough for two lines of small text.
 const BAR_HEIGHT: f32 = 36.0;
-/// Share of the width for the running job while a notice is shown beside it.
+/// Fraction of the width for the running job while a notice is displayed next to it.
 const JOB_WIDTH_SHARE: f32 = 0.45;
 const TIME: &str = "%H:%M:%S%.3f";
 
@@ -62,7 +62,7 @@ fn chevron_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Act
     }
 }
 
-/// Draws the status line from right to left. The buttons then keep their position, however long the text is.
+/// Draws the status line from right to left. The buttons thus keep their position regardless of the length of the text.
 fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let notice = studio.services.log.current();
     let device = device_in_tab(studio, studio.settings.tab);
@@ -106,8 +106,8 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
     });
 }
 
-/// Returns whether a job is running or a link is being opened. An open review does not count, because it shows its own
-/// progress.
+/// Returns whether a job is running or a link is being opened. A job with an open review is excluded, because the
+/// review shows its progress.
 fn has_running_job(device: &AnyDevice) -> bool {
     *device.phase() == Phase::Opening || device.running_job().is_some() && !device.is_reviewing()
 }
@@ -146,7 +146,7 @@ fn notice_text(theme: &Theme, notice: &Notice) -> String {
     format!("{}{}", notice.device_prefix(|text| theme.format_text(text)), words.join(" "))
 }
 
-/// Draws a message in the remaining space. If one line is too short, it is in small text on two lines.
+/// Draws a message in the remaining space, in small text on two lines if it does not fit on one.
 fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     let body = TextStyle::Body.resolve(ui.style());
     let width = ui.painter().layout_no_wrap(words.clone(), body.clone(), colour).size().x;
@@ -161,7 +161,7 @@ fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     ui.add(egui::Label::new(job).wrap().selectable(false));
 }
 
-/// Draws the last frame of the displayed device. If the last message is newer, draws that instead.
+/// Draws the last frame of the displayed device, or the last message if it is newer.
 fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_frame_line(device.trace())?)));
     let frame = frame.and_then(|(trace, line)| Some((trace.line_time(line)?, line)));
@@ -184,8 +184,8 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Returns the last reply if it is one of the last two frames. Otherwise, returns the last frame. The status line thus
-/// does not flicker between requests and replies.
+/// Returns the last reply if it is one of the last two frames, and the last frame otherwise. The status line thus does
+/// not flicker between requests and replies.
 fn last_frame_line(trace: &TraceLog) -> Option<&TraceLine> {
     let mut newest = trace.lines().iter().rev().take(2);
     let is_reply = |line: &&TraceLine| line.direction == Direction::Received;

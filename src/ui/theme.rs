@@ -1,5 +1,5 @@
 //! The theme of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the texts
-//! of one language. Every view gets a [`Theme`]. No view defines colours, sizes or fonts.
+//! of one language. Every view receives a [`Theme`]. Views do not define colours, sizes or fonts.
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
@@ -56,13 +56,13 @@ impl Theme {
         crate::app::format_decimal(value, decimals, self.language)
     }
 
-    /// Returns a formatted number, whose decimal separator is a point, in the form of the language.
+    /// Formats a number, given with a decimal point, with the decimal sign of the current language.
     pub fn digits(&self, number: &str) -> String {
         crate::app::texts::localize_number(number, self.language)
     }
 
-    /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would only
-    /// show rounding errors.
+    /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would show
+    /// only rounding errors.
     pub fn format_plain(&self, value: f64) -> String {
         const DIGITS: i32 = 12;
         let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
@@ -85,7 +85,7 @@ impl Theme {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
-    /// Adds the space between two groups. It is `space.groups`, less the spacing that egui puts before the next widget.
+    /// Adds the space between two groups. It is `space.groups` minus the spacing that egui adds before the next widget.
     pub fn add_gap(&self, ui: &mut egui::Ui) {
         ui.add_space((self.space.groups - ui.spacing().item_spacing.y).max(0.0));
     }

@@ -1,4 +1,4 @@
-//! The memory of the views while the window is open. It holds text buffers and selections, but no state.
+//! The memory of the views while the window is open: text buffers and selections, but no application state.
 
 use std::collections::BTreeMap;
 
@@ -54,7 +54,7 @@ impl Views {
         Some(tool.as_mut())
     }
 
-    /// Returns the open page of the open tab. A device tab without an open device has its first page open.
+    /// Returns the open page of the open tab. For a device tab without an open device, this is the first page.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
         if tab == LOGBOOK_TAB {

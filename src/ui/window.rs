@@ -1,4 +1,4 @@
-//! The window: header, navigation, panels, dialogs and keyboard; implements the eframe application.
+//! The window: header, navigation, panels, dialogs and keyboard. Implements the eframe application.
 
 use std::time::Duration;
 
@@ -23,11 +23,11 @@ pub struct Window {
     docks: Docks,
     keys: KeyboardFilter,
     held_input: DeferredInput,
-    /// Whether the request to close the window was already handled in this frame.
+    /// Whether a request to close the window has already been handled in this frame.
     close_heard: bool,
     look: &'static ThemeData,
     dressed: Option<crate::app::ColorScheme>,
-    /// Displayed notice, and the time on the window's clock since which it is shown.
+    /// Displayed notice, and the time on the window's clock at which it appeared.
     notice_since: Option<(jiff::Zoned, f64)>,
     live_pace: LivePace,
     processor_time: fn() -> Option<Duration>,
@@ -62,7 +62,7 @@ impl Window {
         &self.studio
     }
 
-    /// Splits the input of a frame. Typed text then reaches the entry that was clicked just before. Nothing is held
+    /// Splits the input of a frame, so that typed text reaches the entry that was clicked just before. Nothing is held
     /// back while drives are under control.
     pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.has_control();
@@ -164,7 +164,7 @@ impl Window {
     }
 
     /// Draws the status line at the bottom, with the current notice. A notice that requires an action stays until it is
-    /// dismissed. Others disappear by themselves.
+    /// dismissed. Other notices disappear after a time.
     fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
         let Some(notice) = self.studio.services.log.current() else {
@@ -184,8 +184,8 @@ impl Window {
         }
     }
 
-    /// Handles requests to close the window even if nothing is drawn. A minimised window must still be closable. This
-    /// never keeps a motion going.
+    /// Handles requests to close the window even if nothing is drawn. A minimised window can thus be closed as well.
+    /// This function never prolongs a motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.handle_close_request(ctx);
         // The drawing of this frame must know about it.
@@ -208,7 +208,7 @@ impl Window {
         ctx.request_repaint_after(Duration::from_millis(30));
     }
 
-    /// Handles a request to close the window. All motion is stopped before any questions are asked.
+    /// Handles a request to close the window. All motion is stopped before any question is asked.
     fn handle_close_request(&mut self, ctx: &egui::Context) {
         let (asked, minimised) = ctx.input(|input| {
             let viewport = input.raw.viewport();
@@ -310,8 +310,8 @@ impl Window {
         asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
-    /// Handles Esc. It first stops what is running and then closes what is open. A half-typed byte, an open menu or a
-    /// field being dragged takes precedence, because it holds the keyboard or the pointer.
+    /// Handles the Escape key: stops the running job, or else closes the open dialog or panel. A half-typed byte, an
+    /// open menu or a field being dragged takes precedence, because it holds the keyboard or the pointer.
     fn handle_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // While this window moves a drive, Esc applies to the motion, even if something is open or dragged.
         let moves = self.studio.is_turned_by_hand();

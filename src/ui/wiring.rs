@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
-/// Draws a list of wires with texts from a catalogue. The wire names form a column of the given width.
+/// Draws a list of wires with texts from a catalogue. The column of wire names has the given width.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
     theme: &Theme,

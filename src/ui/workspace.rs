@@ -11,7 +11,7 @@ use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, LOGBOOK_TAB, Studio, connect};
 
-/// Share of the height above the options of an empty tab, and their width.
+/// Fraction of the height above the options of an empty tab, and the width of the options in points.
 const EMPTY_TAB_TOP_SHARE: f32 = 0.22;
 const OPTION_WIDTH: f32 = 240.0;
 

@@ -134,8 +134,8 @@ impl Signals {
         self.family
     }
 
-    /// Returns the signal periods per revolution, at least 1. Without them, the results that depend on them are
-    /// omitted.
+    /// Returns the signal periods per revolution, at least 1. Returns `None` if the number is unknown. Results that
+    /// depend on it are then omitted.
     pub fn signal_periods(&self) -> Option<u32> {
         self.periods
     }
@@ -180,7 +180,7 @@ impl Signals {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// Returns the changes relative to the capture kept for comparison. Both are judged by the same limits.
+    /// Returns the changes relative to the capture kept for comparison. Both use the same limits.
     pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.with_new_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
@@ -332,7 +332,7 @@ impl Signals {
         }
     }
 
-    /// Returns the table of the displayed capture. A table that is still being read does not count.
+    /// Returns the table of the displayed capture, but not a table that is still being read.
     fn displayed_table(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }

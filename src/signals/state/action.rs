@@ -40,7 +40,7 @@ pub enum TaskResult {
         number: u32,
         read: Box<ReadCapture>,
     },
-    /// The displayed capture was judged again.
+    /// The displayed capture was diagnosed again.
     Judged {
         /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,

@@ -183,7 +183,7 @@ impl SignalFeed {
         }
     }
 
-    /// Stops the feed if it is running, as if it had ended by itself.
+    /// Stops the feed if it is running. It then appears as a feed that has ended without a request.
     #[cfg(test)]
     pub(super) fn stop(&self) {
         match self {

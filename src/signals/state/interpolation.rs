@@ -8,7 +8,7 @@ use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// Table sizes that are displayed, in intervals.
+/// Table sizes for the comparison, in intervals.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub fn table_errors() -> &'static [OctantTableError] {
     &ERRORS
 }
 
-/// Determines the largest error of a table with the given number of intervals.
+/// Returns the largest error of a table with the given number of intervals.
 fn table_error(intervals: usize) -> OctantTableError {
     const POINTS_PER_INTERVAL: usize = 64;
     let table = OctantTable::new(intervals);

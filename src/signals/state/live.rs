@@ -1,5 +1,5 @@
 //! A live source, which is the virtual encoder or an adapter, with its settings and newest samples. The samples are
-//! measured a few times per second. They come from `worker::stream`, and drawing never waits for them.
+//! measured a few times per second. The samples come from `worker::stream`, and drawing never waits for them.
 
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ pub struct Source {
     /// Link to the adapter, as entered.
     link: String,
     sample_hz: u32,
-    /// Family of the encoder that the adapter supplies. It is never stored in the settings, since another encoder may
+    /// Family of the encoder that the adapter supplies. It is never stored in the settings, because another encoder may
     /// be connected at the next start.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
@@ -67,7 +67,7 @@ pub struct Source {
     kind: SourceKind,
     window_ms: u32,
     runs: u32,
-    /// Number of lost samples, without those that a running stream counts.
+    /// Number of lost samples, except those lost by the running stream.
     lost: u64,
     live: Option<LiveSource>,
 }
@@ -166,7 +166,8 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
-    /// Returns the longest duration that can be measured, in milliseconds. Returns `None` if the setting is shorter.
+    /// Returns the longest duration that can be measured, in milliseconds. Returns `None` if the setting is within this
+    /// limit.
     pub fn limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
@@ -235,7 +236,7 @@ impl Source {
         self.adapter_problem = Some(why);
     }
 
-    /// Stops the adapter if it uses the connection of the given link, because an encoder search needs it.
+    /// Stops the adapter if it uses the connection of the given link, because an encoder search needs the connection.
     pub(crate) fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds = |live: &LiveSource| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
         if self.live.as_ref().is_some_and(holds) {

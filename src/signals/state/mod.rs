@@ -1,6 +1,6 @@
 //! State of the Signals tab: a capture of sine and cosine and its results. The capture comes from a file, a virtual
-//! encoder or an adapter. The state works without a window and without an encoder. Long operations run as tasks, and
-//! late results are dropped.
+//! encoder or an adapter. The state requires neither a window nor an encoder. Long operations run as tasks, and late
+//! results are dropped.
 
 mod act;
 mod action;

@@ -63,7 +63,7 @@ impl Unit {
 }
 
 impl QuantityLimit {
-    /// Returns whether a value is within the limit. A value equal to the limit is within it.
+    /// Returns whether a value is within the limit. The limit itself is included.
     pub fn is_met(self, value: f64) -> bool {
         /// Tolerance for rounding errors of a value that equals the limit.
         const ROUNDING_TOLERANCE: f64 = 1e-9;
@@ -88,7 +88,8 @@ impl Quantity {
         self
     }
 
-    /// Judges the quantity by a limit. Exceeding it is only a warning, because the position is still correct.
+    /// Compares the quantity with a limit. A value beyond the limit is only a warning, because the position is still
+    /// correct.
     fn with_limit(mut self, bound: QuantityLimit) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.is_met(self.value) { Verdict::Ok } else { Verdict::Warn });
@@ -101,8 +102,8 @@ impl Quantity {
     }
 }
 
-/// Returns the quantities of a signal, judged by the limits of an encoder family. The speed is included if the number
-/// of `periods` per revolution is known. The list is empty if no ellipse was found.
+/// Returns the quantities of a signal, with verdicts according to the limits of an encoder family. The speed is
+/// included if the number of `periods` per revolution is known. The list is empty if no ellipse was found.
 pub fn signal_quantities(measurement: &MeasurementResult, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = ellipse_quantities(analysis, family);

@@ -1,6 +1,6 @@
-//! Comparison of a capture with a second measurement of the same shaft. A reference encoder gives DNL and INL, and an
-//! absolute position gives its lead. See SICK 8010701, definitions of errors and forming the absolute position, and
-//! sections 4 and 6 of the project's sine/cosine reference.
+//! Comparison of a capture with a second measurement of the same shaft. A reference encoder yields DNL and INL. An
+//! absolute position yields its lead over the analogue position. See SICK 8010701, definitions of errors and forming
+//! the absolute position, and sections 4 and 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
 use crate::analysis::arctan::{Phase, from_voltages};
@@ -29,8 +29,8 @@ pub struct Part {
     pub differential_deg: f64,
     /// INL in mechanical degrees, as a ± value.
     pub integral_deg: f64,
-    /// Curve of the total deviation: reference angle and deviation in mechanical degrees. Each section of the curve has
-    /// its minimum and its maximum.
+    /// Curve of the total deviation: reference angle and deviation in mechanical degrees. Each section of the curve is
+    /// represented by its minimum and its maximum.
     pub deviation: Vec<(f64, f64)>,
     /// Curve of the deviation averaged over a period: reference angle and deviation in mechanical degrees.
     pub mean: Vec<(f64, f64)>,

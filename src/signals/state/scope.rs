@@ -22,8 +22,8 @@ pub struct Scope {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAxisError {
     GoBack,
-    /// The times are beyond 292 years, the range of nanoseconds. The cause may be milliseconds that were read as
-    /// seconds.
+    /// The times are beyond 292 years, the range of nanosecond time stamps. The cause may be milliseconds that were
+    /// read as seconds.
     TooFar,
 }
 
@@ -32,7 +32,7 @@ const FARTHEST_S: f64 = 9.2e9;
 
 /// Maximum number of samples kept of a running source: five seconds at 100 kHz.
 const MAX_KEPT_SAMPLES: usize = 500_000;
-/// Time span in nanoseconds that is displayed first.
+/// Initially displayed time span in nanoseconds.
 const SPAN: i64 = 10_000_000;
 /// Number of samples added to the recorder at a time.
 const CHUNK_SAMPLES: usize = 1 << 16;

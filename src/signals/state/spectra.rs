@@ -1,4 +1,5 @@
-//! Spectra of both channels, reduced for drawing. Each frequency range keeps its highest line, and so no peak is lost.
+//! Spectra of both channels, reduced for drawing. Each frequency range is represented by its highest line, so no peak
+//! is lost.
 
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
@@ -24,10 +25,10 @@ pub struct ChannelSpectrum {
 const MAX_SAMPLES: usize = 1 << 20;
 const LINES: usize = 1_000;
 const PEAKS: usize = 6;
-/// Smallest amplitude of a labelled peak, as a fraction of the highest peak.
+/// Minimum amplitude of a labelled peak, as a fraction of the highest peak.
 const MIN_PEAK: f64 = 1e-4;
-/// Smallest amplitude of a labelled peak, as a multiple of the median of all lines. Lower peaks may be noise: in a
-/// million lines of noise, the highest reaches 4.5.
+/// Minimum amplitude of a labelled peak, as a multiple of the median of all lines. Lower peaks may be noise: in a
+/// million lines of noise, the highest line reaches 4.5.
 const NOISE: f64 = 6.0;
 
 impl Spectra {
@@ -75,7 +76,8 @@ fn median(values: &[f64]) -> f64 {
 
 /// Converts a peak amplitude in volts to an rms level in decibels relative to one volt.
 pub fn decibel_volts(peak_v: f64) -> f64 {
-    /// Lowest level in decibels. A double cannot distinguish a lower one from zero next to one volt.
+    /// Minimum level in decibels. At this level, an amplitude is indistinguishable from zero in a double next to one
+    /// volt.
     const MIN_DECIBELS: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(MIN_DECIBELS)
 }

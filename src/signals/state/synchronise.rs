@@ -12,11 +12,11 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SynchroniseAction {
     Edit(Box<Form>),
-    /// Enters the offset measured from the readings.
+    /// Uses the offset measured from the readings as the entry.
     UseOffset,
-    /// Enters the offset found in a capture, in 1/32 of a period and without the half step.
+    /// Uses the offset found in a capture as the entry, in 1/32 of a period and without the half step.
     UseCaptured(f64),
-    /// Discards the readings that measure the offset.
+    /// Discards the readings from which the offset is measured.
     Forget,
 }
 
@@ -31,9 +31,9 @@ pub struct Form {
     pub cosine_v: String,
     pub periods: String,
     pub turns: String,
-    /// Lead of the absolute position that is expected, in 1/32 of a period, as entered.
+    /// Expected lead of the absolute position over the analogue position, in 1/32 of a period, as entered.
     pub offset: String,
-    /// Whether the absolute position refers to the middle of its step.
+    /// Whether the absolute position refers to the middle of its step instead of the beginning.
     pub half_step: bool,
     /// Value of the quadrature counter in quarters of a period, as entered, or empty without a counter.
     pub quarters: String,
@@ -68,8 +68,8 @@ pub struct SynchronisationResult {
     pub period: u64,
     /// Step of the absolute position within its period, 0 to 31.
     pub step: u64,
-    /// Lead of the absolute over the analogue position within the period, in 1/32 of a period. It does not take the
-    /// entered offset and half step into account.
+    /// Lead of the absolute over the analogue position within the period, in 1/32 of a period. The entered offset and
+    /// half step are not taken into account.
     pub difference_steps: f64,
     /// Fine position, or the reason why it cannot be determined.
     pub result: Result<SynchronisedPosition, AmbiguousPeriodError>,

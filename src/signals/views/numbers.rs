@@ -7,11 +7,11 @@ use crate::signals::state::{Quantity, QuantityLimit, Unit};
 use crate::signals::views::translate;
 use crate::ui::{Theme, controls};
 
-/// Minimum width in points for showing a value in its second unit. In a narrower window, the second unit is in the
-/// tooltip.
+/// Minimum width in points at which a value is also displayed in its second unit. In a narrower window, the second unit
+/// is in the tooltip.
 const MIN_SECOND_UNIT_WIDTH: f32 = 390.0;
-/// Minimum width in points for the column of limits. In a narrower window, each limit is beside its verdict icon,
-/// without the unit, which is that of the value.
+/// Minimum width in points for the column of limits. In a narrower window, each limit is displayed next to its verdict
+/// icon. Its unit, which is that of the value, is omitted.
 const MIN_LIMITS_WIDTH: f32 = 350.0;
 const LIMITS_WIDTH: f32 = 110.0;
 

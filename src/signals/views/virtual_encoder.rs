@@ -17,7 +17,7 @@ struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
     decimals: usize,
-    /// Whether the slider has a logarithmic scale, which gives small values more room.
+    /// Whether the slider has a logarithmic scale, on which small values have more room.
     logarithmic: bool,
 }
 

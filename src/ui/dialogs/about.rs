@@ -1,4 +1,5 @@
-//! The about dialog, with the program and its components, and the help of the open page, with the manual's section.
+//! The about dialog, with the program and its components. Also the help for the open page, with references to the
+//! manual.
 
 use egui::{ScrollArea, Ui};
 

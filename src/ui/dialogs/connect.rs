@@ -28,7 +28,7 @@ pub(in crate::ui) struct ConnectView {
 /// Maximum number of recent links offered.
 const LINKS: usize = 5;
 const DIALOG_WIDTH: f32 = 600.0;
-/// Height of the two lines reserved for the reason why the dialog cannot continue.
+/// Height in points of the two lines reserved for the reason why the dialog cannot continue.
 const REASON_HEIGHT: f32 = 40.0;
 
 pub(in crate::ui) fn connect_ui(
@@ -101,7 +101,7 @@ fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut V
     ui.add_space(theme.space.between);
 }
 
-/// Draws the entry for the link in the form of the command line. The link and the form update each other.
+/// Draws the entry for the link in the notation of the command line. The link and the form update each other.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example_link());
     let (word, hint) = (theme.translate("connect.link"), theme.format_text(&hint));

@@ -13,12 +13,12 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// Folder that relative paths start from.
+    /// Folder from which relative paths start.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// Time within which no user closes a dialog. A dialog that ends sooner without an answer is assumed never to have
+/// Time below which no user can close a dialog. A dialog that ends sooner without an answer is assumed never to have
 /// opened.
 const TOO_FAST: Duration = Duration::from_millis(250);
 

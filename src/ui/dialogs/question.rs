@@ -1,4 +1,4 @@
-//! The question before an action by which something would be lost.
+//! The question before an action that would cause a loss of data.
 
 use egui::RichText;
 

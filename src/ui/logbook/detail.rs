@@ -82,7 +82,7 @@ fn items_ui(ui: &mut Ui, theme: &Theme, items: &[ChangedItem]) {
     }
 }
 
-/// Draws what can be done with the backup. It can be compared and restored if the device is open.
+/// Draws the actions for the backup. It can be compared and restored while the device is open.
 fn backup_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -123,7 +123,7 @@ fn backup_ui(
     });
 }
 
-/// Shows a device and executes a command of it.
+/// Shows a device and executes a command for it.
 fn push_for(device: &AnyDevice, command: DeviceCommand, actions: &mut Vec<Action>) {
     actions.push(Action::Select(device.id()));
     actions.push(device.command(command));

@@ -17,7 +17,7 @@ use super::{Theme, icons};
 use crate::app::{Action, LogbookMatches, Rgb, Studio, Text};
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Outcome};
 
-/// The page in the help.
+/// The logbook page, as listed in the help.
 pub(super) const PAGE: PageInfo = PageInfo::new(icons::BOOK_OPEN_TEXT, "logbook.title", "logbook.help");
 
 const ROW: f32 = 22.0;
@@ -34,7 +34,7 @@ const DETAIL: f32 = 330.0;
 pub(super) struct LogbookView {
     search: String,
     selected: Option<EntryId>,
-    /// Note that is being written, with the device it is about.
+    /// Note being written, with the device to which it belongs.
     note: Option<(DeviceKey, String)>,
 }
 

@@ -8,7 +8,7 @@ use crate::ui::controls::{empty_placeholder, severity};
 use crate::ui::{Theme, icons};
 
 const ROW_HEIGHT: f32 = 22.0;
-/// Maximum number of notices drawn. The log file has all of them.
+/// Maximum number of notices drawn. The log file contains all of them.
 const MAX_NOTICES: usize = 200;
 const TIME: &str = "%H:%M:%S";
 

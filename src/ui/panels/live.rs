@@ -10,7 +10,7 @@ use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_butt
 use crate::ui::page::with_stable_ids;
 use crate::ui::{Theme, Views, icons, plot};
 
-/// Polling intervals in microseconds. With the first one, polls follow each other without a pause.
+/// Polling intervals in microseconds. The first one is zero: each poll begins as soon as the previous one has ended.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
 /// Sample intervals of a streaming adapter, in microseconds.
@@ -21,7 +21,7 @@ const DEFAULT_INTERVAL_US: u64 = 50_000;
 /// Panel height in points below which the numbers beside the position are on one line.
 pub(crate) const LOW_PANEL_HEIGHT: f32 = 460.0;
 
-/// Minimum width of the rate selector, and panel width from which the first button has a label.
+/// Minimum width of the rate selector, and minimum width of the panel at which the first button has a label, in points.
 const MIN_RATE_WIDTH: f32 = 64.0;
 const ONE_ROW: f32 = 280.0;
 
@@ -65,8 +65,8 @@ fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     });
 }
 
-/// Returns whether a job prevents reading the position. Very short jobs do not count, because the number would only
-/// flicker.
+/// Returns whether a job prevents the position from being read. Very short jobs are ignored, because the number would
+/// only flicker.
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
@@ -98,7 +98,7 @@ pub(crate) fn remark_ui(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb
     ui.add(egui::Label::new(RichText::new(theme.translate(word)).color(ink)).truncate());
 }
 
-/// Draws the rows of a position that is not read yet. They reserve the space, so the buttons below do not move later.
+/// Draws the rows of a position that has not been read. They reserve space, so the buttons below do not move later.
 pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) {
     const UNKNOWN: &str = "–";
     if ui.available_height() < LOW_PANEL_HEIGHT {
@@ -110,7 +110,7 @@ pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) 
     }
 }
 
-/// Draws the position as sent by the device. The font is smaller if one line is too short.
+/// Draws the position as sent by the device, in a smaller font if it does not fit on one line.
 pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     let value = theme.monospace(value);
     let room = ui.available_width() - label_width(ui) - ui.spacing().item_spacing.x;

@@ -1,6 +1,6 @@
 //! The trace panel of the selected session: time, gap, direction, bytes, meaning. The newest frame is at the bottom and
-//! stays visible until the user scrolls up or pauses the list. After that, the visible frames keep their position while
-//! others arrive. A selected frame is shown with all of its bytes beside the list.
+//! stays visible until the user scrolls up or pauses the list. The visible frames then keep their position while others
+//! arrive. A selected frame is shown with all of its bytes beside the list.
 
 mod detail;
 
@@ -21,7 +21,7 @@ const SEARCH_WIDTH: f32 = 200.0;
 /// Widths of the columns with the time and the gap, and of the arrow.
 const TIMES: [f32; 2] = [96.0, 76.0];
 const ARROW_WIDTH: f32 = 16.0;
-/// Share of the bytes in the remaining width.
+/// Fraction of the remaining width for the column of bytes.
 const BYTES_SHARE: f32 = 0.48;
 /// Width of a selected frame beside the list in points.
 const DETAIL_WIDTH: f32 = 290.0;
@@ -264,7 +264,6 @@ fn line_ui(
     height
 }
 
-/// Returns the colour of a frame by its fault and direction.
 fn frame_colour(theme: &Theme, line: &TraceLine) -> Rgb {
     let palette = theme.palette;
     match (line.fault, line.direction) {

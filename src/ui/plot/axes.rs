@@ -4,7 +4,7 @@ use crate::analysis::SampleTime;
 use crate::app::recorder::SAMPLE;
 use crate::app::{Language, format_decimal};
 
-/// Returns a step of 1, 2 or 5 times a power of ten. It divides `span` into at most `most` parts.
+/// Returns the smallest step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
 pub(super) fn step_1_2_5(span: f64, most: f64) -> f64 {
     let least = span / most.max(1.0);
     if !least.is_finite() || least <= 0.0 {
@@ -22,7 +22,8 @@ pub(super) fn decimal_places(step: f64) -> usize {
 }
 
 pub(super) fn tick_values(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// Maximum number of ticks, more than any picture can show. Without it, a step of zero would loop forever.
+    /// Maximum number of ticks, more than a plot can display. Without this limit, a step of zero would cause an endless
+    /// loop.
     const MAX_TICKS: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MAX_TICKS) } else { 0 };
@@ -36,8 +37,8 @@ pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { format_decimal(value, decimals, language) }
 }
 
-/// Returns a range that contains `low` to `high` and has at least the length `least`. It ends at round steps, so it
-/// does not change with every sample.
+/// Returns a range that contains `low` to `high` and has at least the length `least`. Its limits are multiples of a
+/// round step, so the range does not change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
         let middle = f64::midpoint(low, high);
@@ -126,7 +127,8 @@ fn time_step(span: i64, most: usize) -> i64 {
     found.unwrap_or(2400 * HOUR * SECOND)
 }
 
-/// Formats a time as an axis label for the given step. Steps below one second use a unit; others use clock notation.
+/// Formats a time as an axis label for the given step. The label has a unit if the step is below one second, and clock
+/// notation otherwise.
 fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     if nanoseconds == 0 {
         return "0".to_owned();
@@ -178,7 +180,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
-/// Formats a point in time with the precision of a picture that spans `span` nanoseconds.
+/// Formats a point in time with the precision of a plot that spans `span` nanoseconds.
 pub(super) fn time_of_day(time: SampleTime, span: i64, language: Language) -> String {
     let nanoseconds = time.as_nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);

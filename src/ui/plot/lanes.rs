@@ -51,7 +51,7 @@ pub(super) struct ReducedLane {
     gutter: f32,
 }
 
-/// Inputs of a picture. It is made again only if they change.
+/// Inputs of a picture, which is drawn again only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<SampleGroupStamp>,
@@ -178,8 +178,8 @@ fn value_step((low, high): (f64, f64), height: f32) -> f64 {
     if axes::tick_values(low, high, step).count() < 2 { of_distance(LOW_LANE_TICK_SPACING) } else { step }
 }
 
-/// Returns the value range of a lane. It is chosen by the user or fitted to the values. Returns `None` if the lane has
-/// no values.
+/// Returns the value range of a lane, as chosen by the user or fitted to the values. Returns `None` if the lane has no
+/// values.
 fn lane_range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &ReducedLane) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);

@@ -1,8 +1,8 @@
 //! The plot. It draws a recorder, and turns input of the pointer and the keyboard into actions.
 //!
-//! A drag selects a box to zoom into, or moves a cursor. With the right button or Shift, it moves the picture. The
-//! wheel makes the time span longer or shorter around the pointer. A double click shows everything. Keys: ← → move, + −
-//! zoom, Home everything, End the newest, A and B the cursors.
+//! A drag selects a box to zoom into, or moves a cursor. A drag with the right button or Shift moves the picture. The
+//! wheel makes the time span longer or shorter around the pointer. A double click shows everything. Keys: ← and → move,
+//! + and − zoom, Home shows everything, End shows the newest samples, and A and B set the cursors.
 
 mod axes;
 mod chart;
@@ -50,7 +50,7 @@ impl PlotUiState {
     }
 }
 
-/// Recorder of a plot, with the list of the user's actions.
+/// Recorder of a plot, and the list for the user's actions.
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,

@@ -9,7 +9,7 @@ use crate::app::recorder::{Cursor, RecorderAction};
 
 /// Distance in points within which the pointer grabs a cursor.
 const GRAB_DISTANCE: f32 = 6.0;
-/// Size in points of a dragged box below which the drag counts as a click.
+/// Size in points of a dragged box below which the drag is a click.
 const CLICK_SIZE: f32 = 5.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +94,7 @@ fn continue_drag(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout
     }
 }
 
-/// Zooms into the chosen box. A wide box selects a time span, and a tall box a value range. A box that is both selects
+/// Zooms into the chosen box. A wide box selects a time span, a tall box a value range, and a box that is both selects
 /// both.
 fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
@@ -162,7 +162,7 @@ fn handle_keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: 
     }
 }
 
-/// Shifts the visible time span by the given share of its length.
+/// Shifts the visible time span by the given fraction of its length.
 fn shift(context: &mut Context<'_>, share: f64) {
     let (from, to) = context.recorder.window_bounds();
     let by = (context.recorder.window_length() as f64 * share) as i64;

@@ -53,7 +53,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Sam
     }
 }
 
-/// Width in points from which the numbers of all lines are stacked.
+/// Minimum width in points at which the numbers of all lines are stacked.
 const STACKED_WIDTH: f32 = 640.0;
 
 fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
@@ -147,7 +147,7 @@ fn swatch_ui(ui: &mut Ui, theme: &Theme, line: &Series) {
     ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::series_colour(theme, line));
 }
 
-/// Formats the raw sample under the pointer. Without the pointer on the chart, formats the newest sample.
+/// Formats the raw sample under the pointer, or the newest sample if the pointer is not on the chart.
 fn current_value(context: &Context<'_>, line: &Series, hovered: Option<SampleTime>) -> String {
     let sample = hovered.map_or_else(|| latest_sample(context, line), |time| context.recorder.sample_at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
@@ -176,7 +176,7 @@ fn cursor_figures(theme: &Theme, line: &Series, measured: &CursorReadings) -> Ve
     figures
 }
 
-/// Draws the reason why there are no samples. Also draws the number of invalid samples.
+/// Draws the reason why there are no samples, and the number of invalid samples.
 fn remarks_ui(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&CursorReadings>) {
     let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {

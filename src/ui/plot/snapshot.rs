@@ -21,13 +21,13 @@ pub(super) enum Screenshot {
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Requests a picture of a later frame. In the current one, the menu is still open.
+    /// Requests a picture of a later frame, because the menu is still open in the present one.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
 
-    /// Returns whether a picture is pending. The next frame may then be captured.
+    /// Returns whether a picture is pending and may be captured in the next frame.
     pub(super) fn is_wanted(&self) -> bool {
         !matches!(self, Screenshot::None)
     }

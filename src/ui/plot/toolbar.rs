@@ -22,7 +22,7 @@ const SPANS: [(i64, &str); 10] = [
     (86_400, "recorder.span_86400"),
 ];
 
-/// Width in points from which all tools are in one row. In a narrower panel, a menu has some of them.
+/// Minimum width in points at which all tools are in one row. In a narrower panel, some of them are in a menu.
 const ONE_ROW: f32 = 284.0;
 
 pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut PlotUiState) {

@@ -1,5 +1,5 @@
-//! A line of samples as shapes. Dense samples are one mesh without antialiasing, which is cheap to fill. Sparse samples
-//! are a smooth line with its points. Breaks stay gaps, and invalid samples and warnings stay visible.
+//! A line of samples as shapes. Dense samples are one mesh without antialiasing, which is fast to fill. Sparse samples
+//! are a smooth line with dots. Breaks are gaps, and invalid samples and warnings are always visible.
 
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
@@ -10,7 +10,7 @@ use crate::analysis::history::{Flags, HistoryPicture};
 const LINE_WIDTH: f32 = 1.5;
 /// Number of points up to which a line is drawn smoothly.
 const MAX_SMOOTH_POINTS: usize = 1500;
-/// Minimum sample spacing in points at which each sample gets a dot.
+/// Minimum sample spacing in points at which each sample is drawn with a dot.
 const DOT_SPACING: f32 = 8.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +28,8 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Returns the left edge of the pixel column for a time. Columns have fixed positions, independent of the samples
-    /// in them.
+    /// Returns the left edge of the pixel column for a time. Columns have fixed positions that do not depend on the
+    /// samples.
     fn column(&self, time: SampleTime) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }

@@ -1,4 +1,5 @@
-//! A cell with one bit, used in every strip of bits. It has the colour of its field, and a one is stronger than a zero.
+//! A cell with one bit, used in every strip of bits. It has the colour of its field, and a one is more intense than a
+//! zero.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect};
 

@@ -31,7 +31,7 @@ pub struct Chart<'a> {
     pub y_floor: Option<f64>,
     /// Labels at individual points, such as peaks.
     pub marks: &'a [(f64, f64, String)],
-    /// Whether to draw bars instead of lines. Bars have whole numbers as positions.
+    /// Whether to draw bars instead of lines. The positions of bars are whole numbers.
     pub bars: bool,
 }
 
@@ -43,7 +43,7 @@ pub struct Trace {
     pub dashed: bool,
 }
 
-/// Share of the width covered by bars.
+/// Fraction of the width covered by bars.
 const BARS: f64 = 0.7;
 
 /// Draws a chart, with a legend above if there are several series.
@@ -164,12 +164,12 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
     }
 }
 
-/// Returns an axis that labels all ticks at least the given number of points apart.
+/// Returns an axis with a label at each tick, provided that ticks are at least the given number of points apart.
 fn with_label_spacing(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
     hints.formatter(move |mark, _| tick_label(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
-/// Returns a step of 1, 2 or 5 times a power of ten. It divides the range into about five parts.
+/// Returns a step of 1, 2 or 5 times a power of ten that divides the range into about five parts.
 fn round_step((least, most): (f64, f64)) -> f64 {
     let rough = ((most - least).abs() / 5.0).clamp(1e-12, 1e12);
     let power = 10_f64.powf(rough.log10().floor());

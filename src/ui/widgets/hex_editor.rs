@@ -33,7 +33,7 @@ pub use view::HexView;
 
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// Bytes read from the device. Displayed bytes beyond their end count as changed.
+    /// Bytes read from the device. Displayed bytes beyond their end are treated as changed.
     pub device: &'a [u8],
     /// Displayed bytes, including the user's edits.
     pub wanted: &'a [u8],
@@ -92,7 +92,7 @@ const SURROUNDING_HEIGHT: f32 = 60.0;
 const TYPED_VIEW_WIDTH: f32 = 240.0;
 
 /// Returns the number of lines that an editor shows in the given height. Beside the typed view, the editor fills the
-/// height. Above the typed view, it leaves space for the view but shows at least sixteen lines.
+/// height. Above it, the editor leaves space for the typed view but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - SURROUNDING_HEIGHT) / LINE_HEIGHT).clamp(4.0, 64.0) as usize

@@ -1,7 +1,7 @@
 //! A button that is active while it is held, for motion that ends when the finger leaves it.
 //!
 //! * **Size**: as given, at least 56 points high, for use with gloves.
-//! * **Keyboard**: Space or Enter, held while the button has the keyboard focus; a key counts only after its release
+//! * **Keyboard**: Space or Enter, held while the button has the keyboard focus; a key works only after its release
 //!   was seen there ([`HoldState`]), which the caption states until then.
 //! * **Pointer**: the first button, or a touch; leaving the button ends the hold, and returning does not start it
 //!   again.
@@ -26,7 +26,7 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     pub label: &'a str,
     pub enabled: bool,
-    /// Whether the action of the hold has ended by itself. The button then looks released.
+    /// Whether the action of the hold has ended without a release. The button then looks released.
     pub has_ended: bool,
 }
 
@@ -60,8 +60,8 @@ pub(in crate::ui) fn set_hold_button_context(ctx: &Context, surroundings: HoldBu
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
-/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. Keys then belong to the
-/// button.
+/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. The button then
+/// receives the keys.
 pub(in crate::ui) fn has_hold_button_focus(ctx: &Context) -> bool {
     let drawn = hold_button_frame(ctx);
     let focused = ctx.memory(|memory| memory.focused());

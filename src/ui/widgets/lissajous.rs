@@ -41,7 +41,7 @@ pub struct LissajousFigure {
 }
 
 const CIRCLE: usize = 120;
-/// Label steps of an axis in volts. The axis uses the finest step with few enough labels.
+/// Label steps of an axis in volts. The axis uses the finest step for which the labels fit.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
 /// The square on the screen in which the figure is drawn, with the voltage at its edge.
@@ -96,9 +96,9 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
 }
 
 /// Returns a single-colour picture of a sample density. It is brighter where there are more samples, and even a single
-/// sample stays visible.
+/// sample is visible.
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
-    /// Brightness of a single sample, as a share of full brightness.
+    /// Brightness of a single sample, as a fraction of full brightness.
     const MIN_BRIGHTNESS: f32 = 0.4;
     let side = density.cells_per_side();
     let scale = f64::from(density.max_count()).ln_1p().max(f64::MIN_POSITIVE);

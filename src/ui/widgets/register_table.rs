@@ -44,7 +44,7 @@ pub struct RegisterLocation {
 pub struct RegisterTable<'a> {
     pub label: &'a str,
     pub groups: &'a [RegisterGroup],
-    /// Function that returns a register of a group. It is called only for visible or unfolded registers.
+    /// Function that returns a register of a group. It is called for visible or unfolded registers only.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     pub kind: RegisterKind,
 }
@@ -90,7 +90,7 @@ pub struct RegisterRow {
     pub edited: bool,
     /// Description of the cost of writing the register, if any.
     pub cost: Option<String>,
-    /// Details of non-volatile storage. `None` if the register loses its value without supply voltage.
+    /// Details of non-volatile storage. `None` if the register loses its value when the supply is switched off.
     pub kept: Option<String>,
     /// Reason why the value cannot be edited. `None` if it is editable.
     pub read_only: Option<String>,

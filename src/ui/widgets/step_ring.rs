@@ -28,9 +28,9 @@ pub struct StepRing<'a> {
 }
 
 const STEPS: u8 = 32;
-/// Width of the ring, as a share of the radius.
+/// Width of the ring, as a fraction of the radius.
 const RING_WIDTH: f32 = 0.14;
-/// Share of a step left empty at each end of its segment.
+/// Fraction of a step left empty at each end of its segment.
 const GAP: f64 = 0.08;
 
 /// A circle, given by its centre point and radius.

@@ -28,7 +28,7 @@ pub struct StepRow {
     /// Current task, result, or reason for failure. It may be empty.
     pub note: String,
     pub gauges: Vec<Gauge>,
-    /// Completed share, from 0 to 1. `None` if the step is not running or the share is unknown.
+    /// Completed fraction, 0 to 1. `None` if the step is not running or the fraction is unknown.
     pub progress: Option<f32>,
 }
 
@@ -186,8 +186,8 @@ fn content_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> 
     buttons_ui(ui, theme, model)
 }
 
-/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle. Start thus does not move
-/// while a motor is brought up to speed.
+/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle. The start button thus does
+/// not move while the speed of the motor changes.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {

@@ -13,7 +13,7 @@ use super::focus_ring;
 use crate::bits::{self, TypedKind, TypedRow};
 use crate::ui::{Theme, icons};
 
-/// Time in seconds for which a value stays marked after being copied.
+/// Time in seconds for which a copied value stays marked.
 const COPIED_MARK_S: f64 = 1.2;
 
 struct Columns {

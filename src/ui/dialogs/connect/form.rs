@@ -1,5 +1,5 @@
-//! The form of a kind of device in the connection dialog. It is typed in the device's folder and object-safe for the
-//! dialog. One adapter connects the two.
+//! The form of a kind of device in the connection dialog. The device's folder implements a typed trait, and the dialog
+//! uses an object-safe one. One adapter connects the two.
 
 use egui::Ui;
 

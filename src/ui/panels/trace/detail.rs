@@ -9,7 +9,7 @@ use crate::link::Direction;
 use crate::ui::controls::{fill_width, icon_button};
 use crate::ui::{Theme, icons};
 
-/// Bytes in a line.
+/// Number of bytes in a line.
 const COLUMNS: usize = 8;
 
 /// Draws the frame. Returns whether it is to be closed.

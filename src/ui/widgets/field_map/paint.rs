@@ -62,7 +62,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     }
 }
 
-/// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, icons
+/// Draws the number and icons at the top of a field and the caption below, if they fit. In a narrow field, icons
 /// replace the caption.
 fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;

@@ -3,7 +3,7 @@
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RequiredSpace {
     pub(super) bits: usize,
-    /// Width of the text below the field.
+    /// Width of the text below the field, in points.
     pub(super) words: f32,
 }
 
@@ -32,7 +32,7 @@ const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 
 const GROUP_GAP: f32 = 3.0;
 
 impl PlacedPiece {
-    /// Returns the left edge of bit `at` of the piece. Groups of four bits are counted from the end of the field.
+    /// Returns the left edge of bit `at` of the piece. Groups of four bits start at the end of the field.
     pub(super) fn offset(&self, at: usize, field_bits: usize, cell: f32) -> f32 {
         at as f32 * cell + groups_between(self.first, self.first + at, field_bits) as f32 * GROUP_GAP
     }

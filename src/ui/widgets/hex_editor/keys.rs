@@ -15,8 +15,8 @@ struct KeyReaction {
     leave: Option<FocusDirection>,
 }
 
-/// Handles the keys of the current frame. This must be called before the widget is announced. Otherwise, Tab cannot
-/// leave the widget.
+/// Handles the keys of the current frame. This function must be called before the widget is announced, because Tab
+/// could otherwise not leave the widget.
 pub(super) fn handle_keys(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !handle_input(event, model, view, &mut reaction)));
@@ -139,7 +139,7 @@ fn handle_edit_key(
     true
 }
 
-/// Applies a change. Reports the reason if it is not possible.
+/// Applies a change, or reports the reason if the change is not possible.
 fn apply_change(
     model: &HexModel<'_>,
     view: &mut HexView,
@@ -206,7 +206,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Writes bytes at the start of the selection. The written bytes are then selected, or the cursor is after them.
+/// Writes bytes at the start of the selection. The written bytes are then selected, or the cursor is placed after them.
 fn write_bytes(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

@@ -31,7 +31,8 @@ impl HexView {
         self.cursor
     }
 
-    /// Returns the selected addresses. They include at least the cursor, unless the editor has no bytes.
+    /// Returns the selected addresses. The selection includes at least the byte at the cursor, unless the editor has no
+    /// bytes.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
         first..(last + 1).min(self.len.max(first))
@@ -46,7 +47,7 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// Returns the bytes to show as numbers. They are the selection, or all bytes from the cursor on if only one is
+    /// Returns the bytes to display as numbers: the selection, or all bytes from the cursor on if only one byte is
     /// selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();

@@ -43,7 +43,7 @@ const NUMBERS: [ColumnWidth; 7] = [
 ];
 /// Columns in the order in which they are hidden if space is short. The tooltip shows hidden values.
 const HIDING_ORDER: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
-/// Share of the remaining width given to the name column. The meaning column gets the rest.
+/// Fraction of the remaining width for the name column. The meaning column gets the rest.
 const NAME_SHARE: f32 = 0.45;
 
 /// Visible columns, from left to right.

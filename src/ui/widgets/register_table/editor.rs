@@ -1,5 +1,5 @@
-//! Editor of a register value. The entry takes effect with Enter or when the editor loses focus. If it is rejected, the
-//! editor stays open and shows the reason.
+//! Editor of a register value. The entry takes effect when Enter is pressed or the editor loses focus. If the value is
+//! rejected, the editor stays open and shows the reason.
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 
@@ -66,7 +66,7 @@ pub(super) fn editor_ui(
 }
 
 /// Selects the whole value, so typing replaces it. If the edit began with a typed character, the cursor is placed after
-/// it instead.
+/// that character instead.
 fn select(ui: &Ui, response: &egui::Response, text: &str, typed: bool) {
     use egui::text::{CCursor, CCursorRange};
     let end = CCursor::new(text.chars().count());

@@ -12,8 +12,7 @@ pub(super) fn reserve_keys(ui: &Ui, id: Id) {
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
-/// Inserts the events held back in the previous frame before the current events. Applies while the table has the
-/// keyboard focus.
+/// Inserts the events held back in the previous frame before the current events, if the table has the keyboard focus.
 pub(super) fn restore_deferred_keys(ui: &Ui, view: &mut RegisterView, id: Id) {
     let late = std::mem::take(&mut view.late);
     let focused = ui.memory(|memory| memory.focused());
@@ -26,8 +25,8 @@ pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }
 
-/// Holds back everything typed in the current frame after a key that ends an edit. This key is Enter, or an up or down
-/// arrow, which acts as Enter and then moves to another line.
+/// Holds back everything typed in the current frame after a key that ends an edit. Such a key is Enter, or an up or
+/// down arrow, which acts as Enter and then moves to another line.
 pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;
@@ -63,8 +62,8 @@ pub(super) fn is_vertical(event: &Event) -> bool {
     matches!(event, Event::Key { key: Key::ArrowUp | Key::ArrowDown, pressed: true, modifiers, .. } if is_plain(modifiers))
 }
 
-/// Returns whether the event counts as typing for the table and its editor. Keys that stop a drive or belong to the
-/// window do not count, and are never held back.
+/// Returns whether an event is typing for the table or its editor. Keys that stop a drive or belong to the window are
+/// not typing, and are never held back.
 fn is_typing_event(event: &Event) -> bool {
     use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
     match event {

@@ -1,5 +1,5 @@
 //! Lines of a register table: group headings, registers, and the bit fields of unfolded registers. The lines are not
-//! stored, so the effort depends on the number of groups and not of registers.
+//! stored, so the computing time depends on the number of groups instead of registers.
 
 use super::view::SelectedRow;
 use super::{RegisterLocation, RegisterTable, RegisterView};

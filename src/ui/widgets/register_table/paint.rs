@@ -10,7 +10,7 @@ use crate::app::Text;
 use crate::ui::{Theme, icons};
 
 pub(super) const HEADER_HEIGHT: f32 = 20.0;
-/// Position of the right edge of the caret shown for registers with bit fields.
+/// Position of the right edge of the caret, which is drawn for registers with bit fields.
 pub(super) const CARET_OFFSET: f32 = 16.0;
 /// Spacing between marks.
 const MARK_SPACING: f32 = 13.0;
@@ -153,8 +153,8 @@ pub(super) fn value_edit_rect(theme: &Theme, rect: Rect, value: Rangef) -> Rect 
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
 }
 
-/// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost,
-/// and a disk for storage.
+/// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a write
+/// cost, and a disk for storage.
 fn paint_marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };

@@ -11,7 +11,7 @@ use crate::ui::Theme;
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
     pub(super) selected: Option<SelectedRow>,
-    /// Groups of which only the heading is shown.
+    /// Groups of which only the heading is visible.
     pub(super) folded: BTreeSet<usize>,
     /// Registers whose bit fields are visible.
     pub(super) open: BTreeSet<RegisterLocation>,
@@ -24,8 +24,8 @@ pub struct RegisterView {
     pub(super) page: usize,
     /// Width of the table at which a name did not fit. All names are then drawn in the small size.
     pub(super) small_names_at: Option<f32>,
-    /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame shows
-    /// which of them is to receive these events.
+    /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame
+    /// determines which of them receives these events.
     pub(super) late: Vec<Event>,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Edit {
     pub(super) place: RegisterLocation,
     pub(super) text: String,
     pub(super) problem: Option<Text>,
-    /// Whether the edit has just begun and must get the keyboard focus.
+    /// Whether the edit has just begun and must receive the keyboard focus.
     pub(super) begins: bool,
     /// Whether the edit began with a typed character instead of the existing value.
     pub(super) typed: bool,
@@ -95,8 +95,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Adapts to a changed set of registers. The selection and the edit stay with their register. They end if it no
-    /// longer exists.
+    /// Adapts to a changed set of registers. The selection and the edit follow their register, and end if the register
+    /// no longer exists.
     pub fn follow_registers(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(SelectedRow::Row(place)) => now(place).map(SelectedRow::Row),
