@@ -50,7 +50,7 @@ impl MaskedBytes {
         MaskedBytes(vec![None; count])
     }
 
-    /// Creates bytes and masks those at the positions in `secret`.
+    /// Creates bytes of which those at the positions in `secret` are masked.
     pub fn with_masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
@@ -126,8 +126,8 @@ pub enum HexError {
     Odd(String),
 }
 
-/// Parses hex bytes in groups of two digits each. Blanks, commas, colons or dashes may separate the groups, and `0x` or
-/// a final `h` may enclose them. An empty string yields no bytes.
+/// Parses hex bytes in groups of two digits each. Blanks, commas, colons or dashes may separate the groups, and a group
+/// may begin with `0x` or end with `h`. An empty string yields no bytes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, HexError> {
     let mut bytes = Vec::new();
     for group in text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ':' | '-')).filter(|g| !g.is_empty()) {

@@ -1,5 +1,5 @@
-//! Allowed values of a parameter, a setting or an entry. They are described in English here and have their own text in
-//! the window (`app::explain::expected`).
+//! Allowed values of a parameter, a setting or an entry. The descriptions here are in English. The texts of the window
+//! are in `app::explain::expected`.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -56,10 +56,8 @@ pub enum AllowedValues {
     /// A HIPERFACE time-out, counted in bits.
     #[error("44 or 11 bits, as set in the encoder")]
     TimeoutBits,
-    /// The type byte of an encoder.
     #[error("a type byte from 0x00 to 0xFF")]
     TypeByte,
-    /// The line settings byte of an encoder.
     #[error("a settings byte without reserved values, such as 0xE4")]
     SettingsByte,
     #[error("one to nine ASCII characters")]
@@ -73,7 +71,6 @@ pub enum AllowedValues {
     AccessCodes,
     #[error("a firmware version such as 1.6.0")]
     Release,
-    /// The value of an error register.
     #[error("a value of the error register from 0x00 to 0xFF")]
     ErrorRegister,
     #[error("the number of write cycles of the encoder's flash memory so far")]
@@ -185,15 +182,15 @@ pub enum Quantity {
     SwitchPosition,
     #[error("a voltage in volts")]
     Volts,
-    /// The share of frames in which a bit is inverted.
+    /// The fraction of frames in which a bit is inverted.
     #[error("a share of damaged frames")]
     DamagedFrames,
-    /// The share of requests answered with an exception.
+    /// The fraction of requests answered with an exception.
     #[error("a share of requests answered with an exception")]
     RefusedRequests,
 }
 
-/// A limit of a range, exact to one thousandth.
+/// A limit of a range, with a resolution of one thousandth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limit {
     thousandths: i128,

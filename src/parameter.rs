@@ -68,7 +68,7 @@ pub trait ParameterGroup: Default {
     /// Returns the entries that a user can fill in, in order of declaration.
     fn entries() -> Vec<Entry>;
 
-    /// Parses the known keys and ignores all others. The last value of a repeated key counts.
+    /// Parses the known keys and ignores all others. If a key is repeated, the last value is used.
     ///
     /// # Errors
     /// Returns an error for the first value that its key does not accept.

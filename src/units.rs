@@ -1,5 +1,5 @@
-//! Quantities as newtypes. A quantity has one if two integers could be confused, a range is limited, or arithmetic has
-//! a meaning. No clock is read here: the owner of a [`Moment`] passes it in.
+//! Quantities as newtypes. A newtype is used if two integers could be confused, a range is limited, or arithmetic has a
+//! meaning. This module does not read a clock: the owner of a [`Moment`] supplies it.
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -113,8 +113,8 @@ impl fmt::Display for Parity {
     }
 }
 
-/// Character format of a serial line. Both ends must have the same one. A character has one start bit, eight data bits
-/// and one stop bit.
+/// Character format of a serial line. Both ends must use the same format. A character has one start bit, eight data
+/// bits and one stop bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
     pub baud: Baud,
@@ -125,7 +125,7 @@ impl CharacterFormat {
     /// The factory setting of HIPERFACE encoders: 9600 bit/s with even parity.
     pub const FACTORY: CharacterFormat = CharacterFormat { baud: Baud::B9600, parity: Parity::Even };
 
-    /// Returns the duration of one character on the line. A character counts as 11 bits for any parity, as in the
+    /// Returns the duration of one character on the line. A character has 11 bits regardless of the parity, as in the
     /// manuals.
     pub fn character_time(self) -> Duration {
         self.baud.duration_of_bits(11)

@@ -9,12 +9,13 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict_text};
 use crate::link::LineQuality;
 
-/// Prints the results of the check. Returns an error if they include a fault.
+/// Prints the results of the check. Returns an error if any result is a fault.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_check(output, lines, None)
 }
 
-/// Prints the results of the check, with the line quality if it was measured. Returns an error if they include a fault.
+/// Prints the results of the check, with the line quality if it was measured. Returns an error if any result is a
+/// fault.
 pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal_text).collect::<Vec<_>>();

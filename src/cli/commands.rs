@@ -1,5 +1,5 @@
-//! Commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list. This module names no
-//! device.
+//! Commands that devices, buses and Signals add to the command line. The list is in `kinds.rs`. This module is
+//! independent of the devices.
 
 #![warn(missing_docs)]
 
@@ -80,7 +80,7 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. A command that the kind does not support is incorrect usage.
+/// A kind of device on the command line. A command that the kind does not support is reported as incorrect usage.
 pub trait DeviceCommands: ProfileCommands {
     /// Returns the name of the kind on the command line and in profiles.
     fn name(&self) -> &'static str;
@@ -108,7 +108,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Adds the values of the common options, and values from the environment that replace them.
+    /// Adds the values of the common options. Values from the environment replace them.
     ///
     /// # Errors
     /// Returns an error if a value is invalid.
@@ -126,12 +126,13 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the options of `simulate` that stand for a `--set` option with the same name.
+    /// Returns the options of `simulate` that are equivalent to a `--set` option with the same name.
     fn setting_options(&self) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns the reason why an option of this kind is refused for another kind. `None` without a special reason.
+    /// Returns the reason why another kind does not accept an option of this kind. `None` if there is no specific
+    /// reason.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
@@ -159,8 +160,8 @@ pub trait ProfileCommands: Sync {
     /// Writes a profile to a device after review and consent.
     fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result;
 
-    /// Reads a device for comparison with a profile. Without a profile, everything is read. With one, at least its
-    /// items are read.
+    /// Reads a device for comparison with a profile. Without a profile, all items are read. With a profile, at least
+    /// the items that it contains are read.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
     /// Splits an item of the logbook into single values: bytes or registers. An undo compares them one by one.
@@ -258,7 +259,7 @@ impl Commands {
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// Returns a refusal if a common option does not exist for the chosen kind of device.
+    /// Returns an error message if a common option does not exist for the chosen kind of device.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -286,7 +287,7 @@ impl Commands {
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// Returns a refusal if an option does not exist for the chosen kind of device or protocol.
+    /// Returns an error if an option does not exist for the chosen kind of device or protocol.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -316,7 +317,7 @@ impl KindOptions {
         parse(&self.0)
     }
 
-    /// Returns whether an option was given. Defaults do not count.
+    /// Returns whether an option was given on the command line. A default value is not an option that was given.
     pub(super) fn is_given(&self, id: &str) -> bool {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }

@@ -11,8 +11,8 @@ use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, PlannedWrite};
 use crate::worker::{self, NotStarted};
 
-/// Requires that consent is possible. Without a terminal the user cannot be asked, and the command is rejected before
-/// anything is opened.
+/// Returns an error if consent is impossible. Without a terminal, the user cannot be asked, and the command is rejected
+/// before anything is opened.
 pub fn require_consent(consent: &ConsentArgs) -> Result<()> {
     if consent.yes || can_prompt() {
         return Ok(());
@@ -55,8 +55,8 @@ where
         .map_err(|refused| JobFailure::<D>::Job(Box::new(refused.into())).into_failure())
 }
 
-/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal the file
-/// is replaced, as other tools do. [`ReplacementNotice::report_replaced`] then says so.
+/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal, the file
+/// is replaced, as in other tools, and [`ReplacementNotice::report_replaced`] reports the replacement.
 pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<ReplacementNotice> {
     // A pipe or a device file has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());

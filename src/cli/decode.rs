@@ -16,7 +16,7 @@ pub(crate) struct FrameExplanation {
     pub(crate) more: Map<String, Json>,
 }
 
-/// Prints the meaning of frames. If a frame is invalid, the command fails after all frames have been printed.
+/// Prints the meaning of frames. If a frame is invalid, the command still prints all frames before it fails.
 pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();

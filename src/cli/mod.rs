@@ -1,5 +1,5 @@
-//! The command line, with the same jobs as the window. It parses arguments, asks for consent and prints results. The
-//! worker executes the jobs.
+//! The command line, which offers the same jobs as the window. It parses arguments, asks for consent and prints
+//! results. The worker executes the jobs.
 
 pub(crate) mod args;
 pub(crate) mod check;

@@ -85,8 +85,8 @@ impl Output {
     }
 }
 
-/// Returns whether the reader of a pipe has closed it. Windows has several codes for that, and the library knows all but
-/// one of them: 233, "no process is on the other end of the pipe".
+/// Returns whether an error means that the reader of a pipe has closed it. Windows has several codes for this. The
+/// library recognises all except 233, "no process is on the other end of the pipe".
 fn is_closed_pipe(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
 }
@@ -97,7 +97,7 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{ending}")
 }
 
-/// Prints help unchanged. Argument errors have at most four lines, the last of which is the usage.
+/// Prints help unchanged. An argument error is shortened to at most four lines, the last of which is the usage.
 pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {

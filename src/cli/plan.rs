@@ -59,8 +59,8 @@ pub fn step_lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// Formats a plan with its lines and its cost. The cost is shown with the write cycles known to this computer, and with
-/// the limit, if any.
+/// Formats a plan with its lines and its cost. The cost includes the write cycles known to this computer, and the
+/// limit, if any.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,

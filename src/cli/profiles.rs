@@ -106,7 +106,7 @@ pub(super) fn restore(common: &CommonArgs, output: &Output, restore: &Restore) -
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
-/// Returns the profile to restore. If consent cannot be given, rejects the restore before anything is opened.
+/// Returns the profile to restore. Returns an error before anything is opened if consent is impossible.
 pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;
@@ -122,7 +122,7 @@ pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Reports the mounting values of another device that are left unchanged.
+/// Reports the mounting values of another device that are not restored.
 pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     for item in items {
         output.print_message(&format!(

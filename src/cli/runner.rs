@@ -1,4 +1,4 @@
-//! Opening a link and running jobs. Progress and codes go to stderr, and Ctrl-C goes to the worker.
+//! Opening of links and execution of jobs. Progress and codes go to stderr, and Ctrl-C goes to the worker.
 
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
@@ -26,7 +26,7 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 pub trait CliDevice: Kind {
     /// Part of a session that stays outside its thread.
     type Context;
-    /// Whether the line allows only one master. A connected drive may be such a master. `--only-master` confirms that
+    /// Whether the line allows only one master. A connected drive may also be a master. `--only-master` confirms that
     /// no drive is connected.
     const HAS_ONE_MASTER: bool = false;
     /// Commands of this kind of device.
@@ -82,8 +82,7 @@ pub enum JobFailure<D: CliDevice> {
     Worker,
 }
 
-/// Maximum time for leaving a state that must not remain. Examples are a drive under control and a supply that was
-/// switched on.
+/// Maximum time for leaving a temporary state, such as control of a drive or a supply that was switched on.
 const RESTORE_TIMEOUT: Duration = Duration::from_secs(4);
 
 impl<D: CliDevice> Drop for Runner<D> {
@@ -197,7 +196,7 @@ impl<D: CliDevice> Runner<D> {
         }
     }
 
-    /// Waits between two jobs. Ends early if the user cancels or the connection is lost.
+    /// Waits between two jobs. The wait ends early if the user cancels or the connection is lost.
     pub(super) fn pause(&self, duration: Duration) -> Result<()> {
         let end = Instant::now() + duration;
         loop {
@@ -236,8 +235,8 @@ impl<D: CliDevice> JobFailure<D> {
     }
 }
 
-/// Combines sentences into at most four lines. If there are more sentences, those between the first and the last share
-/// one line.
+/// Limits the number of lines to four. If there are more sentences, those between the first and the last share one
+/// line.
 fn combine_lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
@@ -264,8 +263,7 @@ macro_rules! result_of {
     };
 }
 
-/// Returns the failure for a job result of an unexpected type. Such a result is a defect of this program and is
-/// reported as one.
+/// Returns the failure for a job result of an unexpected type. The message reports a defect of this program.
 pub fn unexpected_output(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }

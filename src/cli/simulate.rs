@@ -1,5 +1,5 @@
 //! Serves a virtual device to other programs, on a pseudo-terminal or a TCP port, with UDP for devices that require it.
-//! Only this module runs virtual devices by the clock of the computer.
+//! Only this module runs virtual devices in real time.
 
 mod datagrams;
 
@@ -16,7 +16,7 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// Time to wait for bytes while the device is idle. It is also the longest delay of an interrupt.
+/// Time to wait for bytes while the device is idle. An interrupt is delayed by at most this time.
 const IDLE_WAIT: Duration = Duration::from_millis(20);
 /// Waiting time below which the thread sleeps. Socket time-outs only have the resolution of the system tick.
 const SLEEP_THRESHOLD: Duration = Duration::from_millis(10);
@@ -127,7 +127,7 @@ impl Device {
         Ok(())
     }
 
-    /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate.
+    /// Adopts the baud rate of the client. This end cannot read the parity, and over TCP not even the baud rate.
     /// Properties that cannot be read are assumed to be correct.
     fn apply_client_baud(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
@@ -295,8 +295,8 @@ mod terminal {
     }
 
     impl SymbolicLink {
-        /// Creates the link. A dangling link is left over from an earlier run and is replaced. Anything else belongs to
-        /// another program, and the link is rejected.
+        /// Creates the link. A dangling link from an earlier run is replaced. Any other existing file belongs to
+        /// another program and is an error.
         fn create(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;

@@ -8,7 +8,7 @@ use crate::link::ReplyTimes;
 const FIRST_NOTICE_DELAY: Duration = Duration::from_secs(3);
 /// Interval between checks after the first notice.
 const CHECK_INTERVAL: Duration = Duration::from_millis(500);
-/// Reply time from which a device counts as slow.
+/// Minimum reply time of a slow device.
 const SLOW_REPLY_TIME: Duration = Duration::from_millis(100);
 
 pub struct ReplyTiming {
@@ -19,7 +19,7 @@ pub struct ReplyTiming {
     pub(crate) longest: Duration,
 }
 
-/// Monitor of a long command. It reports once if the command is slow because of the replies.
+/// Monitor of a long command. It reports once if slow replies delay the command.
 pub(super) struct SlowReplyNotice {
     pace: Option<ReplyTiming>,
     look: Instant,
@@ -50,7 +50,7 @@ impl SlowReplyNotice {
 }
 
 impl ReplyTiming {
-    /// Returns the message. It explains how to allow more time if that may help.
+    /// Returns the message, which explains how to allow more time if that may help.
     fn message(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {

@@ -10,8 +10,8 @@ use crate::ui::{DeviceView, TabViews, ToolView};
 pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
-    /// The virtual device for the virtual adapter. `None` for a kind that uses no adapter. The adapter only offers the
-    /// built-in list (`kinds::attachable_kinds`), which has no external kinds.
+    /// The virtual device for the virtual adapter. `None` for a kind that uses no adapter. The adapter offers only the
+    /// built-in list (`kinds::attachable_kinds`), which does not contain external kinds.
     pub at_adapter: Option<&'static dyn AttachableKind>,
 }
 

@@ -38,8 +38,8 @@ impl Clock for RealClock {
     }
 }
 
-/// Measures the step of the timer: how long the shortest sleep takes. Windows before version 10 (1803) wakes a thread
-/// only at ticks that are up to 15.6 ms apart.
+/// Measures the step of the timer, which is the duration of the shortest sleep. Windows before version 10 (1803) wakes
+/// a thread only at ticks that are up to 15.6 ms apart.
 pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
     const SHORT_SLEEP: Duration = Duration::from_millis(1);
     let sleep = || {
@@ -52,7 +52,7 @@ pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
     (0..4).map(|_| sleep()).min().unwrap_or_default()
 }
 
-/// A clock that advances only while a thread waits on it. Waiting an hour takes no real time.
+/// A clock that advances only while a thread waits on it. A wait of an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

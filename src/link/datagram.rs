@@ -1,5 +1,5 @@
-//! Datagrams in addition to a byte stream. They carry cyclic data: a lost packet is not repeated, because the next one
-//! replaces it.
+//! Datagrams in addition to a byte stream. They carry cyclic data. A lost packet is not repeated, because the next
+//! packet replaces it.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 

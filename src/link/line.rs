@@ -1,5 +1,5 @@
-//! The parts of a frame exchange that all serial protocols share: silence, echoes, late replies, retries and time-outs.
-//! The device modules decode the frames. Here, only the echo is interpreted.
+//! Parts of a frame exchange common to all serial protocols: silence, echoes, late replies, retries and time-outs. The
+//! device modules decode the frames. This module interprets only the echo.
 
 mod echo;
 mod quality;
@@ -20,7 +20,7 @@ use crate::units::Moment;
 
 /// Maximum number of attempts of a read command.
 pub(crate) const MAX_ATTEMPTS: u32 = 5;
-/// Time without a valid reply after which no further attempt is made. A command must finish within ten seconds.
+/// Maximum time for repeating a command without a valid reply. A command must finish within ten seconds.
 const RETRY_TIMEOUT: Duration = Duration::from_secs(8);
 /// Longest interval between two checks for cancellation.
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
@@ -191,8 +191,8 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Waits for a late reply after a time-out, longer after each attempt. A late reply is skipped, because it must not
-    /// be taken for the reply to the next request.
+    /// Waits for a late reply after a time-out. The wait becomes longer with each attempt. A late reply is skipped,
+    /// because it would be mistaken for the reply to the next request.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels, the line is never silent or the connection fails.

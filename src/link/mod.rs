@@ -62,8 +62,8 @@ pub trait ByteLink: Send {
     /// Returns an error if the connection was lost or the format cannot be set.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
-    /// Returns whether [`set_format`](Self::set_format) has an effect. It has none on a device server, whose own
-    /// settings apply. A reply through such a server does not prove anything about baud rate and parity.
+    /// Returns whether [`set_format`](Self::set_format) has an effect. It has none on a device server, which uses its
+    /// configured format. A reply through such a server does not confirm the baud rate and parity.
     fn can_set_format(&self) -> bool {
         true
     }
@@ -115,8 +115,8 @@ impl CancelToken {
         self.0.requested.load(Ordering::SeqCst)
     }
 
-    /// Counts a transaction that is about to begin, and returns whether it must not begin. This function must be called
-    /// before each transaction.
+    /// Counts a transaction that is about to begin, and returns whether the transaction is cancelled. This function
+    /// must be called before each transaction.
     pub fn stops_transaction(&self) -> bool {
         let left = self.0.fuse.load(Ordering::SeqCst);
         if left == 0 {
@@ -132,9 +132,9 @@ impl CancelToken {
 pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     /// Connection to the device.
     pub wire: &'a mut W,
-    /// Source of time.
+    /// Clock for waits and time stamps.
     pub clock: &'a dyn Clock,
-    /// Cancellation flag.
+    /// Flag by which the user cancels the procedure.
     pub cancel: &'a CancelToken,
     /// Trace of the frames on the connection.
     pub trace: &'a mut Trace,

@@ -1,4 +1,4 @@
-//! `replay:FILE`: a recorded trace that replies as the device did.
+//! `replay:FILE`: playback of a recorded trace in place of a device.
 
 use std::sync::Arc;
 

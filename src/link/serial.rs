@@ -20,7 +20,7 @@ pub struct PortExample {
     pub bridge: &'static str,
 }
 
-/// Example for entries, with a name as this system gives it.
+/// Example of a port name on this operating system, with links to it.
 pub const PORT_EXAMPLE: PortExample = if cfg!(windows) {
     PortExample { port: "COM3", serial: "serial:COM3", bridge: "bridge:COM3" }
 } else {
@@ -71,7 +71,8 @@ fn number_last(path: &str) -> (&str, u64, &str) {
     (name, path.strip_prefix(name).and_then(|number| number.parse().ok()).unwrap_or(0), path)
 }
 
-/// Shortest time-out of a read. Windows takes less than a millisecond as no time-out, and waits until the buffer is full.
+/// Minimum time-out of a read. Windows treats a time-out of less than a millisecond as none, and waits until the buffer
+/// is full.
 const SHORTEST_TIMEOUT: Duration = if cfg!(windows) { Duration::from_millis(1) } else { Duration::ZERO };
 
 /// An open serial port.
@@ -91,8 +92,8 @@ impl SerialLink {
         Self::open_configured(path, format, clock, |builder| builder)
     }
 
-    /// Opens the port of an adapter with DTR asserted, because an edge of DTR resets many microcontrollers. Linux
-    /// always asserts DTR on opening. Other systems do so on request.
+    /// Opens the port of an adapter with DTR asserted, because an edge on DTR resets many microcontrollers. Linux
+    /// always asserts DTR on opening, and other systems do so on request.
     ///
     /// # Errors
     /// Returns the same errors as [`open`](Self::open).
@@ -231,7 +232,8 @@ mod platform {
         LinkErrorKind::Permission { group }
     }
 
-    /// Returns the name of a group, or `None` for `root`, because users must not be told to join that group.
+    /// Returns the name of a group. Returns `None` for `root`, because a message must not advise users to join that
+    /// group.
     fn group_name(gid: u32) -> Option<String> {
         let groups = std::fs::read_to_string("/etc/group").ok()?;
         let id = gid.to_string();

@@ -17,7 +17,8 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// Wait below which the socket is polled, because its time-out is only as precise as the system tick.
+    /// Duration below which a wait polls the socket, because the socket's time-out is only as precise as the system
+    /// tick.
     const POLL_THRESHOLD: Duration = Duration::from_millis(10);
     const POLL_INTERVAL: Duration = Duration::from_micros(500);
 
@@ -118,7 +119,8 @@ mod tests {
     use crate::link::RealClock;
     use std::net::TcpListener;
 
-    /// A system tick may last ten milliseconds, so a hundred checks that each wait for one would take a second.
+    /// Each of a hundred checks would wait for a system tick of up to ten milliseconds without polling, which takes a
+    /// second in total.
     #[test]
     fn polling_does_not_wait_and_short_waits_are_short() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();

@@ -57,9 +57,9 @@ impl Trace {
         self.watchers.push(Box::new(watcher));
     }
 
-    /// Reports a frame to all watchers. The time of a reply is calculated from the duration of its bytes. Where a
-    /// device server or a pseudo-terminal transfers them at once, it would be before the request; it is then the time of
-    /// the request.
+    /// Reports a frame to all watchers. The time of a reply is calculated from the duration of its bytes. If a device
+    /// server or a pseudo-terminal transfers all bytes at once, the result may be earlier than the request. The time of
+    /// the request is then used.
     pub fn record_frame(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
         if bytes.is_empty() {
             return;
@@ -125,7 +125,7 @@ pub enum TraceFileError {
 /// Parses a trace file.
 ///
 /// # Errors
-/// Returns an error if the header is missing, or the number of the first invalid line.
+/// Returns an error if the header is missing, or if a line is invalid. The error names the first invalid line.
 pub fn read_trace(text: &str) -> Result<Vec<TraceEntry>, TraceFileError> {
     let mut lines = text.lines().zip(1..);
     if lines.next().map(|(line, _)| line.trim_end()) != Some(HEADER) {

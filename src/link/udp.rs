@@ -14,15 +14,16 @@ use super::{
 };
 use crate::units::Moment;
 
-/// Length of the longest datagram in bytes. A longer one than the buffer would be cut on Linux, and be an error on Windows.
+/// Maximum length of a datagram in bytes. With a smaller buffer, Linux would truncate longer datagrams, and Windows
+/// would report an error.
 const MAX_DATAGRAM_LEN: usize = 65_535;
 /// Maximum number of received packets waiting to be read. Further packets are dropped.
 const MAX_WAITING_PACKETS: usize = 64;
 /// Maximum time until a receiver thread notices that its channel has been dropped.
 const DROP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A factory for UDP channels to the target of a TCP connection. Channels use the local address from which the target
-/// is reached.
+/// A factory for UDP channels to the target of a TCP connection. Channels use the local address that has a route to the
+/// target.
 pub struct UdpPort {
     target: String,
     clock: Arc<dyn Clock>,
@@ -79,8 +80,8 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     }
 }
 
-/// A channel for packets to and from a single target. A dedicated thread receives packets, so a wait ends as soon as
-/// one arrives.
+/// A channel for packets to and from a single target. A dedicated thread receives packets, so a wait ends as soon as a
+/// packet arrives.
 struct UdpChannel {
     name: String,
     target: SocketAddrV4,
@@ -185,8 +186,8 @@ impl DatagramChannel for UdpChannel {
     }
 }
 
-/// Waits for a packet in short sleeps. On Windows a thread that waits for a channel wakes at the next tick of the system
-/// timer, up to 15.6 ms late, while a sleep uses a timer of high resolution.
+/// Waits for a packet in short sleeps. On Windows, a thread that waits for a channel wakes at the next tick of the
+/// system timer, up to 15.6 ms late, whereas a sleep uses a high-resolution timer.
 fn sleep_for_packet(heard: &Receiver<Vec<u8>>, until: Moment, clock: &dyn Clock) -> Result<Vec<u8>, RecvTimeoutError> {
     const POLL_THRESHOLD: Duration = Duration::from_millis(1);
     loop {
@@ -249,7 +250,7 @@ fn local_networks() -> Vec<Ipv4Addr> {
     addresses.filter_map(|own| if let IfAddr::V4(own) = own.addr { broadcast_address(&own) } else { None }).collect()
 }
 
-/// Returns the address that all devices of a network listen to, or `None` if the network contains no other device.
+/// Returns the broadcast address of a network, or `None` if the network contains no other device.
 fn broadcast_address(own: &Ifv4Addr) -> Option<Ipv4Addr> {
     let mask = own.netmask.to_bits();
     // Mask 0 would yield 255.255.255.255, which is always included.

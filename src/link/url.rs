@@ -71,16 +71,16 @@ pub struct LinkUrl {
     pub query: UrlQuery,
 }
 
-/// The port, host or file that a link opens. Several links may use the same one.
+/// The port, host or file that a link opens. Several links may use the same resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// A virtual device in this process, which needs no connection.
     Inside,
-    /// A serial port.
+    /// Path or name of a serial port.
     Port(&'a str),
-    /// Host and TCP port.
+    /// Host and TCP port, as in the link.
     Host(&'a str),
-    /// A file.
+    /// Path of a file.
     File(&'a str),
 }
 

@@ -64,7 +64,7 @@ pub struct OptionalValue<V>(pub V);
 
 pub const SWITCH: Keywords<bool> = Keywords(&[("on", true), ("off", false)]);
 
-/// Any string. None is rejected at this stage, because the meaning depends on other parameters.
+/// Any string. All strings are accepted at this stage, because the meaning depends on other parameters.
 pub const ANY: CustomNotation<String> = CustomNotation(AllowedValues::words(&[]), |text| Some(text.to_owned()));
 
 /// Parses a whole number that fits into `T`, in decimal or in hexadecimal after `0x`.

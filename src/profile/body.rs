@@ -1,5 +1,5 @@
-//! Profile content for any kind of device. A device module implements [`Profile`] for its own type. This module derives
-//! the untyped traits that documents use.
+//! Content of profiles for any kind of device. A device module implements [`Profile`] for its own type. This module
+//! derives the untyped traits that documents use.
 
 use std::any::Any;
 use std::fmt;
@@ -130,7 +130,7 @@ impl Body {
         self.0.compare_with(other.0.as_ref()).ok_or_else(|| other.wrong_kind_error(self.kind()))
     }
 
-    /// Returns the error that the profile is not for a `wanted` device.
+    /// Returns the error for a profile that is not for a `wanted` device.
     pub fn wrong_kind_error(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }

@@ -1,11 +1,11 @@
-//! A changed item of a write, as the logbook keeps it.
+//! A changed item of a write, as stored in the logbook.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A changed item with its old and new value. Item and values are written as on the command line, in every language of
-/// the window. Access codes are never included.
+/// A changed item with its old and new value. Item and values have the notation of the command line, independent of the
+/// language of the window. Access codes are never included.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ChangedItem {
     /// Name of the item. The command `read` accepts it if the item is readable.
@@ -15,7 +15,7 @@ pub struct ChangedItem {
     pub name: Option<String>,
     /// Value before the write. `None` if it is unknown, or the item did not exist.
     pub old: Option<String>,
-    /// Value after the write. `None` if the write does not set a value that can be told.
+    /// Value after the write. `None` if the write does not set a value that can be displayed.
     pub new: Option<String>,
 }
 
@@ -25,7 +25,7 @@ impl ChangedItem {
         ChangedItem { item: item.to_string(), name: None, old, new }
     }
 
-    /// Creates an item with a new value that replaces no single old one.
+    /// Creates an item with a new value that does not replace a single old value.
     pub fn new_value(item: impl ToString, new: impl ToString) -> Self {
         ChangedItem::new(item, None, Some(new.to_string()))
     }

@@ -18,7 +18,7 @@ pub struct Difference {
 pub struct Comparison {
     /// Differences in the order of the device memory.
     pub differences: Vec<Difference>,
-    /// Number of compared values. In a data field, every byte counts as one value, including the status byte.
+    /// Number of compared values. Each byte of a data field is one value, including the status byte.
     pub compared: u64,
     /// Items that are present or readable only on the left side.
     pub only_left: Vec<String>,
@@ -27,7 +27,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares an item that counts as one value. `None` means that a side does not have the item.
+    /// Compares an item that is a single value. `None` means that a side does not have the item.
     pub fn compare_item<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}

@@ -29,8 +29,8 @@ pub enum ProfileError {
         /// Name of the missing entry.
         intended: String,
     },
-    /// The schema version is missing or newer than supported. A newer version is an error only if the whole profile
-    /// must be understood.
+    /// The schema version is missing or newer than supported. A newer version is an error only if the caller requires a
+    /// known schema.
     #[error("schema {found}; this program knows schema 1 to {known}")]
     Schema {
         /// Version in the file.

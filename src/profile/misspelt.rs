@@ -54,9 +54,9 @@ impl Reading {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// Returns the error to report. In a file with a newer schema, this is the schema error. A misspelt name replaces
-    /// the error that it caused. An error about another entry is attributed to a misspelt name only if at most one
-    /// letter differs.
+    /// Returns the error to report. In a file with a newer schema, this is the schema error. An error caused by a
+    /// misspelt name is replaced by one about that name. An error about another entry is attributed to a misspelt name
+    /// only if at most one letter differs.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
@@ -84,7 +84,7 @@ pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
 }
 
-/// Returns the edit distance between two names. Swapping two adjacent letters counts as one edit.
+/// Returns the edit distance between two names. A swap of two adjacent letters is one edit.
 fn char_distance(from: &[char], to: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=to.len()).collect();

@@ -7,7 +7,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 pub struct Plan<Base, Op> {
     /// The values on which the plan is based. They are read again before the first operation and must be unchanged.
     pub base: Base,
-    /// Operations in execution order.
+    /// Operations in order of execution.
     pub ops: Vec<Op>,
 }
 

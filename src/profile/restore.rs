@@ -1,6 +1,6 @@
 //! Options and result of restoring a profile, for any kind of device.
 
-/// Options of a restore.
+/// Options for restoring a profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RestoreOptions {
     /// Whether the profile may be written to a device with another serial number.

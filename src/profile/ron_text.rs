@@ -19,7 +19,8 @@ pub type UnknownValues = BTreeMap<String, Value>;
 /// Name of the structure that holds the user's own entries.
 const EXTRA_ENTRY: &str = "extra";
 
-/// The entries of a structure. Parsing takes them out one by one. Those that remain are the user's own or misspelt.
+/// The entries of a structure. The parser removes them one by one. The remaining entries were added by the user or are
+/// misspelt.
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
@@ -49,7 +50,7 @@ impl Entries {
         Ok(Entries { path: path.to_owned(), entries, missed: Vec::new(), reading: reading.clone() })
     }
 
-    /// Takes an entry, and records its name if the entry is missing.
+    /// Removes and returns an entry. If it is missing, its name is recorded.
     fn take_value(&mut self, name: &str) -> Option<Value> {
         let value = self.entries.remove(name);
         if value.is_none() {
@@ -209,7 +210,7 @@ impl Entries {
 }
 
 impl Drop for Entries {
-    /// Records a misspelt name, in case an error ended the reading early.
+    /// Records a misspelt name, because an error may have ended the parsing early.
     fn drop(&mut self) {
         if let Some(slip) = self.find_misspelling(2) {
             self.reading.record_misspelling(slip);
@@ -217,8 +218,7 @@ impl Drop for Entries {
     }
 }
 
-/// Parses bytes of two hex digits each. A single digit is an error, because the other one may have been lost in an
-/// editor.
+/// Parses bytes of two hex digits each. A single digit is an error, because an editor may have removed the other one.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),

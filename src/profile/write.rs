@@ -1,7 +1,7 @@
 //! Execution of a plan, the same for every kind of device. The base of the plan is read again, the operations are
 //! executed in order, and the mode of the device is restored. A kind of device implements [`Write`].
 //!
-//! Only `worker::commit` uses this module, because it saves the backup in between.
+//! Only `worker::commit` uses this module. It saves the backup before the first operation.
 
 use std::fmt;
 use std::hash::Hash;
@@ -65,7 +65,7 @@ pub trait Write {
     /// Returns the device to a safe state after the operations, whether they succeeded or failed.
     ///
     /// # Errors
-    /// Returns the reason why the operations ended early, or why the mode of the device cannot be restored.
+    /// Returns the reason why the operations were aborted, or why the mode of the device cannot be restored.
     fn lead_back(
         &mut self,
         _confirmed: &ConfirmedPlan<'_, Self::Base, Self::Op>,
@@ -75,11 +75,11 @@ pub trait Write {
         ended
     }
 
-    /// Returns the state of the device after a write that ended early.
+    /// Returns the state of the device after an aborted write.
     fn end_state(&mut self, cause: &Self::Error) -> Self::EndState;
 }
 
-/// The error of an operation that ended early.
+/// The error of an aborted operation.
 pub trait OperationError: fmt::Display {
     /// Error type of the device and its connection.
     type Device;

@@ -5,7 +5,7 @@
 pub struct WrittenChanges {
     /// Number of operations of the plan that were executed.
     pub ops: usize,
-    /// Number of changed values, counted as in a comparison. Some operations count as one value.
+    /// Number of changed values, counted as in a comparison. Some operations change only one value.
     pub written: u64,
     /// Number of values that were read back and found correct.
     pub verified: u64,

@@ -1,5 +1,5 @@
-//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. They are parsed from
-//! `--fault` and `sim:?fault=`. Each device defines the effect of a fault.
+//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. The options `--fault`
+//! and `sim:?fault=` set them. Each device defines the effect of a fault.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -100,12 +100,12 @@ impl SimulatedFaults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device is dead. It then neither replies nor acts.
+    /// Returns the number of frames after which the device fails. It then neither replies nor acts.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
 
-    /// Returns the number of the store operation during which power is lost. The first one is 1.
+    /// Returns the number of the store operation during which the power fails, counted from 1.
     pub fn failing_store(&self) -> Option<u32> {
         self.die_in_store
     }
@@ -129,8 +129,8 @@ fn is_hit(probability: f64, rng: &mut Rng) -> bool {
 impl FromStr for SimulatedFaults {
     type Err = FaultError;
 
-    /// Parses a list such as `drop:0.01,delay:5`. The last of several equal items counts. An empty string means no
-    /// fault.
+    /// Parses a list such as `drop:0.01,delay:5`. If an item occurs several times, the last one is used. An empty
+    /// string means no faults.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = SimulatedFaults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

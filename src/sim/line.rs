@@ -1,6 +1,6 @@
-//! A half-duplex line between the UART of the host and virtual devices. Characters are transmitted one after another,
-//! some of them damaged, and received in the order of time. Each device defines which characters it receives and what
-//! they mean.
+//! A half-duplex line between the UART of the host and virtual devices. Characters are transmitted one after another
+//! and received in chronological order. Some of them are damaged. Each device defines which characters it receives and
+//! what they mean.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -73,7 +73,7 @@ pub(crate) struct LineConditions {
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     host_done: Moment,
-    /// Numbers of bytes that the host's UART still has to send, each with the time at which the last byte is sent.
+    /// Numbers of bytes that the host's UART has yet to send, each with the time at which the last byte is sent.
     sending: VecDeque<(Moment, usize)>,
     pub(crate) inbox: Vec<u8>,
 }
@@ -91,8 +91,8 @@ impl LineConditions {
         }
     }
 
-    /// Number of bytes that a UART buffers, as in a device server. Further bytes are lost, but no request of the
-    /// simulated protocols is longer. Sending 512 bytes takes half a second at 9600 bit/s.
+    /// Number of bytes that a UART can buffer, as in a device server. Further bytes are lost. No request of the
+    /// simulated protocols is longer. 512 bytes take half a second at 9600 bit/s.
     const BUFFER: usize = 512;
 
     /// Returns the number of further bytes that the host's UART can accept.
@@ -124,7 +124,7 @@ impl LineConditions {
 
 /// A line with its devices. A line that implements this trait is a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// Event on the line. The smallest of simultaneous events comes first.
+    /// Event on the line. Simultaneous events are ordered from smallest to largest.
     type Event;
 
     fn line_conditions(&self) -> &LineConditions;

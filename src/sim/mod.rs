@@ -21,7 +21,7 @@ use std::net::SocketAddrV4;
 use crate::units::{CharacterFormat, Moment};
 
 /// A virtual device on a serial line. Its owner drives it, for example a link in this process, a pseudo-terminal or a
-/// TCP server. Moments never run backwards: an earlier moment counts as the latest known.
+/// TCP server. Moments do not run backwards: a moment before the latest known one is replaced by that one.
 pub trait ByteDevice: Send {
     /// Receives bytes that the host has passed to its UART at `now`. They follow any bytes still in transmission and
     /// take one character time each.
@@ -33,8 +33,8 @@ pub trait ByteDevice: Send {
     /// Returns the time at which to call [`poll`](Self::poll) next. Returns `None` if nothing is scheduled.
     fn poll_at(&self) -> Option<Moment>;
 
-    /// Sets the character format of the host's UART. If the format differs from that of the device, bytes arrive
-    /// garbled in both directions, and no frame is valid. A device without a serial line ignores the format.
+    /// Sets the character format of the host's UART. If it differs from the format of the device, bytes are garbled in
+    /// both directions, and no frame is valid. A device without a serial line ignores the format.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
     /// Opens or reopens the connection of the host. Earlier bytes are discarded, and a device without power is powered

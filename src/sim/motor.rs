@@ -1,5 +1,5 @@
-//! The motor of a virtual shaft as a shared handle. It has no clock, so a change takes effect at the next request to
-//! the encoder.
+//! The motor of a virtual shaft, as a shared handle. The motor has no clock, so a change takes effect at the next
+//! request to the encoder.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

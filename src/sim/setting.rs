@@ -63,7 +63,7 @@ impl From<RejectedParameter> for ConfigError {
     }
 }
 
-/// Parses the percent-decoded settings of `device`. The last value of a repeated key counts.
+/// Parses the percent-decoded settings of `device`. If a key is repeated, the last value is used.
 ///
 /// # Errors
 /// Returns an error that names the key and the allowed values.

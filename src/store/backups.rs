@@ -1,5 +1,5 @@
-//! Backups of devices, taken before a write. Each backup is a file, sorted by device and serial number, and is never
-//! overwritten or removed. The caller supplies the text, which must not contain access codes.
+//! Backups of devices, taken before a write. Each backup is a file in the folder of its device and serial number, and
+//! is never overwritten or removed. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,8 +34,8 @@ impl Backups {
         Backups(folder)
     }
 
-    /// Writes a backup to `<device>/<serial number>/2026-11-21T12-14-47Z.ron` and returns its path. If there is a
-    /// backup of the same second, `-2`, `-3` and so on is added to the time.
+    /// Writes a backup to `<device>/<serial number>/2026-11-21T12-14-47Z.ron` and returns its path. If a backup of the
+    /// same second exists, `-2`, `-3` and so on is appended to the time.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be created or the file cannot be written. No file is left behind.

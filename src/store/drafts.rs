@@ -1,5 +1,5 @@
-//! Drafts, which preserve edits that have not been written to a device after a crash or a pulled cable. Each draft is a
-//! file. The caller supplies the text, which must not contain access codes.
+//! Drafts, which preserve edits that have not been written to a device if the program crashes or a cable is unplugged.
+//! Each draft is a file. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::PathBuf;

@@ -99,7 +99,8 @@ impl FileErrorKind {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Converts an error that occurred while a file was created. Since the file is new, only its folder can be missing.
+    /// Converts an error that occurred while a file was created. Because the file is new, only its folder can be
+    /// missing.
     pub(super) fn from_create_error(error: io::Error) -> Self {
         match error.into() {
             FileErrorKind::NotFound => FileErrorKind::NoFolder,

@@ -47,10 +47,10 @@ fn open(path: &Path) -> io::Result<File> {
 /// Replaces the text of a file with the result of `make`, while other programs that use this function wait. The folder
 /// is created if missing, and the text is written with [`write_atomically`].
 ///
-/// `make` receives the current text, or the error of reading it. It returns `None` to leave the file unchanged.
+/// `make` receives the current text, or the error if it cannot be read. It returns `None` to leave the file unchanged.
 ///
 /// # Errors
-/// Returns [`FileErrorKind::InUse`] if another program keeps the lock, or an error of [`write_atomically`] or `make`.
+/// Returns [`FileErrorKind::InUse`] if another program keeps the lock, or an error from [`write_atomically`] or `make`.
 pub fn update_text<T>(
     path: &Path,
     make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,

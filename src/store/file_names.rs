@@ -61,7 +61,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Decodes the original text of a file name without regard to the name's case.
+    /// Decodes the original text of a file name, ignoring the name's case.
     fn read_back(name: &str) -> Vec<u8> {
         let name = name.to_ascii_uppercase();
         if name == "%NONE" {

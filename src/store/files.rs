@@ -38,7 +38,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
 /// Writes a text like [`write_atomically`], but preserves an existing byte order mark.
 ///
 /// # Errors
-/// Returns the errors of [`write_atomically`].
+/// Returns the same errors as [`write_atomically`].
 pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
     let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == BYTE_ORDER_MARK.as_bytes());
@@ -50,7 +50,7 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
 /// remains.
 ///
 /// # Errors
-/// Returns the errors of [`write_atomically`] and of `write`, and an error for a device or a pipe.
+/// Returns an error from [`write_atomically`] or `write`, or an error if the path refers to a device or a pipe.
 pub fn write_atomically_with(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -73,8 +73,8 @@ pub fn write_atomically_with(
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Writes a new file like [`write_atomically`], but never replaces an existing file. This also holds if another program
-/// writes at the same time.
+/// Writes a new file like [`write_atomically`], but never replaces an existing file. This also applies if another
+/// program writes the file at the same time.
 ///
 /// # Errors
 /// Returns [`FileErrorKind::Exists`] if the file exists.
@@ -98,7 +98,7 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
 /// Writes a file of the program like [`write_atomically`]. The folder is created if missing.
 ///
 /// # Errors
-/// Returns an error if the folder cannot be created, and the errors of [`write_atomically`].
+/// Returns an error if the folder cannot be created, or an error from [`write_atomically`].
 pub fn create_folder_and_write(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -109,7 +109,7 @@ pub fn create_folder_and_write(path: &Path, content: &[u8]) -> Result<(), FileEr
 /// Reads a text like [`read_text`], but only from a regular file. Reading from a pipe could block forever.
 ///
 /// # Errors
-/// Returns the errors of [`read_text`], and an error for a pipe or a device.
+/// Returns the same errors as [`read_text`], or an error if the path refers to a pipe or a device.
 pub fn read_file(path: &Path) -> Result<String, FileError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() && !found.is_dir() => {
@@ -145,8 +145,7 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes directly to a file. A pipe without a reader would block forever, so the write is abandoned after a time
-/// limit.
+/// Writes directly to a file. A pipe without a reader would block forever, so the write is aborted after a time limit.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const WRITE_TIMEOUT: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
@@ -212,8 +211,8 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// Gives a new file the usual permissions, subject to the umask. Otherwise, a temporary file is private to its
-    /// owner.
+    /// Sets the usual permissions of a new file, subject to the umask. Otherwise, a temporary file would be private to
+    /// its owner.
     pub(super) fn set_default_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
     }

@@ -8,7 +8,7 @@ use std::time::Duration;
 pub(super) const PREFIX: &str = ".encoder-studio-";
 pub(super) const SUFFIX: &str = ".tmp";
 
-/// Age from which a temporary file is considered stale. A write takes seconds.
+/// Minimum age of a stale temporary file. A write takes only seconds.
 const STALE_AGE: Duration = Duration::from_secs(3600);
 
 /// Number of folder levels in the program's data, as in `backups/biss/77`.

@@ -1,6 +1,6 @@
 //! The log file, which keeps the content of the log panel after the window closes. A separate thread writes the file,
-//! so a hanging disk blocks no other thread. Lines that do not fit into the queue are dropped and counted, and the
-//! count is written when the disk responds again. A large file is renamed, and a new one is started.
+//! so a hanging disk does not block other threads. Lines that do not fit into the queue are dropped and counted, and
+//! the count is written when the disk responds again. A large file is renamed, and a new one is started.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};

@@ -49,7 +49,7 @@ pub enum StoreError {
     NoHome,
     #[error(transparent)]
     File(#[from] FileError),
-    /// A device file of the user is invalid. The kind of device supplies the error.
+    /// A device file of the user is invalid. The cause is specific to the kind of device.
     #[error("{0}")]
     Refused(Cause),
 }

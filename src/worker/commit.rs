@@ -1,5 +1,5 @@
-//! The only way to write, in the same order for every kind of device. The plan needs consent and must match its base. A
-//! backup is saved on disk, and the logbook records the intention. Each operation is written and read back, and the
+//! The only way to write, in the same order for every kind of device. The plan requires consent and an unchanged base.
+//! A backup is saved on disk, and the logbook records the intent. Each operation is written and read back, and the
 //! logbook records the result. A device supplies its own parts as a [`Write`] and cannot omit a step: its operations
 //! require a [`ConfirmedPlan`], which only [`write_plan`] creates.
 
@@ -25,7 +25,7 @@ pub struct ApprovedPlan<P> {
     pub prepared: P,
     /// The consent to the plan.
     pub consent: Consent,
-    /// Whether to write even if the device counts as worn, or its write cycles are unknown.
+    /// Whether to write even if the device is worn, or its write cycles are unknown.
     pub force_wear: bool,
 }
 
@@ -38,7 +38,7 @@ struct WriteIntent {
 /// The result of a commit.
 #[derive(Clone, Debug, Default)]
 pub struct CommitResult<W> {
-    /// Outcome of the write, in the form that the kind of device uses.
+    /// Outcome of the write, as defined by the kind of device.
     pub written: W,
     /// Path of the before-image. `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
@@ -58,14 +58,14 @@ pub enum NotStarted {
         /// Number of write cycles required by the plan.
         cost: u64,
     },
-    /// The device counts as worn.
+    /// The write would exceed the limit of write cycles of the device.
     #[error("{seen} write cycles seen, {cost} more would exceed {limit}")]
     Worn {
         /// Number of known write cycles.
         seen: u64,
         /// Number of write cycles required by the plan.
         cost: u64,
-        /// Number of write cycles from which the device counts as worn.
+        /// Number of write cycles beyond which the device is considered worn.
         limit: u64,
     },
     /// The before-image cannot be saved.
@@ -73,7 +73,7 @@ pub enum NotStarted {
     NotKept(FileError),
 }
 
-/// A plan made by a job, with all the data that a write needs besides the connection.
+/// A plan made by a job, with all data needed for a write, except the connection.
 pub trait PlannedWrite {
     /// Values on which the plan is based.
     type Base: Hash;
@@ -113,7 +113,7 @@ pub trait PlannedWrite {
         self.header().cycles_seen
     }
 
-    /// Returns the number of write cycles beyond which the device counts as worn.
+    /// Returns the number of write cycles beyond which the device is considered worn.
     fn wear_limit(&self) -> u64 {
         self.header().wear_limit
     }
@@ -127,7 +127,7 @@ pub struct PlanHeader<'p, P: PlannedWrite + ?Sized> {
     pub kind: P::Kind,
     /// Write cycles recorded for the device on this computer. `None` if the logbook cannot be read.
     pub cycles_seen: Option<u64>,
-    /// Write cycles beyond which the device counts as worn.
+    /// Number of write cycles beyond which the device is considered worn.
     pub wear_limit: u64,
 }
 
@@ -189,8 +189,8 @@ pub fn backup_document(body: Body) -> ProfileDocument {
     document
 }
 
-/// Returns the minimum total of write cycles of a device after `cost` more. Returns `None` if `cost` is zero or the
-/// total is below `warning`.
+/// Returns the minimum total of a device's write cycles after `cost` further cycles. Returns `None` if `cost` is zero
+/// or the total is below `warning`.
 pub(crate) fn total_cycles_to_report(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
     let after = seen.unwrap_or(0).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)

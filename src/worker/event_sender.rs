@@ -7,10 +7,10 @@ use crossbeam_channel::{Sender, TrySendError};
 
 use super::{Device, Event};
 
-/// Maximum number of unread events, with progress counted once.
+/// Maximum number of unread events. Progress is counted once.
 pub(super) const CAPACITY: usize = 64;
 
-/// A sender with a queue for events that do not fit into the channel. The queue never holds events of more than one
+/// A sender with a queue for events that do not fit into the channel. The queue never contains events of more than one
 /// job, because the next job does not start while the channel is full.
 pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,

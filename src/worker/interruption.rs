@@ -1,28 +1,28 @@
-//! Reasons why a job on a writable device ends early, before or after the first write.
+//! Reasons why a job on a writable device is aborted, before or after the first write.
 
 use std::path::PathBuf;
 
 use super::NotStarted;
 use crate::profile::{DeviceError, InterruptedWrite, OperationError, WriteRecord};
 
-/// The reason why a job ended early, for any kind of device.
+/// The reason why a job was aborted, for any kind of device.
 pub trait JobInterruption {
     /// Returns whether the user cancelled the job.
     fn is_cancelled(&self) -> bool;
 
-    /// Returns the number of operations executed before the job ended. Returns `None` if no write had begun.
+    /// Returns the number of operations executed before the job was aborted. Returns `None` if no write had begun.
     fn operations_done(&self) -> Option<usize> {
         None
     }
 
-    /// Returns whether the device had been written to before the job ended.
+    /// Returns whether the device had been written to before the job was aborted.
     fn has_begun(&self) -> bool {
         self.operations_done().is_some()
     }
 }
 
-/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`InterruptedWrite`]
-/// write, and `K` the kind of change.
+/// The reason why a job was aborted. `E` is the error of the device, `P` that of planning, `I` an [`InterruptedWrite`],
+/// and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
     /// The device or its connection failed.
@@ -51,7 +51,7 @@ pub enum JobError<E, P, I, K> {
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K>
     JobError<E::Device, P, InterruptedWrite<Op, E, Done, Left>, K>
 {
-    /// Returns the error of the device or its connection, whether or not the device had been written to.
+    /// Returns the error of the device or its connection, regardless of whether the device had been written to.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

@@ -1,5 +1,5 @@
-//! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. None is queued, and
-//! only the latest counts.
+//! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. Requests are not
+//! queued. Only the latest one of each type is valid.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -16,7 +16,7 @@ const MAX_INTERVAL: Duration = Duration::from_secs(24 * 60 * 60);
 pub(super) struct LiveRequests {
     requests: Arc<Mutex<PollRequests>>,
     sampling: CancelToken,
-    /// Channel that wakes the thread. If it is full, the thread is about to wake.
+    /// Channel that wakes the thread. If it is full, the thread is already about to wake.
     changed: Sender<()>,
 }
 
@@ -125,7 +125,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         WatchList { list: Arc::new(Mutex::new(WatchEntries { entries: Vec::new(), number: 0 })), live }
     }
 
-    /// Sets the values to watch. If a value is listed more than once, the first entry counts.
+    /// Sets the values to watch. If a value is listed more than once, the first entry is used.
     pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
         let mut entries: Vec<WatchEntry<W>> = Vec::with_capacity(watched.len());

@@ -1,11 +1,11 @@
-//! The background I/O worker. Each session has one thread, which runs one job at a time. Sampling and watching happen
-//! between jobs, and a stop takes precedence over everything else.
+//! The background I/O worker. Each session has one thread, which runs one job at a time. Samples and watched values are
+//! read between jobs, and a stop takes precedence over everything else.
 //!
 //! This module is independent of any protocol. A [`Device`] has its own types of jobs, results and errors, so a session
 //! with one kind of device cannot receive the jobs of another.
 //!
 //! Events about jobs are never lost. While events are not read, only the latest progress is kept. Neither side waits
-//! for the other: a full channel is a state of the worker and does not stop the line.
+//! for the other: a full channel is a state of the worker and does not stop the communication.
 
 #![warn(missing_docs)]
 
@@ -52,11 +52,11 @@ pub trait Device: Send + 'static {
     type Job: Send + fmt::Debug;
     /// Result of a job.
     type Output: Send + fmt::Debug;
-    /// Reason why a job ended early.
+    /// Reason why a job was aborted.
     type Error: JobInterruption + Send + fmt::Debug;
     /// Message that the device sends outside its replies.
     type DeviceMessage: Send + fmt::Debug;
-    /// A polled sample. A sample of a watched value identifies which value it is.
+    /// A polled sample. A sample with a watched value identifies that value.
     type Sample: Send + fmt::Debug + 'static;
     /// Value that can be watched. It is requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
@@ -66,7 +66,7 @@ pub trait Device: Send + 'static {
     /// Executes a job.
     ///
     /// # Errors
-    /// Returns the reason why the job ended early.
+    /// Returns the reason why the job was aborted.
     fn run(
         &mut self,
         context: &mut SessionContext,
@@ -90,8 +90,8 @@ pub trait Device: Send + 'static {
         None
     }
 
-    /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without request begin
-    /// with the next sample and end on `None`.
+    /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without a request
+    /// begin with the next sample, and end when `None` is set.
     fn set_sample_interval(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
     /// Takes one sample with as few exchanges as possible. Messages from the device during this time are part of the
@@ -104,7 +104,7 @@ pub trait Device: Send + 'static {
     /// Requests a watched value. Messages from the device during this time are part of the sample.
     ///
     /// # Errors
-    /// Returns an error if the device does not answer, which ends polling. A rejection counts as an answer.
+    /// Returns an error if the device does not answer, which ends polling. A rejection is also an answer.
     fn read_watched(
         &mut self,
         context: &mut SessionContext,
@@ -122,7 +122,7 @@ pub trait Device: Send + 'static {
     /// Returns an error if the connection is lost.
     fn check_connection(&mut self) -> Result<(), LinkError>;
 
-    /// Returns the interval at which an idle worker checks the device and its wire.
+    /// Returns the interval at which an idle worker checks the device and its connection.
     fn idle_interval(&self) -> Duration {
         IDLE
     }
@@ -132,12 +132,12 @@ pub trait Device: Send + 'static {
         None
     }
 
-    /// Returns whether [`maintain`](Self::maintain) must run before the next regular check.
+    /// Returns whether [`maintain`](Self::maintain) must be called before the next regular check.
     fn is_urgent(&self) -> bool {
         false
     }
 
-    /// Restores any device state that must not persist after the session.
+    /// Restores any device state that must not outlast the session.
     fn restore_state(&mut self, _desk: &mut SessionContext) {}
 }
 
@@ -147,7 +147,7 @@ pub(crate) const IDLE: Duration = Duration::from_millis(500);
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WatchReply<S> {
-    /// The sample with the value. It contains the reason if there is no value at the moment.
+    /// The sample with the value, or with the reason why there is no value at present.
     Sample(S),
     /// The device does not have the value, and it is not requested again. The sample reports the rejection.
     Refused(S),
@@ -193,7 +193,7 @@ pub enum Event<D: Device> {
     Progress(JobId, Progress<D::JobStep>),
     /// A message from the device during a job or at its end.
     Remark(D::DeviceMessage),
-    /// The job is done.
+    /// The job has finished, with its result.
     Finished(JobId, Box<D::Output>),
     /// The job failed.
     Failed(JobId, Box<D::Error>),
@@ -205,8 +205,7 @@ pub enum Event<D: Device> {
     Lost(LinkError),
 }
 
-/// Returns the minimum total of write cycles of a device after `cost` more. Returns `None` if `cost` is zero or the
-/// total is below `warning`.
+/// The reason why a job was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SubmitError {
     /// A job is already running. Jobs are not queued.
@@ -297,8 +296,9 @@ impl<D: Device> Worker<D> {
         self.live.stop_handle()
     }
 
-    /// Requests samples while no job is running. `interval` is from start to start, and zero means back to back. `None`
-    /// stops sampling. The latest request takes effect immediately.
+    /// Requests samples while no job is running. `interval` is the time between the starts of two samples. With an
+    /// interval of zero, each sample starts as soon as the previous one has ended. `None` stops sampling. The latest
+    /// request takes effect immediately.
     pub fn poll(&self, interval: Option<Duration>) {
         self.live.poll(interval);
     }
@@ -309,10 +309,10 @@ impl<D: Device> Worker<D> {
         self.live.polling_interval()
     }
 
-    /// Sets the values to watch, each with an interval from start to start. A duplicate is ignored, and a new list
-    /// replaces the previous one. While the device is polled, at most one value is requested between two samples. A
-    /// value that the device does not have is requested only once. The list is kept when polling ends, and watching
-    /// resumes with polling.
+    /// Sets the values to watch, each with the interval between the starts of two requests. A duplicate is ignored, and
+    /// a new list replaces the previous one. While the device is polled, at most one value is requested between two
+    /// samples. A value that the device does not have is requested only once. The list is kept when polling ends, and
+    /// watching resumes with polling.
     pub fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
         self.watches.set_entries(watched);
     }
@@ -337,7 +337,7 @@ impl<D: Device> Worker<D> {
         &self.events
     }
 
-    /// Returns whether the thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the connection is free.
     pub fn is_finished(&self) -> bool {
         has_ended(&self.ended)
     }
@@ -348,8 +348,8 @@ impl<D: Device> Worker<D> {
         EndingWorker { events: self.events.clone(), ended: self.ended.clone() }
     }
 
-    /// Ends the worker like [`end`](Self::end), but keeps it. No further jobs are accepted. Waits at most `patience`
-    /// and returns true when the thread has ended and the connection is free.
+    /// Ends the worker like [`end`](Self::end), but keeps it. No further jobs are accepted. Waits for at most
+    /// `patience` and returns whether the thread has ended and the connection is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
         // The thread ends as soon as no more orders can arrive.
@@ -357,8 +357,8 @@ impl<D: Device> Worker<D> {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 
-    /// Calls [`end`](Self::end) and waits at most `patience`. Returns true when the thread has ended and the connection
-    /// is free.
+    /// Calls [`end`](Self::end) and waits for at most `patience`. Returns whether the thread has ended and the
+    /// connection is free.
     pub fn close(self, patience: Duration) -> bool {
         self.end().wait_for_end(patience)
     }
@@ -382,12 +382,12 @@ impl<D: Device> EndingWorker<D> {
         &self.events
     }
 
-    /// Returns whether the thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the connection is free.
     pub fn is_finished(&self) -> bool {
         has_ended(&self.ended)
     }
 
-    /// Waits at most `patience` for the thread to end and returns true when it has ended.
+    /// Waits for at most `patience` and returns whether the thread has ended.
     pub fn wait_for_end(&self, patience: Duration) -> bool {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }

@@ -41,7 +41,7 @@ pub enum OpenError {
 }
 
 /// Returns the reply delay that a kind of connection adds to the protocol's worst case. USB adapters deliver data in
-/// packets, and device servers reply over a network. Even a thread needs time to wake up.
+/// packets, and device servers reply over a network. A thread also needs time to wake up.
 pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
     match scheme {
         LinkScheme::Serial => Duration::from_millis(50),
@@ -53,7 +53,7 @@ pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
 /// Opens a byte stream. `simulated` creates the virtual device.
 ///
 /// # Errors
-/// Returns an [`OpenError`]. Nothing has been sent then.
+/// Returns an [`OpenError`] if the stream cannot be opened. In this case, nothing has been sent.
 pub fn open_byte_stream(
     url: &LinkUrl,
     format: CharacterFormat,
@@ -76,7 +76,7 @@ pub fn connect_simulated(device: impl ByteDevice + 'static, clock: &Arc<dyn Cloc
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Creates the error for a link whose scheme does not refer to a device. `known` lists the schemes that do.
+/// Creates the error for a link whose scheme does not refer to a device. `known` lists the allowed schemes.
 pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.keyword(), known }.into()
 }
@@ -84,7 +84,7 @@ pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError 
 /// Reads a recorded trace.
 ///
 /// # Errors
-/// Returns [`OpenError::File`] or [`OpenError::Recording`].
+/// Returns [`OpenError::File`] if the file cannot be read, or [`OpenError::Recording`] if it is not a valid recording.
 pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
     let text = read_text(Path::new(path))?;
     read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
@@ -103,11 +103,12 @@ pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) ->
     }
 }
 
-/// Returns the settings of a link's virtual device. They are the link parameters except those of the `line`. A real
-/// device has none.
+/// Returns the settings of a link's virtual device, which are the parameters of the link except those of the `line`. A
+/// real device has no settings.
 ///
 /// # Errors
-/// Returns [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
+/// Returns [`UrlError::Unknown`] if the link refers to a real device and has a parameter that the line does not
+/// support.
 pub(crate) fn simulator_settings(
     url: &LinkUrl,
     line: &[&str],

@@ -9,11 +9,11 @@ pub(super) enum DueRequest<W> {
     Watch(W),
 }
 
-/// Schedule of requests, each with its own pace.
+/// Schedule of requests, each with a separate interval.
 pub(super) struct PollScheduler<W> {
     sample: PollTiming,
     watches: Vec<WatchSchedule<W>>,
-    /// Whether the last request was a sample. Only then may a watched value be next.
+    /// Whether the last request was a sample. A watched value may follow only a sample.
     sample_was_last: bool,
 }
 
@@ -30,7 +30,7 @@ impl<W> Default for PollScheduler<W> {
 }
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
-    /// Sets the values to watch. Values that are already watched keep their pace.
+    /// Sets the values to watch. Values that are already watched keep their timing.
     pub(super) fn set_watched(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
         for (what, interval) in watched {
@@ -39,8 +39,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time. It is the earliest request, or the sample if several are due. Watching
-    /// pauses while sampling is off. A new request is due at once.
+    /// Returns the next request and its time. This is the earliest request, or the sample if several requests are due.
+    /// Watching pauses while sampling is off. A new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.next_due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
@@ -71,8 +71,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// Timing of a request, with equal intervals from start to start. After a late request, missed ones are not made up
-/// for.
+/// Timing of a request, with equal intervals between starts. Requests that were missed because of a late one are
+/// skipped.
 #[derive(Default)]
 struct PollTiming {
     interval: Option<Duration>,

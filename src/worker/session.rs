@@ -21,7 +21,7 @@ pub struct SessionContext {
 }
 
 impl SessionContext {
-    /// Returns the context of a procedure on `wire`.
+    /// Returns the context for a procedure on `wire`.
     pub fn procedure_context<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
@@ -37,7 +37,8 @@ impl SessionContext {
     }
 }
 
-/// A connection from opening to closing. A worker runs its jobs on a separate thread. Tests run them inline.
+/// A connection from opening to closing. A worker runs its jobs on a separate thread, and tests run them on their own
+/// thread.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
@@ -84,7 +85,7 @@ impl<D: Device> Session<D> {
         self.device.check_connection()
     }
 
-    /// Returns the interval at which an idle worker checks the device and its wire.
+    /// Returns the interval at which an idle worker checks the device and its connection.
     pub(super) fn idle_interval(&self) -> Duration {
         self.device.idle_interval()
     }
@@ -128,7 +129,7 @@ impl<D: Device> Session<D> {
     /// Takes a sample immediately.
     ///
     /// # Errors
-    /// Returns an error if no sample could be taken.
+    /// Returns an error if the sample could not be taken.
     pub fn take_sample(&mut self) -> Result<D::Sample, D::Error> {
         self.device.take_sample(&mut self.context)
     }

@@ -1,5 +1,6 @@
 //! Streams of unrequested data. A separate thread passes batches of samples through a bounded ring, which drops and
-//! counts the oldest. The thread never waits for the reader. It wakes the window at intervals and not for each batch.
+//! counts the oldest samples. The thread never waits for the reader. It wakes the window at intervals instead of for
+//! each batch.
 //!
 //! This module is independent of the source of the samples. A [`Producer`] supplies them.
 
@@ -36,8 +37,8 @@ pub struct Batch<S> {
     pub time: SampleTime,
     /// Interval between samples in nanoseconds.
     pub period_ns: i64,
-    /// Number of samples lost between the previous batch and this one. They were lost at the source, or because they
-    /// were not read in time.
+    /// Number of samples lost between the previous batch and this one, at the source or because they were not read in
+    /// time.
     pub lost: u64,
     /// The samples.
     pub samples: S,
@@ -55,7 +56,7 @@ pub trait Producer: Send + 'static {
     type Request: Send + 'static;
     /// Samples in a batch.
     type Samples: SampleCount;
-    /// Reason why the source ended by itself.
+    /// Reason why the source ended without a request.
     type Error: Send + 'static;
 
     /// Applies a change, starting with the next sample.
@@ -67,17 +68,16 @@ pub trait Producer: Send + 'static {
     /// Returns an error if there will be no more samples.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
-    /// Ends the stream at the source. Otherwise, the source would keep sending.
+    /// Ends the stream at the source, which would otherwise keep sending.
     fn end(&mut self, _clock: &dyn Clock) {}
 }
 
-/// A signal for the end of a stream. Code that needs the resources of the stream waits for it.
+/// A signal for the end of a stream. Code that needs the stream's resources waits for it.
 #[derive(Clone, Debug)]
 pub struct StreamEnd(Receiver<Never>);
 
 impl StreamEnd {
-    /// Waits at most `patience` for the thread to end. Returns true when the thread has ended and its resources are
-    /// free.
+    /// Waits for at most `patience`. Returns whether the thread has ended and its resources are free.
     pub fn wait_for_end(&self, patience: Duration) -> bool {
         matches!(self.0.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
@@ -88,7 +88,7 @@ impl StreamEnd {
     }
 }
 
-/// A producer running on its own thread. Dropping the stream ends the thread without waiting for it.
+/// A producer that runs on a separate thread. Dropping the stream ends the thread without waiting for it.
 pub struct Stream<P: Producer> {
     shared: Arc<Shared<P>>,
     ended: Receiver<Never>,
@@ -134,7 +134,8 @@ impl<P: Producer> Stream<P> {
         Ok(Stream { shared, ended })
     }
 
-    /// Changes the request to the producer from its next sample on. Of several changes, the latest counts.
+    /// Requests a change of the producer's settings from its next sample on. A request replaces an earlier one that is
+    /// still pending.
     pub fn request_change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
@@ -148,13 +149,12 @@ impl<P: Producer> Stream<P> {
         batches.into()
     }
 
-    /// Returns the number of samples lost since the start. They were lost at the source, or because they were not read
-    /// in time.
+    /// Returns the number of samples lost since the start, at the source or because they were not read in time.
     pub fn lost_samples(&self) -> u64 {
         lock(&self.shared.ring).lost
     }
 
-    /// Returns the reason why the stream ended by itself. The reason is returned once.
+    /// Returns the reason why the stream ended without a request. The reason is returned only once.
     pub fn take_error(&self) -> Option<P::Error> {
         lock(&self.shared.error).take()
     }
@@ -213,7 +213,7 @@ impl SampleCount for Wires {
     }
 }
 
-/// A guard that signals the end of a thread, whatever its reason.
+/// A guard that signals the end of a thread for any reason.
 struct ExitSignal {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,

@@ -51,7 +51,7 @@ pub(super) fn start<D: Device>(bench: SessionThread<D>, alive: Sender<Never>) ->
     Ok(())
 }
 
-/// The job slot of a thread. It is freed when the thread ends, whatever the reason.
+/// The job slot of a thread. It is freed when the thread ends for any reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -128,8 +128,8 @@ impl<D: Device> SessionThread<D> {
         self.events.send(end);
     }
 
-    /// Takes a sample or watched value that is due. Returns false if a job or another request interrupted the
-    /// operation, which is then still due.
+    /// Takes a sample or watched value that is due. Returns `false` if a job or another request interrupted the
+    /// operation, which then remains due.
     fn serve_due(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
         let request = self.live.request_number();

@@ -45,7 +45,7 @@ fn bind_both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, So
 
 pub(super) struct ServedDevice {
     socket: UdpSocket,
-    /// Device, locked while its packets are taken and sent. Packets then cannot overtake each other.
+    /// Device, locked while its packets are taken and sent, so that packets cannot overtake each other.
     device: Mutex<Box<dyn DatagramDevice>>,
     clock: Arc<RealClock>,
 }

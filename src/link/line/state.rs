@@ -15,13 +15,13 @@ pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_milli
 /// The state of a line, kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// Allowed reply delay beyond the protocol's worst case. USB adapters and device servers deliver late.
+    /// Allowed reply delay beyond the protocol's worst case. USB adapters and device servers deliver bytes late.
     pub margin: Duration,
     /// Whether the adapter echoes sent bytes.
     pub echo: Echo,
     /// Number of failed attempts since the start of the session.
     pub damaged: u64,
-    /// Line quality.
+    /// Counters and reply times since the start of the session.
     pub quality: LineQuality,
     pub(crate) quiet_until: Moment,
     /// Start of the first failed attempt since the last valid reply.
@@ -74,8 +74,7 @@ impl LineState {
         self.troubled_since = None;
     }
 
-    /// Raises the margin to one and a half times the sum of the margin and `lateness`. The maximum is
-    /// [`LONGEST_MARGIN`].
+    /// Raises the margin to one and a half times the sum of the margin and `lateness`, up to [`LONGEST_MARGIN`].
     pub(super) fn raise_margin(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);

@@ -15,7 +15,7 @@ const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "
 pub enum PathStep {
     /// An entry of a structure, identified by its name as written.
     Entry(String),
-    /// A list element, identified by the name and value of its identifying entry.
+    /// A list element, identified by the name and value of one of its entries.
     Named(String, String),
     /// A list element, identified by its index.
     At(usize),

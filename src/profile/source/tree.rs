@@ -1,5 +1,5 @@
-//! RON syntax tree with source locations. The `ron` crate has already accepted the text. If this parser returns `None`,
-//! the file is rewritten completely.
+//! RON syntax tree with source locations. The `ron` crate has already parsed the text without errors. If this parser
+//! returns `None`, the complete file is rewritten.
 
 use std::ops::Range;
 

@@ -9,10 +9,10 @@
 //! Angles are integer fractions of a turn, and times are whole nanoseconds. No error accumulates over time.
 //!
 //! The following assumptions have no source in a manual. At a receiver with a resistor between the wires of a pair, an
-//! open wire takes the voltage of its partner, and their difference is zero. Without the resistor it stays at the mean
-//! level, where the bias of the receiver holds it. Interference and hum reach SIN and COS but not their references,
-//! because a receiver rejects the part common to both. The interference is half as strong in the cosine channel and has
-//! the opposite sign there.
+//! open wire takes the voltage of its partner, and their difference is zero. Without the resistor, it stays at the mean
+//! level, where the bias of the receiver holds it. Interference and hum are added to SIN and COS but not to their
+//! references, because a receiver rejects the part common to both. The interference is half as strong in the cosine
+//! channel and has the opposite sign there.
 
 mod settings;
 
@@ -175,7 +175,7 @@ impl PhaseAccumulator {
     }
 }
 
-/// Settings in a form that is fast to calculate with.
+/// Settings in a form that speeds up the calculations.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
@@ -183,7 +183,7 @@ struct Model<'a> {
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire. The difference of two wires then has the noise of the settings.
+    /// Noise of each wire, such that the difference of two wires has the noise of the settings.
     noise: f64,
 }
 
@@ -257,7 +257,7 @@ fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
     [length * sine, length * cosine]
 }
 
-/// Returns a SplitMix64 hash (Steele, Lea, Flood 2014), which turns adjacent numbers into unrelated ones.
+/// Returns a SplitMix64 hash (Steele, Lea, Flood 2014), which maps adjacent numbers to unrelated ones.
 fn splitmix64(number: u64) -> u64 {
     let mixed = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);

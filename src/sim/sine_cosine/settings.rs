@@ -19,7 +19,7 @@ pub struct Settings {
     pub offset_cosine_v: f64,
     /// Amplitude ratio r of the cosine channel to the sine channel.
     pub gain_ratio: f64,
-    /// Phase error α in degrees. The sine follows the cosine by this much more than a quarter of a period.
+    /// Phase error α in degrees, by which the sine follows the cosine later than by a quarter of a period.
     pub phase_error_deg: f64,
     /// Mean level of the references in volts.
     pub level_v: f64,
@@ -31,15 +31,14 @@ pub struct Settings {
     pub noise_v: f64,
     /// Frequency of the interference in hertz, in steps of 0.001.
     pub interference_hz: f64,
-    /// Amplitude of the interference on the sine channel in volts. The cosine channel has half the amplitude and the
-    /// opposite sign.
+    /// Amplitude of the interference on the sine channel in volts. On the cosine channel, the amplitude is half as
+    /// large and has the opposite sign.
     pub interference_v: f64,
     /// Mains frequency in hertz, in steps of 0.001.
     pub hum_hz: f64,
-    /// Hum amplitude in volts. It is equal and in phase in both channels.
+    /// Hum amplitude in volts, equal and in phase in both channels.
     pub hum_v: f64,
-    /// Eccentricity of the scale. It is the amplitude of the once-per-revolution angle error in mechanical seconds of
-    /// arc.
+    /// Eccentricity of the scale, as the amplitude of the once-per-revolution angle error in mechanical seconds of arc.
     pub eccentricity_arcsec: f64,
     /// Broken wire, if any.
     pub open_wire: Option<Wire>,
@@ -54,9 +53,9 @@ pub struct Settings {
 /// Level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReferenceLevel {
-    /// The mean level. HIPERFACE encoders have it, and only SIN and COS carry the signal.
+    /// The mean level, as in HIPERFACE encoders. Only SIN and COS carry the signal.
     Level,
-    /// The inverted signal. Encoders with complementary outputs have it, and each wire carries half of the signal.
+    /// The inverted signal, as in encoders with complementary outputs. Each wire carries half of the signal.
     Complement,
 }
 
@@ -103,9 +102,9 @@ pub enum Quantity {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
-    /// Name of the setting.
+    /// Setting whose value was rejected.
     pub quantity: Quantity,
-    /// Given value.
+    /// Rejected value.
     pub value: f64,
     /// Minimum value.
     pub least: f64,
@@ -139,7 +138,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// Returns the unit symbol, which is the same in every language. A plain number has an empty string.
+    /// Returns the unit symbol, which is the same in every language. It is empty for a plain number.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",

@@ -51,7 +51,7 @@ pub enum EntryKind {
     Connected,
     /// The device was assigned to an asset, a motor or an axis.
     Assigned,
-    /// Status codes were read, which may have cleared them in the device.
+    /// Status codes were read. Reading may have cleared them in the device.
     Status,
     /// Single values were written.
     Write,
@@ -209,8 +209,8 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Returns the write cycles spent. A write without a result counts with its planned cycles, because the program may
-    /// have died after the last byte.
+    /// Returns the write cycles spent. For a write without a result, these are its planned cycles, because the program
+    /// may have died after the last byte.
     pub fn write_cycles(&self) -> u64 {
         self.conclusion.as_ref().map_or(self.planned_cycles, |end| end.cycles_spent)
     }
@@ -220,7 +220,7 @@ impl Entry {
 pub struct WriteResult {
     pub at: Timestamp,
     pub outcome: Outcome,
-    /// Number of write cycles spent. A write that failed half-way counts as well.
+    /// Number of write cycles spent, including those of a write that failed half-way.
     pub cycles_spent: u64,
 }
 
@@ -236,6 +236,6 @@ pub struct EntryFilter {
     pub asset: Option<String>,
     /// Time of the oldest entry.
     pub since: Option<Timestamp>,
-    /// Text contained in the description, the device, the user or the bench. Upper and lower case of ASCII are equal.
+    /// Text contained in the description, the device, the user or the bench. The case of ASCII letters is ignored.
     pub search: String,
 }

@@ -96,7 +96,7 @@ impl Logbook {
             .map_err(|error| LogbookErrorKind::from(error).into_error(&self.path))
     }
 
-    /// Records how an intended write ended.
+    /// Records the result of an intended write.
     ///
     /// # Errors
     /// Returns [`LogbookErrorKind::NotOpen`] if the intent does not exist or is already concluded, or another error if
@@ -128,9 +128,9 @@ impl Logbook {
         }
     }
 
-    /// Returns the number of write cycles that this program has spent on a device. An intent without an outcome counts
-    /// with its planned cycles, because the program may have died after the last byte. Writes by other programs are not
-    /// included, so the count is a minimum.
+    /// Returns the number of write cycles that this program has spent on a device. For an intent without an outcome,
+    /// the planned cycles are counted, because the program may have died after the last byte. Writes by other programs
+    /// are not included, so the count is a minimum.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.

@@ -100,7 +100,6 @@ fn select(
     database.prepare(&sql)?.query_map(parameters, read_entry)?.collect()
 }
 
-/// Returns the items as JSON.
 pub(super) fn items_json(items: &[ChangedItem]) -> String {
     // Strings and options always have a JSON form.
     serde_json::to_string(items).unwrap_or_else(|_| "[]".to_owned())

@@ -1,5 +1,6 @@
-//! The virtual sine/cosine source as a producer, paced by the clock like a real one. If the computer was busy or
-//! asleep, it makes up for the missed samples of the last quarter of a second. Older samples are lost and counted.
+//! The virtual sine/cosine source as a producer, paced by the clock like a real one. After a delay, because the
+//! computer was busy or asleep, the source catches up on the samples of the last quarter of a second. Older samples are
+//! lost and counted.
 
 use std::time::Duration;
 
@@ -12,10 +13,10 @@ use crate::units::Moment;
 
 /// Duration of a batch at full rate, in nanoseconds.
 const BATCH_NS: i64 = 10_000_000;
-/// Maximum delay for which the source catches up, in nanoseconds.
+/// Maximum delay up to which the source catches up, in nanoseconds.
 const LATE_NS: i64 = 250_000_000;
 
-/// The error for samples whose settings are no longer stored. The source was changed too often in the meantime.
+/// The error for samples whose settings are no longer stored, because the source was changed too often in the meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings of samples that are due are forgotten")]
 pub struct StaleSettings;
