@@ -59,7 +59,7 @@ impl OctantTable {
     /// Number of intervals that the manual considers sufficient. The largest error is 1/79 255 of a period.
     pub const INTERVALS: usize = 32;
 
-    /// Creates a table with the given number of intervals, which is at least one.
+    /// Creates a table with the given number of intervals, at least one.
     pub fn new(intervals: usize) -> Self {
         let intervals = intervals.max(1);
         OctantTable((0..=intervals).map(|node| (node as f64 / intervals as f64).atan()).collect())

@@ -32,7 +32,7 @@ pub struct MissingSamples {
 }
 
 impl Continuity {
-    /// Examines the continuity of times given in seconds.
+    /// Checks the continuity of times given in seconds.
     pub fn from_times(times_s: &[f64]) -> Self {
         let Some(longest_even) = longest_even_step(times_s) else { return Continuity::default() };
         let mut continuity = Continuity::default();

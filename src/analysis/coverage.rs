@@ -39,7 +39,7 @@ impl UnwrappedAngle {
         UnwrappedAngle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
     }
 
-    /// Returns the angle advanced to the given voltages, by less than half a period.
+    /// Returns the angle after a movement by less than half a period to the given voltages.
     fn advanced_to(self, sine: f64, cosine: f64) -> Self {
         let step = (quadrant_of(sine, cosine) - quadrant_of(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {

@@ -29,7 +29,7 @@ pub struct Deviation {
 
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NonlinearityError {
-    /// The reference angle reverses or stands still.
+    /// The reference angle reverses or does not change.
     #[error("the reference does not run on at sample {index}")]
     NotMonotonic {
         /// Sample index, counted from 0.

@@ -11,7 +11,7 @@ use super::moments::{Moments, Scale};
 /// Samples excluded from a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
-    /// Ranges of outliers by sample index from 0, in order. No two ranges touch.
+    /// Ranges of outliers by sample index, counted from 0, in ascending order. The ranges do not touch each other.
     pub stretches: Vec<Range<usize>>,
     pub count: usize,
     pub longest: usize,
@@ -170,7 +170,7 @@ fn median_deviation(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     value_at_rank(&mut offs, middle)
 }
 
-/// Returns the value of the given rank, counted from the smallest.
+/// Returns the value of the given rank. Rank 0 is the smallest value.
 fn value_at_rank(values: &mut [f64], rank: usize) -> f64 {
     if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
 }

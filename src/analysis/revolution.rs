@@ -31,7 +31,7 @@ pub enum RevolutionError {
     },
 }
 
-/// Largest permitted deviation of the counted from the given number of periods, as a fraction.
+/// Maximum relative deviation of the counted number of periods from the given one.
 const MAX_PERIOD_DEVIATION: f64 = 0.02;
 
 impl Revolution {

@@ -62,10 +62,10 @@ pub enum Action {
     FileNotChosen,
     /// Ask for a path as text, because the system has no file dialog.
     TypePath(FileQuestion),
-    /// Use the path that the user typed. The user is asked before an existing file is replaced; a dialog of the system
-    /// asks this itself.
+    /// Use the path that the user typed. The user is asked before an existing file is replaced. A system dialog asks
+    /// this itself.
     Typed(FileQuestion, PathBuf),
-    /// Use the file chosen in a dialog of the system. It may be replaced if it exists.
+    /// Use the file chosen in a system dialog. It may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
     CloseComparison,
     /// Show the entries of the logbook that match a filter.
@@ -196,7 +196,7 @@ pub struct OpenedConnection<D: Kind> {
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     pub(super) is_virtual: bool,
     pub began: jiff::Zoned,
-    /// Sender whose drop lets the next attempt use the connection.
+    /// Sender that is dropped to let the next attempt use the connection.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }
 

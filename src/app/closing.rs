@@ -9,7 +9,7 @@ use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
-/// Minimum duration of a recording in nanoseconds for which the user is asked before it is discarded.
+/// Minimum duration in nanoseconds of a recording for which the user is asked before it is discarded.
 pub(super) const LONG_RECORDING_NS: i64 = 120_000_000_000;
 
 impl Studio {
@@ -88,7 +88,7 @@ impl Studio {
         }
     }
 
-    /// Handles a request of the system to end the program. Edits are kept as drafts, and no questions are asked.
+    /// Handles a request from the system to end the program. Edits are kept as drafts, and no questions are asked.
     pub(super) fn force_quit(&mut self) {
         self.question = None;
         self.stop();

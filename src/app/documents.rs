@@ -68,7 +68,7 @@ impl Studio {
         );
     }
 
-    /// Handles the result of a task with the draft of a session.
+    /// Handles the result of a task that accesses the draft of a session.
     pub(super) fn finish_draft(&mut self, id: SessionId, done: DraftOutcome) {
         if let DraftOutcome::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);

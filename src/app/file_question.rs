@@ -9,7 +9,7 @@ use super::payload::Payload;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
-/// A question for a file. The user answers it in a dialog of the system or by typing a path.
+/// A question for a file. The user answers it in a system dialog or by typing a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
     Open,

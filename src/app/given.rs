@@ -1,4 +1,4 @@
-//! Values for a kind of device that come from outside: start options, or substitutes in a test. Their types are not
+//! Values supplied from outside to a kind of device: start options, or substitutes in a test. Their types are not
 //! visible to the studio.
 
 use std::any::{Any, TypeId};
@@ -47,7 +47,7 @@ impl<D: Device> LinkOpener<D> {
     /// Opens a link.
     ///
     /// # Errors
-    /// See [`OpenError`].
+    /// Returns an [`OpenError`] if the link cannot be opened.
     pub(super) fn open(&self, url: &LinkUrl, store: Store) -> Result<Session<D>, OpenError> {
         (self.0)(url, store)
     }

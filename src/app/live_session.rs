@@ -104,8 +104,7 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// Returns whether the thread has ended although the session was not released, and all of its events have been
-    /// received.
+    /// Returns whether the thread has ended without a release of the session, and all of its events have been received.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_finished() && self.worker.events().is_empty()
     }

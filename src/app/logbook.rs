@@ -1,4 +1,4 @@
-//! The logbook as a page: the filter, the entries that match it, and notes of the user. The file is read and written in
+//! The logbook as a page: the filter, the entries that match it, and the user's notes. The file is read and written in
 //! tasks.
 
 use jiff::Timestamp;

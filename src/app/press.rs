@@ -40,7 +40,7 @@ pub struct KeyStates {
 }
 
 impl KeyStates {
-    /// State in which both keys are up and the keyboard focus was never lost.
+    /// State in which both keys are up, and the keyboard focus has not been lost.
     pub const ALL_UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
     /// Discards the states of the keys, because the keyboard focus has changed or has another purpose.

@@ -115,7 +115,7 @@ impl<K: Reviewable> Review<K> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperationTexts {
     pub item: Text,
-    /// Changes in order, at least one.
+    /// Changes in order. There is at least one.
     pub changes: Vec<ChangeTexts>,
 }
 
@@ -141,7 +141,7 @@ impl OperationTexts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
-    /// Label of the answer that does not give the permit.
+    /// Label of the answer that declines the permit.
     pub no: Text,
     pub yes: Text,
     pub permit: Permit,
@@ -151,7 +151,7 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
-    /// The plan is executed step by step, with actions of the user at the device.
+    /// The plan is executed step by step, and the user acts at the device.
     Leads,
     /// The plan is executed step by step and does not write anything.
     Tests,
@@ -194,8 +194,8 @@ pub struct ReviewSheet {
     pub toggles: Vec<PermitToggle>,
     /// Questions that the user must answer before the plan is executed.
     pub questions: Vec<Question>,
-    /// Whether to write although the limit of write cycles is reached or their number is unknown. `None` if the user
-    /// need not decide this.
+    /// Whether to write although the limit of write cycles is reached or their number is unknown. `None` if no decision
+    /// of the user is required.
     pub force_wear: Option<bool>,
     /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,

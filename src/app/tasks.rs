@@ -1,5 +1,5 @@
-//! Blocking tasks, such as file access, the opening of links, and dialogs of the system. Each one runs on a thread and
-//! returns its result as an action.
+//! Blocking tasks, such as file access, the opening of links, and system dialogs. Each one runs on a thread and returns
+//! its result as an action.
 
 use std::sync::Arc;
 use std::thread;

@@ -41,7 +41,7 @@ pub trait CliDevice: Kind {
     /// Prepares a session with the options that every command has.
     fn prepare_context(session: &mut Session<Self>, given: &TypeMap) -> Self::Context;
 
-    /// Prints a message of the device immediately. The default prints nothing.
+    /// Prints a message from the device immediately. The default prints nothing.
     fn print_message(_remark: &Self::DeviceMessage) {}
 
     /// Describes a step for the progress bar on a terminal.

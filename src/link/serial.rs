@@ -87,7 +87,7 @@ impl SerialLink {
     ///
     /// # Errors
     /// Returns [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
-    /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or another error of the system.
+    /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or another system error.
     pub fn open(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_configured(path, format, clock, |builder| builder)
     }
@@ -190,7 +190,7 @@ fn parity(parity: Parity) -> serialport::Parity {
     }
 }
 
-/// Error message of the system for a file without a baud rate, such as /dev/null.
+/// System error message for a file without a baud rate, such as /dev/null.
 const NOT_A_TERMINAL: &str = "Not a typewriter";
 
 fn open_error_kind(path: &str, error: &serialport::Error) -> LinkErrorKind {

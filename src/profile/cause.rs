@@ -24,7 +24,7 @@ impl<E: Error + Clone + Eq + Send + Sync + 'static> DynCause for E {
 }
 
 impl Cause {
-    /// Wraps an error of a device.
+    /// Wraps a device-specific error.
     pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
         Cause(Box::new(error))
     }

@@ -84,14 +84,14 @@ pub trait OperationError: fmt::Display {
     /// Error type of the device and its connection.
     type Device;
 
-    /// Returns the error of the device or its connection, or `None` for other causes.
+    /// Returns the error from the device or its connection, or `None` for other causes.
     fn device(&self) -> Option<&Self::Device>;
 
     /// Returns whether the user cancelled and no other error occurred.
     fn is_only_cancelled(&self) -> bool;
 }
 
-/// An error of a device or its connection.
+/// An error from a device or its connection.
 pub trait DeviceError: fmt::Display {
     /// Returns whether the user cancelled and no other error occurred.
     fn is_only_cancelled(&self) -> bool;

@@ -135,7 +135,7 @@ pub(crate) trait VirtualLine: Send {
 
     fn schedule_event(&mut self, at: Moment, event: Self::Event);
 
-    /// Transmits bytes of the host from `start` on. Returns the time at which the last byte has been sent.
+    /// Transmits bytes from the host, starting at `start`. Returns the time at which the last byte has been sent.
     fn transmit_from_host(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.

@@ -26,7 +26,7 @@ pub(super) struct Command {
     /// Name of the device or tab on which the command acts. Empty for a command that acts on the whole program.
     pub(super) about: String,
     pub(super) name: String,
-    /// Name in the other language, by which the command is also found.
+    /// Name in the other language. The command can also be found by this name.
     pub(super) other_name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
     /// Whether a text entry receives the key instead while the user is typing.
@@ -51,8 +51,8 @@ pub struct NamedAction {
     pub action: Action,
 }
 
-/// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, because they could be mistaken
-/// for those with fewer.
+/// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, because they could otherwise be
+/// mistaken for those with fewer.
 pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = program_commands(theme, studio, views);
     if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {

@@ -125,7 +125,7 @@ pub(crate) fn stop_button(ui: &mut Ui, theme: &Theme, active: bool, button: Butt
     .inner
 }
 
-/// Draws a button. The tooltip of a disabled button gives the reason.
+/// Draws a button. The tooltip of a disabled button shows the reason.
 pub(crate) fn button_with_reason(
     ui: &mut Ui,
     theme: &Theme,

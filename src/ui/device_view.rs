@@ -131,7 +131,7 @@ pub trait DeviceView: Sync {
     /// Returns all pages, in navigation order.
     fn pages(&self) -> Vec<PageInfo>;
 
-    /// Returns whether the undo and redo keys undo and redo edits of the device.
+    /// Returns whether the undo and redo keys apply to edits of the device.
     fn has_undo_keys(&self) -> bool;
 
     /// Returns the header text of a moving device. Returns `None` while the device stands still.

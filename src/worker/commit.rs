@@ -94,7 +94,7 @@ pub trait PlannedWrite {
     /// Returns the kind of the logbook entry.
     fn entry_kind(&self) -> EntryKind;
 
-    /// Returns the values before the change, as text from which they can be restored.
+    /// Returns the values before the change, in a text from which they can be restored.
     fn before_image(&self) -> String;
 
     /// Returns the plan to write.
@@ -102,7 +102,7 @@ pub trait PlannedWrite {
         self.header().plan
     }
 
-    /// Returns the kind of change of the plan.
+    /// Returns the kind of change that the plan makes.
     fn kind(&self) -> Self::Kind {
         self.header().kind
     }

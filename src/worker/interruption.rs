@@ -51,7 +51,7 @@ pub enum JobError<E, P, I, K> {
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K>
     JobError<E::Device, P, InterruptedWrite<Op, E, Done, Left>, K>
 {
-    /// Returns the error of the device or its connection, regardless of whether the device had been written to.
+    /// Returns the error from the device or its connection, regardless of whether the device had been written to.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

@@ -36,7 +36,7 @@ impl LiveRequests {
         (LiveRequests { requests, sampling: CancelToken::default(), changed }, changes)
     }
 
-    /// Sets the job to which later stops apply.
+    /// Sets the job to which subsequent stops apply.
     pub(super) fn set_job_cancel(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }
@@ -144,7 +144,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         self.live.wake_thread();
     }
 
-    /// Returns the watched values and their intervals if they have changed since `known`. Updates `known`.
+    /// Returns the [active entries](Self::active_entries) if the list has changed since `known`. Updates `known`.
     pub(super) fn changed_entries(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
         let list = self.lock();
         let changed = std::mem::replace(known, list.number) != list.number;

@@ -50,8 +50,8 @@ const MIN_ROWS: u64 = 6;
 const MAX_EXCERPT_CHARS: usize = 24;
 
 impl TableImport {
-    /// Begins an import with the first [`HEAD_BYTES`] bytes of a table, or with all bytes of a shorter table. The bytes are
-    /// only examined here. They must be [fed](Self::process) as well.
+    /// Begins an import with the first [`HEAD_BYTES`] bytes of a table, or with all bytes of a shorter table. The bytes
+    /// are only examined, and must also be passed to [`process`](Self::process).
     ///
     /// # Errors
     /// Returns the same errors as [`Layout::detect`].

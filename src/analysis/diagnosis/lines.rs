@@ -27,14 +27,14 @@ const PREFERRED_SECONDS: f64 = 0.2;
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
 /// Minimum number of periods. With fewer, the signal's own line covers the whole spectrum.
 const MIN_PERIODS: f64 = 8.0;
-/// Number of signal harmonics skipped, for even and for uneven motion. The wide harmonics of an uneven motion cover
-/// much of the spectrum and do not stand out as lines, so fewer are skipped.
+/// Number of signal harmonics that are skipped, for even and for uneven motion. The wide harmonics of an uneven motion
+/// cover much of the spectrum and do not stand out as lines, so fewer are skipped.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const HARMONIC_HALF_WIDTH: usize = 3;
 /// Lines above this fraction of the peak belong to the signal's line.
 const WIDTH: f64 = 0.01;
-/// Number of lines on each side from which the noise is determined.
+/// Number of neighbouring lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
 /// Minimum ratio of a line to the median of its neighbours. Below it, the line is noise.
 const LINE_TO_NOISE_RATIO: f64 = 6.0;

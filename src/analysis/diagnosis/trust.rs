@@ -10,7 +10,7 @@ use crate::analysis::signal_analysis::Analysis;
 /// range has a margin for signals outside their limits. See section 1 of the project's sine/cosine reference.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
-/// Factor by which a harmful correction increases the error. The increase must also exceed `LARGER_DEG`.
+/// Factor by which a harmful correction increases the error. The increase must also exceed `HARMFUL_EXCESS_DEG`.
 const HARMFUL_FACTOR: f64 = 1.1;
 const HARMFUL_EXCESS_DEG: f64 = 0.2;
 

@@ -86,7 +86,7 @@ impl ValueRange {
 }
 
 /// Block of up to `BLOCK` samples. Its memory is allocated at once, except that of the flags, and is reused after
-/// [`clear`](SampleBlock::clear). A block has few fields, so many blocks are scanned quickly.
+/// [`clear`](SampleBlock::clear). A block has few fields, which makes scans of many blocks fast.
 #[derive(Debug)]
 pub(super) struct SampleBlock<T> {
     values: Vec<T>,

@@ -129,10 +129,10 @@ fn step_f32(distance: f32, steps: i32) -> f32 {
     f32::from_bits(ordered(place).cast_unsigned())
 }
 
-/// Limit up to which `f32` holds every count exactly.
+/// Largest magnitude up to which `f32` represents every count exactly.
 const EXACT_F32: u64 = 1 << 24;
 
-/// Limit up to which `f64` holds the sum of two numbers exactly.
+/// Largest magnitude up to which `f64` represents the sum of two numbers exactly.
 const EXACT_SUM_LIMIT: f64 = (1_i64 << 52) as f64;
 
 impl Number for i64 {

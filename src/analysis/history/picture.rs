@@ -104,7 +104,7 @@ pub struct ReducedSamples {
 pub struct HistoryPicture {
     /// Pixel columns that contain samples, or single samples if `raw` is set.
     pub pixels: Vec<Pixel>,
-    /// Whether each sample has its own pixel and its exact time, because there are only a few.
+    /// Whether each sample has a separate pixel with its exact time, because there are only a few samples.
     pub raw: bool,
 }
 

@@ -142,8 +142,8 @@ impl<T: Number> Series<T> {
         (at / BLOCK, at % BLOCK)
     }
 
-    /// Returns the blocks that overlap the stored part of `range`. Each comes with the index of its first sample and
-    /// the range within the block.
+    /// Returns the blocks that overlap the stored part of `range`. Each block is returned with the index of its first
+    /// sample and the range within the block.
     fn blocks_in(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &SampleBlock<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;

@@ -3,8 +3,9 @@
 use super::picture::{HistoryPicture, Pixel, ReducedSamples};
 
 impl HistoryPicture {
-    /// Maps counts to the range from 0 to below `range`, where they start again from 0. The line is interrupted there:
-    /// a pixel column in which the counts cross the end of the range once has two parts, one at each end.
+    /// Maps counts to the range from 0 to below `range`. At the end of the range, counts start again from 0, and the
+    /// line is interrupted. A pixel column in which the counts cross the end once has two parts, one at each end of the
+    /// range.
     pub fn wrap(&mut self, range: i64) {
         let range = range.max(1) as f64;
         let mut wrapped = Vec::with_capacity(self.pixels.len());

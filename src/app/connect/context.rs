@@ -18,7 +18,7 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// The next actions of the dialog after a call of a search.
+/// The next actions of the dialog after the search has been called.
 #[derive(Default)]
 pub(super) struct NextAction {
     pub(super) found: Option<LinkUrl>,

@@ -44,10 +44,10 @@ pub trait Finder: Default + 'static {
     type Form;
     /// Type of the user's actions in the search.
     type Action: Any + Send;
-    /// The results of the search tasks.
+    /// The results of the tasks that the search starts.
     type TaskResult: Any + Send;
 
-    /// Executes an action of the search.
+    /// Executes an action of the user in the search.
     fn handle_action(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
     /// Handles the result of a task. `finder` is `None` if the dialog has been closed in the meantime.

@@ -45,7 +45,7 @@ impl EnteredValues {
     }
 }
 
-/// Link parameters from the entries of a form, in order. Default values are left out.
+/// Link parameters from the entries of a form, in order. Default values are omitted.
 #[derive(Default)]
 pub(crate) struct Parameters(Vec<NameAndValue>);
 
@@ -117,7 +117,7 @@ impl Parameters {
 pub(crate) mod tests {
     use super::*;
 
-    /// Checks that each link fills in a form from which an equivalent link is built.
+    /// Checks that each link, filled into a form, yields an equivalent link.
     pub(crate) fn assert_round_trip(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();

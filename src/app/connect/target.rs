@@ -68,7 +68,7 @@ pub(crate) fn rejection_text(url: &LinkUrl, error: &OpenError) -> Text {
     }
 }
 
-/// Returns the message for a link that cannot be used although each of its entries is valid.
+/// Returns the message for a link that cannot be used although each entry is valid.
 pub(crate) fn unusable_link_text(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }

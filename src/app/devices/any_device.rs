@@ -151,7 +151,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// Marks a save as waiting for an answer of the user. Another save may then begin.
+    /// Marks a save as waiting for an answer from the user. Another save may then begin.
     pub(in crate::app) fn mark_save_waiting(&mut self) {
         self.state_mut().is_saving = false;
     }

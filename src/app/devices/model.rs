@@ -263,7 +263,7 @@ pub trait MotionControl {
     /// Returns whether a drive is moving or about to move.
     fn is_moving(&self) -> bool;
 
-    /// Returns whether a drive is moving, or about to move, at the request of this window.
+    /// Returns whether a drive is moving, or about to move, because this window has requested it.
     fn is_turned_by_hand(&self) -> bool;
 
     /// Returns whether a motion requested in this window has not ended yet.

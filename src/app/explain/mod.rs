@@ -57,8 +57,8 @@ pub fn open_error_text(error: &OpenError) -> Text {
     }
 }
 
-/// Returns the reason why a link could not be opened or its thread could not be started. `open` explains the errors of
-/// the kind of device.
+/// Returns the reason why a link could not be opened or its thread could not be started. `open` explains the
+/// device-specific errors.
 pub fn open_failure_text(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailure::Link(error) => open(error),

@@ -155,7 +155,7 @@ impl Recorder {
         id
     }
 
-    /// Removes a line. Its samples are removed as well, unless another line shows samples of the same group.
+    /// Removes a line and its samples, unless another line shows samples of the same group.
     pub(in crate::app) fn remove_line(&mut self, id: SeriesId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;

@@ -35,7 +35,7 @@ pub struct Trigger {
     pub line: SeriesId,
     pub when: TriggerCondition,
     pub level: f64,
-    /// Fraction of the view that lies before the event, from 0 to 1.
+    /// Fraction of the view before the event, from 0 to 1.
     pub before: f64,
     /// Whether the trigger waits for the next event after each view. Otherwise the view is held.
     pub repeat: bool,

@@ -124,7 +124,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Requests the plan again after a permit was given or withdrawn.
+    /// Requests the plan again after the user has given or withdrawn a permit.
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if self.session().is_busy() {
             return;
@@ -162,7 +162,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Handles a change of the device. The edits for the previous device stay on disk if it has a serial number.
+    /// Handles the replacement of the device by another one. The edits for the previous device stay on disk if it has a
+    /// serial number.
     fn handle_device_replacement(&mut self, serial: &str, services: &mut Services) {
         if self.pending_edits().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());

@@ -48,7 +48,7 @@ pub enum Source {
     File {
         path: PathBuf,
         key: String,
-        /// The document without the edits of the user.
+        /// The document without the user's edits.
         document: Box<ProfileDocument>,
         /// Text of the file. Its comments, order and line endings belong to the user and are preserved.
         text: String,

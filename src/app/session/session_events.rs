@@ -57,7 +57,7 @@ pub trait SessionEvents: HasSession {
     /// Handles progress of the running job.
     fn handle_progress(&mut self, _what: JobStep<Self>) {}
 
-    /// Returns whether the result of a job is a reply of the device.
+    /// Returns whether the result of a job is a reply from the device.
     fn is_device_reply(_output: &Output<Self>) -> bool {
         true
     }

@@ -1,5 +1,5 @@
 //! Combination of the absolute and the analogue position, from entries or from an encoder at rest. Several readings
-//! give the mean lead of the absolute position. See SICK 8010701, forming the absolute position, and section 4 of the
+//! yield the mean lead of the absolute position. See SICK 8010701, forming the absolute position, and section 4 of the
 //! project's sine/cosine reference.
 
 use crate::analysis::arctan::{Phase, from_voltages};
@@ -55,7 +55,7 @@ pub enum PhaseInput {
 #[derive(Debug, Default)]
 pub struct SynchroniseState {
     pub form: Form,
-    /// Reason why the last reading of an encoder failed, if any.
+    /// Reason why the last attempt to read an encoder failed, if any.
     pub problem: Option<Text>,
     readings: Vec<(u64, Phase)>,
     origin: Option<SineCosineOrigin>,

@@ -19,7 +19,7 @@ pub struct Settings {
     pub offset_cosine_v: f64,
     /// Amplitude ratio r of the cosine channel to the sine channel.
     pub gain_ratio: f64,
-    /// Phase error α in degrees, by which the sine follows the cosine later than by a quarter of a period.
+    /// Phase error α in degrees. The sine follows the cosine by a quarter of a period plus α.
     pub phase_error_deg: f64,
     /// Mean level of the references in volts.
     pub level_v: f64,

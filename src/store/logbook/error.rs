@@ -18,7 +18,7 @@ pub struct LogbookError {
 pub enum LogbookErrorKind {
     #[error(transparent)]
     Folder(FileError),
-    /// The file cannot be opened because a folder has its name or because permission is missing.
+    /// The file cannot be opened, because its name is that of a folder, or because permission is missing.
     #[error("the file cannot be opened")]
     NoAccess,
     /// The file can be read but not written.

@@ -160,7 +160,7 @@ impl Logbook {
         query::entry(&self.database, id).map_err(|error| self.database_error(error))
     }
 
-    /// Adds a note of the user about a device. The record is on disk when this function returns.
+    /// Adds a user's note about a device. The record is on disk when this function returns.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be written.

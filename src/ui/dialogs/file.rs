@@ -1,4 +1,4 @@
-//! Choice of a file in the dialog of the system, on a separate thread. If the system has no dialog, the user types the
+//! Choice of a file in the system's file dialog, on a separate thread. If the system has no dialog, the user types the
 //! path.
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The plot. It draws a recorder, and turns input of the pointer and the keyboard into actions.
+//! The plot. It draws a recorder, and turns pointer and keyboard input into actions.
 //!
 //! A drag selects a box to zoom into, or moves a cursor. A drag with the right button or Shift moves the picture. The
 //! wheel makes the time span longer or shorter around the pointer. A double click shows everything. Keys: ← and → move,

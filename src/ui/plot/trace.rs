@@ -8,7 +8,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, HistoryPicture};
 
 const LINE_WIDTH: f32 = 1.5;
-/// Number of points up to which a line is drawn smoothly.
+/// Maximum number of points for a smooth line.
 const MAX_SMOOTH_POINTS: usize = 1500;
 /// Minimum sample spacing in points at which each sample is drawn with a dot.
 const DOT_SPACING: f32 = 8.0;

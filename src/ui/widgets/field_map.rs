@@ -64,7 +64,8 @@ pub enum MapEvent {
     },
 }
 
-/// Draws the map and returns the user's action. A `Ui` can have only one map, unless each has its own id (`push_id`).
+/// Draws the map and returns the user's action. A `Ui` can have only one map, unless each map has a separate id
+/// (`push_id`).
 pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
     let taken: usize = sizes.iter().sum();

@@ -40,7 +40,7 @@ pub struct HexModel<'a> {
     pub marks: &'a [HexMark<'a>],
     /// Reason why the bytes cannot be edited. `None` if they are editable.
     pub read_only: Option<&'a Text>,
-    /// Maximum number of lines shown at once.
+    /// Maximum number of visible lines.
     pub lines: usize,
     pub addresses: HexAddresses,
 }
