@@ -17,7 +17,7 @@ use crate::worker::stream::{Batch, Producer, SampleCount};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// The configuration of a stream and the interpretation of its packets.
+/// How a stream is configured and how its packets are interpreted.
 pub trait StreamFormat: Send + 'static {
     type Samples: SampleCount;
 

@@ -25,8 +25,8 @@ parameters! {
     }
 }
 
-/// Returns the margin for late replies and the function that opens the connection, which may be called on any thread. A
-/// virtual adapter can have the given devices.
+/// Returns the margin for late replies and the function that opens the connection, which may be called on any thread.
+/// `devices` can be attached to a virtual adapter.
 ///
 /// # Errors
 /// Returns an error if the link does not refer to an adapter or a parameter is invalid. Nothing has been opened in this

@@ -23,7 +23,7 @@ const SLACK_NS: i128 = 2_000_000;
 /// Reciprocal of the maximum rate of correction. The rate exceeds the difference between oscillators but is too slow to
 /// affect a speed. During a packet, the correction is less than one of its 255 samples.
 const CORRECTION_DIVISOR: i128 = 4000;
-/// Change of the offset in nanoseconds above which it is not drift. A clock was then stopped or set.
+/// Change in the offset, in nanoseconds, above which a clock was stopped or set instead of drifting.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl ClockDrift {
@@ -45,7 +45,7 @@ impl ClockDrift {
         SampleTime::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// Returns the minimum offset of the present and the previous section in nanoseconds.
+    /// Returns the smaller of the minimum offsets of the present and the previous section, in nanoseconds.
     fn minimum_offset_ns(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {
@@ -103,7 +103,7 @@ mod tests {
         // The computer slept for an hour, and its clock with it.
         let hour = 3_600_000;
         assert_eq!(drift.time(i128::from((hour + 10) * MS), at(510)), at(510));
-        // The adapter stood still for 13.5 s: this could be late packets, until two sections have shown the same.
+        // The adapter's clock stood still for 13.5 s. Late packets could look the same until two sections have passed.
         for (own, came, expected) in [(20, 520, 520), (25_000, 39_000, 25_500), (36_000, 50_000, 50_000)] {
             assert_eq!(drift.time(i128::from((hour + own) * MS), at(came)), at(expected), "{own}");
         }

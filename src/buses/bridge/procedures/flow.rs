@@ -24,14 +24,14 @@ pub(crate) enum StreamKind {
 /// Consecutive samples of a stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chunk {
-    /// Index of the first sample, counted from the start of the stream. Missing samples count as well.
+    /// Index of the first sample, counted from the start of the stream. Missing samples are included in the count.
     pub first: u64,
     /// Local time of the first sample.
     pub time: SampleTime,
     pub period_ns: i64,
     /// Number of samples missing before the first sample.
     pub lost: u64,
-    /// Samples, of which there is at least one.
+    /// The samples. There is at least one.
     pub data: StreamData,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct SampleStream {
     drift: ClockDrift,
 }
 
-/// Silence after which the stream counts as ended. A slow stream has more time.
+/// Silence after which the stream is considered to have ended. A slow stream is given more time.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(2);
 const SILENT_SAMPLES: u32 = 256;
 
@@ -85,7 +85,8 @@ impl SampleStream {
     /// Starts a stream. All of its samples are later than `after`.
     ///
     /// # Errors
-    /// Returns a [`Failure`]. If the adapter rejects the request as busy, the stream is already running.
+    /// Returns a [`Failure`] if the stream cannot be started. If the adapter rejects the request as busy, the stream is
+    /// already running.
     pub(crate) fn start(
         adapter: &mut Adapter<'_, '_>,
         streamed: StreamKind,
@@ -135,8 +136,8 @@ impl SampleStream {
     /// Returns the next samples, or `None` if no samples have arrived by `until`.
     ///
     /// # Errors
-    /// Returns [`AdapterError::Mute`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has ended.
-    /// Other errors are cancellation and errors of the connection.
+    /// Returns [`AdapterError::Mute`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has ended,
+    /// or another error if the job is cancelled or the connection fails.
     pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Chunk>, Failure> {
         let mut bytes = Vec::new();
         loop {

@@ -32,7 +32,7 @@ pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 /// Clock frequencies that may be requested. An adapter uses the nearest one that it supports.
 pub(crate) const CLOCK: WholeNumbers<u32> = WholeNumbers(Quantity::Hertz, 80_000..=10_000_000);
 
-/// Time after the deadline of a reply for which an adapter may still send other data before the reply counts as
+/// Time after the deadline of a reply during which an adapter may still send other data. Then the reply is considered
 /// missing.
 const OTHER_DATA_TIME: Duration = Duration::from_secs(1);
 
@@ -61,7 +61,7 @@ pub enum AdapterError {
     NoAnalog { name: String },
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply { name: String },
-    /// The supply voltage exceeds the limit of the encoder. The supply was switched off again.
+    /// The supply voltage exceeds the limit of the encoder, so the supply was switched off again.
     #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
         /// Requested voltage in millivolts.
@@ -162,7 +162,7 @@ impl AdapterState {
     }
 }
 
-/// Host side of an adapter for one exchange.
+/// Host side of the adapter for the duration of one exchange.
 pub(crate) struct Adapter<'m, 'a> {
     pub(crate) line: &'m mut SerialLine<'a>,
     pub(crate) state: &'m mut LineState,
@@ -174,10 +174,11 @@ impl Adapter<'_, '_> {
     /// switched.
     ///
     /// # Errors
-    /// Returns [`AdapterError::Version`] if the adapter uses another version of the protocol, or another [`Failure`].
+    /// Returns [`AdapterError::Version`] if the adapter uses another version of the protocol, or another [`Failure`] if
+    /// the exchange fails.
     pub(crate) fn read_identity(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
-            // The empty packet completes a packet that the adapter may have received partly from another host.
+            // The empty packet terminates a packet that another host may have sent only in part.
             let answered = self.send_with_retry(&Request::Hello, &[0])?;
             let Reply::Hello(hello) = answered.reply else {
                 return Err(AdapterError::unexpected_reply(Operation::Hello, &answered.reply).into());
@@ -195,7 +196,8 @@ impl Adapter<'_, '_> {
     /// the voltage is too high for the encoder, the supply is switched off again.
     ///
     /// # Errors
-    /// Returns [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] or another [`Failure`].
+    /// Returns [`AdapterError::NoSupply`] or [`AdapterError::Overvoltage`], or another [`Failure`] if the exchange
+    /// fails.
     pub(crate) fn switch_supply_on(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
         if let Some(hello) = self.adapter.identity().filter(|hello| !hello.capabilities.contains(Capabilities::SUPPLY))
         {
@@ -332,7 +334,7 @@ impl ClockOffsetBounds {
         let (least, most) = (nanoseconds(sent_at) - own, nanoseconds(received_at) - own);
         let narrowed =
             self.bounds.map(|(low, high)| (low.max(least), high.min(most))).filter(|(low, high)| low <= high);
-        // If a clock drifts or the adapter restarts, only the last exchange counts.
+        // If a clock has drifted or the adapter has restarted, only the last exchange is used.
         let (low, high) = narrowed.unwrap_or((least, most));
         self.bounds = Some((low, high));
         let moment = u64::try_from(own + (low + high) / 2).unwrap_or(0);
@@ -354,11 +356,11 @@ mod tests {
         let mut clocks = ClockOffsetBounds::default();
         // The local clock is 1000 µs ahead. Request at 2000, sampled at 1100 of the adapter's, reply at 2400.
         assert_eq!(clocks.local_time_of(1100, at(2000), at(2400)), at(2200));
-        // 900…1300 so far; now 995…1395: 995…1300.
+        // 900 to 1300 so far, and now 995 to 1395, which gives 995 to 1300.
         assert_eq!(clocks.local_time_of(2005, at(3000), at(3400)), at(2005) + Duration::from_nanos(1_147_500));
-        // 950…1010 narrows it to 995…1010.
+        // 950 to 1010 narrows the range to 995 to 1010.
         assert_eq!(clocks.local_time_of(3000, at(3950), at(4010)), at(3000) + Duration::from_nanos(1_002_500));
-        // A slow exchange no longer widens it.
+        // A slow exchange does not widen the range again.
         assert_eq!(clocks.local_time_of(5000, at(5500), at(9000)), at(5000) + Duration::from_nanos(1_002_500));
         // The adapter has restarted.
         assert_eq!(clocks.local_time_of(10, at(20_000), at(20_100)), at(20_050));

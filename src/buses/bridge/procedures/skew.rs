@@ -1,19 +1,19 @@
-//! Interpolation of the cosine to the time of the sine, for adapters that convert one after the other. A sample of the
-//! cosine is late by a part of the interval, which lies between this sample and the previous one. The cubic polynomial
-//! through the four nearest samples gives the value there.
+//! Interpolation of the cosine to the time of the sine, for adapters that convert the signals one after the other. The
+//! cosine is sampled later by a fraction of the sampling interval, so its value at the time of the sine lies between
+//! the previous sample and this one. It is interpolated with the cubic polynomial through the four nearest samples.
 
 use std::collections::VecDeque;
 
-/// Interpolation of consecutive samples.
+/// Interpolates consecutive cosine samples.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SkewCorrection {
     /// Delay of the cosine as a fraction of the interval, above 0 and below 1.
     share: f64,
-    /// Latest samples of the cosine before the next ones, at most three.
+    /// The latest cosine samples of the previous batch, at most three.
     before: VecDeque<f64>,
 }
 
-/// Number of samples that determine a value.
+/// Number of samples used for one interpolated value.
 const POINTS: usize = 4;
 
 impl SkewCorrection {
@@ -24,7 +24,7 @@ impl SkewCorrection {
         (share > 0.0 && share < 1.0).then(|| SkewCorrection { share, before: VecDeque::new() })
     }
 
-    /// Forgets the previous samples, because some are missing after them.
+    /// Discards the previous samples, because samples are missing after them.
     pub(super) fn reset(&mut self) {
         self.before.clear();
     }
@@ -38,7 +38,7 @@ impl SkewCorrection {
             let first = (start + at).saturating_sub(POINTS / 2).min(cosines.len().saturating_sub(POINTS));
             let points = cosines.get(first..).unwrap_or_default();
             let place = (start + at - first) as f64 - self.share;
-            // The conversion saturates like the converter.
+            // The result is saturated in the same way as in the converter.
             *cosine = interpolate(points.get(..POINTS).unwrap_or(points), place).round() as i16;
         }
         self.before = cosines.iter().rev().take(POINTS - 1).rev().copied().collect();
@@ -80,7 +80,7 @@ mod tests {
             let angle = f64::from(*sine).atan2(f64::from(*cosine)) - TAU * hz * sample as f64 * 10e-6;
             (angle - TAU * (angle / TAU).round()).to_degrees().abs()
         };
-        // The first sample has none before it, and is extrapolated.
+        // The first sample has no predecessor and is extrapolated.
         samples.iter().enumerate().skip(1).map(error).fold(0.0, f64::max)
     }
 

@@ -85,8 +85,8 @@ impl StreamTap {
     ///
     /// # Errors
     /// Returns [`AdapterError::Version`], [`NoBiss`](AdapterError::NoBiss), [`NoAnalog`](AdapterError::NoAnalog) or
-    /// [`NoSupply`](AdapterError::NoSupply) if the adapter is not suitable. Other errors are a rejection or come from
-    /// the connection.
+    /// [`NoSupply`](AdapterError::NoSupply) if the adapter is not suitable. Returns another error if the adapter
+    /// rejects a request or the connection fails.
     pub fn start(
         &mut self,
         ctx: Ctx<'_>,
@@ -141,7 +141,7 @@ impl StreamTap {
     /// Returns the next samples, or `None` if no samples have arrived by `until` or no stream is running.
     ///
     /// # Errors
-    /// Returns the reason why the stream has ended.
+    /// Returns an error with the reason if the stream has ended.
     pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Chunk>, AdapterStreamError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
@@ -159,7 +159,7 @@ impl StreamTap {
     /// Ends the stream and returns the encoder supply to its previous state. Cancellation is ignored.
     ///
     /// # Errors
-    /// Returns an error of the adapter or the connection.
+    /// Returns an error if the adapter or the connection fails.
     pub fn stop(&mut self, ctx: Ctx<'_>) -> Result<(), AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
         line.ignore_cancellation(true);
@@ -171,7 +171,8 @@ impl StreamTap {
 }
 
 impl Adapter<'_, '_> {
-    /// Reads the time in nanoseconds by which the cosine is sampled after the sine. Other adapters sample both at once.
+    /// Reads the time in nanoseconds by which the cosine is sampled after the sine. It is 0 for adapters that sample
+    /// both signals at the same time.
     fn skew_ns(&mut self, hello: &Hello) -> Result<u16, Failure> {
         if !hello.capabilities.contains(Capabilities::ANALOG_SKEW) {
             return Ok(0);

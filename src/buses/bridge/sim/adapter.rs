@@ -1,7 +1,7 @@
-//! The virtual adapter with its requests, replies and streams, byte by byte and with simulated faults. The reference
-//! leaves some facts open. This adapter replies a quarter of a millisecond after a request, or after the 47 cycles of a
-//! control frame if the request needs one. HELLO ends all streams and leaves the supply unchanged. SSI and BiSS share
-//! their wires, so a stream of one occupies both.
+//! The virtual adapter with its requests, replies and streams, byte by byte and with simulated faults. Where the
+//! reference leaves the behaviour open, this adapter replies a quarter of a millisecond after a request, or after the
+//! 47 cycles of a control frame if the request needs one. HELLO ends all streams and leaves the supply unchanged. SSI
+//! and BiSS share their wires, so only one of them can stream at a time.
 
 use std::any::Any;
 use std::time::Duration;
@@ -46,7 +46,7 @@ pub struct Adapter {
     inbox: Vec<u8>,
 }
 
-/// Error code and message of a rejected request.
+/// Error code and message for a rejected request.
 type ErrorReply = (ErrorCode, &'static str);
 
 const NOT_CONFIGURED: ErrorReply = (ErrorCode::BAD_ARGUMENT, "not configured yet");
@@ -59,7 +59,7 @@ impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
     const CONTROL_CYCLES: u32 = 47;
-    /// Maximum number of pending replies, which is the memory of a small controller. Further requests are lost.
+    /// Maximum number of pending replies, limited by the memory of a small controller. Further requests are lost.
     const MAX_PENDING_REPLIES: usize = 16;
     /// Range of the encoder's supply voltage in millivolts. See manual, chapter 2.
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
@@ -142,7 +142,7 @@ impl Adapter {
         }
     }
 
-    /// Replaces the simulated faults. The numbers of requests and stores are kept.
+    /// Replaces the simulated faults. The counts of requests and stores are kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {
@@ -273,7 +273,7 @@ impl Adapter {
                 let period_us = self.start_stream(Kind::Biss, period_us, least, setting.bits);
                 Ok(Reply::BissStream { period_us })
             }
-            // It samples both signals at the same time, and its faults are simulated.
+            // The virtual adapter samples both signals at the same time, and its faults are simulated.
             Request::Status | Request::AnalogSkew => Err(NOT_THERE),
             Request::AnalogConfig { sample_hz } => {
                 let checked = self.analog.clone().with_value(Quantity::Rate, f64::from(sample_hz)).validate();
@@ -370,7 +370,7 @@ impl Adapter {
                 return Err(ENCODER_SILENT);
             }
             if accepted && !device.can_access_registers(now) {
-                // The encoder returned the value before it restarted or began to calibrate.
+                // The encoder returned the value before it restarted or began a calibration.
                 return Ok(value);
             }
         }

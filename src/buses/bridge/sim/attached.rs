@@ -6,8 +6,8 @@ use std::any::Any;
 use crate::sim::{ByteDevice, ConfigError, Motor, SimulatedFaults};
 use crate::units::Moment;
 
-/// A BiSS device with a position and registers. Its motor turns the shaft that all encoders of an adapter share. It
-/// also determines whether they have power.
+/// A BiSS device with a position and registers. Its motor turns the shaft that all encoders of an adapter share, and
+/// its supply determines whether they have power.
 pub trait BissDevice: Any + Send {
     /// Creates a copy of the device with separate state.
     fn clone_device(&self) -> Box<dyn BissDevice>;

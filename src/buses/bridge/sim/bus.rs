@@ -1,5 +1,5 @@
-//! The bits of a BiSS or SSI frame that the adapter clocks out of the encoder. Damage of the wires and noise are also
-//! simulated here.
+//! The bits of a BiSS or SSI frame that the adapter clocks out of the encoder, including simulated noise and wiring
+//! faults.
 
 use fastrand::Rng;
 
@@ -48,8 +48,8 @@ impl Bus {
         self.follow_motor(now);
     }
 
-    /// Changes the speed of the adapter's shaft to that of its motor from `now` on. An attached device does this at its
-    /// next access.
+    /// Changes the speed of the adapter's shaft to that of its motor from `now` on. An attached device updates its own
+    /// shaft at the next access.
     pub(super) fn follow_motor(&mut self, now: Moment) {
         self.shaft.follow_motor(now);
     }
@@ -95,7 +95,7 @@ impl Bus {
         }
     }
 
-    /// Inverts one bit in the configured share of frames.
+    /// Inverts one bit in the configured fraction of frames.
     fn corrupt_frame(&mut self, frame: u64, bits: u8) -> u64 {
         if bits > 0 && self.rng.f64() < self.noise { frame ^ 1 << self.rng.u8(..bits) } else { frame }
     }

@@ -39,7 +39,8 @@ impl SsiSetting {
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
     }
 
-    /// Returns the minimum period of a word and its pause in whole microseconds.
+    /// Returns the minimum sampling period, which is the duration of a word and the following pause, in whole
+    /// microseconds.
     pub(super) fn min_period_us(self) -> u32 {
         let microseconds = self.burst_duration().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())

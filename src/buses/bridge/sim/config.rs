@@ -7,11 +7,11 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults};
 
 parameters! {
-    /// Settings of a virtual adapter. By default, there are no faults, and the encoder has an external supply.
+    /// Settings of a virtual adapter. By default, no faults are simulated and the encoder has an external supply.
     pub(super) struct Config: ConfigError {
         pub(super) line: EncoderWiring = EncoderWiring::Good,
             "line" => Keywords(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
-        /// Share of frames with an inverted bit.
+        /// Fraction of frames with an inverted bit.
         pub(super) noise: f64 = 0.0, "noise" => DecimalNumbers(Quantity::DamagedFrames, 0.0..=1.0);
         pub(super) switched_supply: bool = false, "supply" => Keywords(&[("external", false), ("switched", true)]);
         /// Version of the bridge protocol that the adapter reports.
@@ -20,7 +20,7 @@ parameters! {
 }
 
 parameters! {
-    /// Settings that attached devices may share, which are the seed of the noise and the faults.
+    /// Settings that attached devices may share: the seed of the noise, and the faults.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";

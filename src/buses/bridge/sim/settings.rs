@@ -6,8 +6,8 @@ use super::config::{Config, Shaft, Shared};
 use crate::parameter::{Entry, ParameterGroup};
 use crate::sim::{ConfigError, VirtualDevice};
 
-/// Returns the names of all settings. The settings of the adapter and of devices with few settings come first in
-/// alphabetical order. Those of the last device follow.
+/// Returns the names of all settings. The settings of the adapter and of the small devices come first, in alphabetical
+/// order, followed by those of the last device.
 pub fn all_setting_names(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
@@ -20,8 +20,7 @@ pub fn all_setting_names(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     keys
 }
 
-/// Returns the form entries of an adapter, which are its faults and the speed of the shaft. A device may also own the
-/// shaft.
+/// Returns the form entries of an adapter: its faults, and the speed of the shaft if no attached device owns it.
 pub fn entries() -> Vec<Entry> {
     [Shaft::entries(), Shared::entries()].concat()
 }

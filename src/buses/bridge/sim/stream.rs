@@ -1,5 +1,5 @@
-//! Equidistant samples in packets. A packet contains the samples of five milliseconds or as many as fit. Samples that
-//! the host does not fetch within a second are lost and counted in the next packet.
+//! Equidistant samples in packets. A packet contains the samples of five milliseconds, or as many as fit into it.
+//! Samples that the host does not fetch within a second are dropped, and the next packet reports their number.
 
 use std::time::Duration;
 
@@ -61,7 +61,7 @@ impl PacketTiming {
     }
 
     /// Returns the number and the time of the first sample in the next packet, and the number of lost samples before
-    /// it. Then advances to the following packet.
+    /// it. Then advances to the packet after that.
     fn next(&mut self) -> (u32, u64, u16) {
         let first = (self.first % (1 << 32)) as u32;
         let t0_us = u64::try_from(self.sample_time(self.first).since_start().as_micros()).unwrap_or(u64::MAX);
@@ -99,8 +99,8 @@ impl ClockedStream {
         self.pace.next_packet_time()
     }
 
-    /// Takes the samples up to `to` and returns the completed packets with their times. It must be called before a
-    /// later change applies.
+    /// Takes the samples up to `to` and returns the completed packets with their times. Call this function before a
+    /// change that takes effect at `to`.
     pub(super) fn run(
         &mut self,
         to: Moment,
@@ -174,7 +174,7 @@ impl SampledStream {
         while self.pace.next_packet_time() <= to {
             let at = self.pace.next_packet_time();
             let count = usize::try_from(self.pace.capacity).unwrap_or(0);
-            // A change in the past may have been forgotten. The packet is then empty, so the gap is visible.
+            // A change in the past may no longer be known. The packet is then empty, so that the gap is visible.
             let samples = self.source.samples_from(self.pace.first, count).map_or(Vec::new(), |wires| {
                 wires
                     .sine_v()
@@ -196,6 +196,6 @@ impl SampledStream {
 
 /// Converts a voltage to a fraction of full scale. Values beyond full scale are clamped.
 fn to_full_scale(volts: f64) -> i16 {
-    // The conversion saturates like the converter of the adapter.
+    // The result is saturated in the same way as in the adapter's converter.
     (volts * 1e6 / f64::from(SampledStream::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16
 }

@@ -1,5 +1,4 @@
-//! The serial line of the adapter and its device. It is an assumption that the time-out starts when all bytes have been
-//! sent.
+//! The serial line of the adapter and its device. The time-out is assumed to start when all bytes have been sent.
 
 use std::time::Duration;
 

@@ -28,7 +28,7 @@ pub(crate) type AttributeDecoder = fn(u16, u16, &[u8]) -> Option<(String, std::r
 #[derive(Clone, Copy)]
 pub(crate) enum Device {
     Any,
-    /// A known device. All its services are standard ones, and its attributes have known meanings.
+    /// A known device, which supports standard services only and whose attributes have known meanings.
     Known(AttributeDecoder),
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// The 16-bit parameters of one direction of a connection. Unknown bits are preserved.
+/// The 16-bit network parameters of one direction of a connection. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkParameters(u16);
 

@@ -154,7 +154,7 @@ impl Frame {
     /// Returns the length of the frame that begins with these bytes, or `None` if the header is incomplete.
     ///
     /// # Errors
-    /// Returns [`PacketError::Value`] if the length exceeds the maximum.
+    /// Returns [`PacketError::Value`] if the length exceeds [`Frame::MAX_DATA`].
     pub fn total_length(bytes: &[u8]) -> Result<Option<usize>, PacketError> {
         let Some(header) = bytes.first_chunk::<{ Frame::HEADER }>() else { return Ok(None) };
         let [_, _, low, high, ..] = header;

@@ -118,7 +118,7 @@ impl ForwardOpen {
     /// Parses the service data of the request.
     ///
     /// # Errors
-    /// Returns a [`PacketError`] if the data are incomplete, are too long, or contain an invalid time-out number.
+    /// Returns a [`PacketError`] if the data are incomplete, are too long, or contain an invalid time-out multiplier.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = FieldReader::new(Structure::ForwardOpen, data);
         let timeout = RequestTimeout::take_from(&mut fields)?;
@@ -254,7 +254,7 @@ impl ForwardClose {
         self.owner.push_to(&mut data);
         let mut path = Vec::new();
         self.path.push_to(&mut path);
-        // Only in this request, a reserved byte follows the length of the path.
+        // Only this request has a reserved byte after the length of the path.
         path.insert(1, 0);
         data.extend(path);
         Request::for_connection_manager(Service::FORWARD_CLOSE, data)

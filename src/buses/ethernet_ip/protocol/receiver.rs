@@ -8,12 +8,12 @@ use super::fields::PacketError;
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
-    /// Bytes from an invalid header on, until they are taken.
+    /// The bytes from an invalid header on, until the caller takes them.
     rest: Vec<u8>,
 }
 
 impl Receiver {
-    /// Appends received bytes.
+    /// Appends received bytes to the buffer.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.broken.is_none() {
             self.bytes.extend(bytes);
@@ -23,8 +23,8 @@ impl Receiver {
     /// Returns the next complete frame, or `None` if more bytes are needed.
     ///
     /// # Errors
-    /// Returns a [`PacketError`] for an invalid frame, and on all later calls. The start of the next frame is then
-    /// unknown, and the connection must be closed.
+    /// Returns a [`PacketError`] for an invalid frame. All later calls return the same error, because the start of the
+    /// next frame is unknown. The connection must be closed.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
         if let Some(why) = self.broken {
             return Err(why);
@@ -40,8 +40,8 @@ impl Receiver {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 
-    /// Returns the number of bytes that do not yet form a complete frame. If any remain when the connection ends, the
-    /// last frame was truncated.
+    /// Returns the number of bytes that do not yet form a complete frame. If the connection ends while there are any,
+    /// the last frame was truncated.
     pub const fn pending_len(&self) -> usize {
         self.bytes.len()
     }

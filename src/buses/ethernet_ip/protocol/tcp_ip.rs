@@ -143,7 +143,6 @@ impl InterfaceConfiguration {
     /// must be unset or in the same network.
     ///
     /// Returns an [`AddressError`] if an address, the mask or the domain name is not usable.
-    /// [`AddressError`].
     pub fn check_reachable(&self) -> Result<(), AddressError> {
         let InterfaceConfiguration { address, mask, gateway, .. } = *self;
         check_device_address(address)?;
@@ -220,8 +219,8 @@ mod tests {
         configuration.check_reachable()
     }
 
-    /// The first, last and broadcast addresses match `ipaddress.ip_network("192.168.1.64/26")` of Python: 64, 65…126,
-    /// 127.
+    /// The first, last and broadcast addresses match those of Python's `ipaddress.ip_network("192.168.1.64/26")`: 64,
+    /// 65 to 126, and 127.
     #[test]
     fn unusable_addresses_are_refused() {
         let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };

@@ -1,4 +1,4 @@
-//! Requests of the host and replies of the encoder (manual 5.2). Registers have the global numbers that
+//! Requests of the host and replies of the encoder (manual 5.2). Registers are identified by the global numbers that
 //! `RegisterAddress::global` of BiSS returns.
 
 use super::frame::{Frame, NODE};
@@ -31,7 +31,7 @@ pub enum Request {
         /// New value of the register.
         value: u8,
     },
-    /// Reads the position (03h). The manual defines only the argument 01h, but others are preserved.
+    /// Reads the position (03h). The manual defines only the argument 01h, but other arguments are preserved.
     Position {
         /// Argument byte after the command.
         argument: u8,
@@ -347,7 +347,7 @@ mod tests {
         assert_eq!(Reply::parse(&value, Command::Read), Err(ReplyError::Address { expected: 1, got: 2 }));
         let other = frame(0x02, &[1]);
         assert_eq!(Reply::parse(&other, Command::Read), Err(ReplyError::Command { expected: 1, got: 2 }));
-        // The echo of a request is never taken for its reply: they differ in length.
+        // The echo of a request is never mistaken for its reply, because their lengths differ.
         for request in [Request::PROBE, Request::Write { register: 0, value: 0 }, Request::POSITION] {
             let bytes = request.emit(order);
             let echo = Frame::parse(&bytes).unwrap();

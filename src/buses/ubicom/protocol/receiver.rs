@@ -28,7 +28,7 @@ impl Receiver {
         Receiver { node, bytes: Vec::new(), skipped: 0 }
     }
 
-    /// Appends received bytes.
+    /// Appends received bytes to the buffer.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }

@@ -72,7 +72,8 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// Rejects an argument with an odd number of digits, which cannot be bytes. It may be a position word without its mark.
+/// Returns an error if an argument has an odd number of digits, which cannot be bytes. It may be a position word
+/// without its prefix.
 fn require_even_digit_count(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {

@@ -21,7 +21,7 @@ use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
 use crate::result_of;
 
-/// Time without a valid frame after which the line is considered to carry only noise.
+/// Time without a valid frame after which the line is assumed to carry only noise.
 const NOISE: Duration = Duration::from_secs(5);
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
@@ -200,7 +200,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     ended
 }
 
-/// Returns whether frames arrived, but all of them with a wrong checksum.
+/// Returns whether frames have arrived, but all of them had a wrong checksum.
 fn is_noise(error: &JobError) -> bool {
     matches!(error, JobError::Device(Error::Damaged { cause: ReplyDamage::Frame(_), .. }))
 }

@@ -29,8 +29,8 @@ pub(super) fn prepare_plan(runner: &mut Runner, change: Change) -> Result<Prepar
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
-/// Asks for consent if required, and executes the plan. An empty plan does not send anything. A run starts as soon as
-/// the motor meets the conditions. The time limit for this is `patience`.
+/// Asks for consent if required, and executes the plan. An empty plan sends nothing. A motor run starts as soon as the
+/// motor meets the conditions, for which it has the time `patience`.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,

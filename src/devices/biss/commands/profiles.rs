@@ -55,7 +55,7 @@ impl ProfileCommands for BissCommands {
         })
     }
 
-    /// Reads the encoder for a comparison. This is rejected if its registers may show values that were never saved.
+    /// Reads the encoder for a comparison. Returns an error if its registers may show values that were never saved.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(read_saved_profile(common, BissJob::SaveToCompare)?))
     }

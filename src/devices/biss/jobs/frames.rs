@@ -44,8 +44,8 @@ mod tests {
     use crate::devices::biss::protocol::PositionData;
     use crate::worker::stream::Producer;
 
-    /// A stream of 20 000 frames per second, in which a frame of 43 clocks takes 21.5 µs at 2 MHz, followed by 27 µs of
-    /// waiting.
+    /// A stream of 20,000 frames per second. A frame of 43 clocks takes 21.5 µs at 2 MHz and is followed by a wait of
+    /// 27 µs.
     fn biss() -> BissFrames {
         BissFrames { layout: Layout::default(), clock_hz: 2_000_000, period_us: 50 }
     }

@@ -38,14 +38,14 @@ pub enum BissJob {
     Position,
     /// Reads consecutive registers. Registers of a data area are read only at standstill.
     Read(RegisterRange),
-    /// Reads all direct registers, 40h…7Fh.
+    /// Reads all direct registers, 40h to 7Fh.
     ReadDirect,
     ReadBank(u8),
     /// Reads all registers of a data area, at standstill.
     ReadArea(Area),
     /// Reads everything that can be restored, at standstill. Values that were never saved in the encoder are marked.
     Save,
-    /// Reads the encoder for a comparison. The job is rejected if some values may never have been saved.
+    /// Reads the encoder for a comparison. The job fails if some values may never have been saved.
     SaveToCompare,
     /// Prepares a plan without writing.
     Prepare(Change),
@@ -78,11 +78,11 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// A write of edited bytes. Bytes that were not written remain as edits.
+    /// Writes edited bytes. Bytes that were not written remain as edits.
     Bytes,
     /// Guided procedures. An incomplete procedure must be started again.
     Guided,
-    /// Guided procedures that include a calibration, whose table is not part of any backup.
+    /// Guided procedures that include a calibration. The calibration table is not part of any backup.
     Calibration,
     /// The Wiegand test alone, which stores only its result.
     WiegandTest,
@@ -128,13 +128,13 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.
     pub missing: Vec<String>,
-    /// Values that differ but are not written, because they are only valid for another encoder on its motor.
+    /// Values that differ but are not written, because they are only valid for another encoder on its own motor.
     pub mounting_left: Vec<RegisterRange>,
     /// Device mode in which the profile was read, if the profile may contain values that were never saved in the
     /// encoder.
     pub unsaved: Option<DeviceMode>,
     pub other_type: Option<TypeMismatch>,
-    /// Written values that are only valid for another encoder on its motor. They must be adjusted for this one.
+    /// Written values that are only valid for another encoder on its own motor. They must be adjusted for this encoder.
     pub mounting_written: Vec<RegisterRange>,
 }
 
@@ -226,7 +226,7 @@ pub enum BissOutput {
     Saved(Box<BissProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    /// Contains the previous device mode.
+    /// The encoder was returned to operation. Contains the previous device mode.
     LedBack(DeviceMode),
 }
 

@@ -28,7 +28,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 /// its bus. `sim:` and `replay:` lead to the pin or, with `bridge=on`, to the adapter.
 ///
 /// # Errors
-/// See [`OpenError`]. Nothing has been sent in that case.
+/// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     let (station, simulated) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());

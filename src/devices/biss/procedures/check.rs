@@ -38,7 +38,7 @@ pub enum CheckFinding {
     Mismatch(IdentityMismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
-    /// The encoder does not report errors and warnings, at least not with this firmware.
+    /// The encoder does not report errors and warnings, or not with this firmware.
     NotTold,
     Mode(DeviceMode),
     Open,
@@ -92,7 +92,7 @@ pub enum CheckFinding {
 /// Number of position readings used to assess the line.
 const READINGS: u32 = 50;
 
-/// Runs the check, which ends early only if the line fails. `wear` is called once the encoder is identified.
+/// Runs the check, which ends early only if the line fails. `wear` is called as soon as the encoder is identified.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the job is cancelled.
@@ -227,7 +227,7 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
 fn check_wiegand_result(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
-        // The encoder is in factory state. This is no error, but nothing proves that the sensor works.
+        // The encoder is in its factory state. This is not an error, but there is no evidence that the sensor works.
         [0, 0, 0, 0] => (Verdict::Skipped, CheckFinding::NotTested),
         _ if saved.is_passed() => (Verdict::Good, CheckFinding::Wiegand(saved)),
         _ => (Verdict::Bad, CheckFinding::Wiegand(saved)),

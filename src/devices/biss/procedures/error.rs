@@ -47,7 +47,7 @@ pub enum Error {
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
-        /// Whether the adapter can supply the encoder, but was not asked to.
+        /// Whether the adapter could supply the encoder but was not told to.
         supply_off: bool,
     },
     #[error("the data line stays low (attempts: {tries})")]
@@ -78,8 +78,8 @@ pub enum Error {
         /// Actual value of the register, if the connection reveals it.
         reads: Option<u8>,
     },
-    /// It is unknown whether the value was accepted. The register cannot be read back, or its value does not prove
-    /// anything.
+    /// It is unknown whether the value was accepted, because the register cannot be read back or the value read back
+    /// proves nothing.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -89,7 +89,7 @@ pub enum Error {
     },
     #[error("cancelled")]
     Cancelled,
-    /// The byte order of register numbers is unknown. The reply of the encoder is not defined for either order.
+    /// The byte order of register numbers is unknown, because the reply of the encoder is not defined for either order.
     #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
     OrderUnknown { answer: u8 },
     /// The position has more bits than the encoder's known frame.
@@ -143,7 +143,7 @@ impl Error {
     }
 }
 
-/// Returns the register with a global number. Returns the bank selection register if the number is too large.
+/// Returns the register with a global number, or the bank selection register if the number is too large.
 pub(super) fn requested_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }

@@ -7,7 +7,7 @@ use super::{Error, Master, PositionReading};
 use crate::devices::biss::protocol::Role;
 use crate::units::Moment;
 
-/// Last values of the error and warning registers.
+/// Last known values of the error and warning registers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flags {
     error: Option<bool>,
@@ -17,8 +17,8 @@ pub(super) struct Flags {
     errors_last: bool,
 }
 
-/// Interval at which one of the two registers is read during position polling. It is long enough to cost hardly any
-/// position.
+/// Interval at which one of the two registers is read during position polling. It is long enough to have little effect
+/// on the rate of positions.
 const READ_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Reads the position once, together with the encoder's current errors and warnings.

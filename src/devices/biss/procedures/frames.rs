@@ -13,7 +13,7 @@ use crate::units::Moment;
 pub enum FrameReadError {
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
-    /// The bits are not a valid frame, because the checksum is wrong or the line does not change.
+    /// The bits are not a valid frame: the checksum is wrong or the line does not change.
     #[error(transparent)]
     Frame(#[from] FrameError),
     #[error("the adapter has no frame, status {}", .0.byte())]
@@ -31,7 +31,7 @@ pub struct ConsecutiveFrames {
     pub period_ns: i64,
     /// Number of frames missing before the first one.
     pub lost: u64,
-    /// Frames of the run, at least one.
+    /// The frames, of which there is at least one.
     pub frames: Vec<Frame>,
     pub layout: Arc<Layout>,
     /// Whether the multiturn width is known.

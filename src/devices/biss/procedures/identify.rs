@@ -44,13 +44,13 @@ pub enum FrameSource {
     DataSheet,
     Description,
     Given,
-    /// Checksums of frames received while the shaft turned. They do not reveal the width of the multiturn.
+    /// The checksums of frames received while the shaft turned. They do not reveal the multiturn width.
     Checksum,
     Assumed,
 }
 
 impl FrameSource {
-    /// Returns whether the source determines the width of the multiturn.
+    /// Returns whether the source reveals the multiturn width.
     pub const fn is_known(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
@@ -92,12 +92,12 @@ impl Identity {
         }
     }
 
-    /// Returns the width of the multiturn in bits, if known.
+    /// Returns the multiturn width in bits, if known.
     pub fn multiturn_bits(&self) -> Option<u8> {
         self.is_layout_source_known().then_some(self.layout.multiturn_bits())
     }
 
-    /// Returns the width of the singleturn in bits, if known.
+    /// Returns the singleturn width in bits, if known.
     pub fn singleturn_bits(&self) -> Option<u8> {
         self.is_layout_source_known().then_some(self.layout.singleturn_bits())
     }
@@ -107,7 +107,7 @@ impl Identity {
     }
 }
 
-/// Offset of the encoder bank's number within the common bank.
+/// Offset of the register in the common bank that contains the number of the encoder bank.
 const ENCODER_BANK: usize = 0x14;
 
 /// Identifies the encoder and its frame layout, and stores the result in the session's [`Station`].
@@ -169,7 +169,7 @@ pub(super) fn identify_and_record(
 }
 
 /// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches. Otherwise, the
-/// layout is searched for. Frames cannot be observed over the configuration pin.
+/// function searches for a layout. This is not possible over the configuration pin, which carries no frames.
 fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);

@@ -43,7 +43,7 @@ enum ExchangeError {
     NoFrame(NoFrame),
 }
 
-/// Result of an exchange. The outer error is final, and the inner one may be retried.
+/// Result of an exchange. The outer error is final. After an inner error, the exchange may be retried.
 type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
@@ -68,7 +68,7 @@ impl<'a> Master<'a> {
     /// Returns the description of the encoder's registers.
     ///
     /// # Errors
-    /// Returns [`Error::NotIdentified`] before the encoder is identified.
+    /// Returns [`Error::NotIdentified`] if the encoder has not been identified yet.
     pub fn description(&self) -> Result<Arc<Description>, Error> {
         self.station.description.clone().ok_or(Error::NotIdentified)
     }
@@ -85,7 +85,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Runs `work` and ignores cancellation meanwhile, so that the device is returned to a safe state.
+    /// Runs `work` without reacting to cancellation, so that the device can be returned to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.ignore_cancellation(true);
         let result = work(self);
@@ -93,7 +93,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sets whether cancellation is ignored, and returns the previous setting.
+    /// Sets whether cancellation is ignored. Returns the previous setting.
     pub(super) fn ignore_cancellation(&mut self, shielded: bool) -> bool {
         self.line.ignore_cancellation(shielded)
     }
@@ -136,8 +136,7 @@ impl<'a> Master<'a> {
     /// Reads consecutive registers by their global addresses, across bank boundaries.
     ///
     /// # Errors
-    /// Returns [`Error::OutOfRange`] if the range extends beyond the last address, and the errors of
-    /// [`read`](Self::read).
+    /// Returns [`Error::OutOfRange`] if the range extends beyond the last address, or an error of [`read`](Self::read).
     pub fn read_consecutive(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
         let none = || Error::OutOfRange { start, count };
         let count_16 = u16::try_from(count).map_err(|_| none())?;
@@ -147,13 +146,13 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. If no reply confirms the value, the register is read back, provided that this shows the
+    /// Writes a register. If no reply confirms the value, the register is read back, provided that this reveals the
     /// value. The write is repeated only if the value was not accepted.
     ///
     /// # Errors
     /// Returns [`Error::Refused`] if the encoder rejects the value. Returns [`Error::Unclear`] if it remains unknown
-    /// whether the value was accepted, for example in a command register. Returns other errors if the value was not
-    /// accepted after five attempts. After [`Error::Cancelled`], nothing was written.
+    /// whether the value was accepted, for example in a command register. Returns another error if the value was not
+    /// accepted after five attempts. If [`Error::Cancelled`] is returned, nothing was written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.ensure_ready()?;
         let requested = RequestedItem::Write(address, value);
@@ -198,8 +197,8 @@ impl<'a> Master<'a> {
     /// Reads the position.
     ///
     /// # Errors
-    /// Returns [`Error::TooWide`] if the position does not fit the widths. Returns other errors if every attempt fails
-    /// or the user cancels.
+    /// Returns [`Error::TooWide`] if the position does not fit the widths, or another error if every attempt fails or
+    /// the user cancels.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.transport == Transport::ConfigPin {
             return self.request_with_retries(RequestedItem::Position, |master| master.read_pin_position_once());
@@ -300,7 +299,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the line for another attempt, or returns `failed` if no attempts are left.
+    /// Prepares the line for another attempt, or returns the error `failed` if no attempts are left.
     fn prepare_retry(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
@@ -328,8 +327,8 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether only the given register does not reply. Another register is read repeatedly for comparison. The
-    /// check is skipped if the encoder may be silent for long.
+    /// Returns whether only the given register does not reply. For comparison, another register is read repeatedly. The
+    /// check is skipped if the encoder may be silent for a long time.
     fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);

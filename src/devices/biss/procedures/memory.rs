@@ -22,12 +22,12 @@ const MIN_MULTITURN_BITS: u8 = 7;
 /// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`).
 const REST_JITTER_DIVISOR: u64 = 8192;
 
-/// Treatment of values that were entered in a device mode but never saved. The encoder shows them as if they were
+/// How to treat values that were entered in a device mode but never saved. The encoder shows them as if they were
 /// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedValues {
     Marked,
-    /// Rejects the values, because a comparison would treat them as stored.
+    /// Return an error, because a comparison would treat the values as stored.
     Refused,
 }
 
@@ -40,7 +40,7 @@ pub enum ReadStep {
 /// Reads the position three times, a tenth of a second apart, and returns the last one if the shaft is at rest.
 ///
 /// # Errors
-/// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
+/// Returns [`Error::Moving`] if the shaft moves, or another error if a reading fails.
 pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Error> {
     let first = master.position()?;
     let mut readings = vec![first];
@@ -84,7 +84,7 @@ fn shortest_distance(a: u64, b: u64, range: Option<u64>) -> u64 {
 /// Reads consecutive registers. Registers of a data area are read only at standstill.
 ///
 /// # Errors
-/// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
+/// Returns [`Error::Moving`] if the shaft moves, or another error if a reading fails.
 pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8) -> Result<Vec<u8>, Error> {
     let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(start).is_some());
     if in_area {
@@ -110,7 +110,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
 /// Reads a data area after checking that the shaft is at rest.
 ///
 /// # Errors
-/// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
+/// Returns [`Error::Moving`] if the shaft moves, or another error if a reading fails.
 pub fn read_area_at_standstill(
     master: &mut Master<'_>,
     area: &Area,
@@ -124,8 +124,8 @@ pub fn read_area_at_standstill(
 /// operation would discard entered values.
 ///
 /// # Errors
-/// Returns [`Error::NotInOperation`] if unsaved values are rejected, and [`Error::Moving`] if the shaft moves. Returns
-/// other errors if the exchange fails.
+/// Returns [`Error::NotInOperation`] if unsaved values are not allowed, [`Error::Moving`] if the shaft moves, or
+/// another error if the exchange fails.
 pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -166,8 +166,8 @@ pub fn save(
     })
 }
 
-/// Runs `read`. If the line has damaged any data meanwhile, more damage may have gone unnoticed. In that case,
-/// everything is read again, twice with the same result.
+/// Runs `read`. If the line damages any data meanwhile, other damage may have gone unnoticed. In that case, everything
+/// is read again until two readings agree.
 fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,

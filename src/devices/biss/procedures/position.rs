@@ -23,9 +23,9 @@ pub struct PositionReading {
     pub warning: Option<bool>,
     /// Number of frames with a wrong CRC since the previous reading.
     pub crc_errors: u32,
-    /// Width of the revolution count in bits, 0…32.
+    /// Width of the revolution count in bits, 0 to 32.
     pub multiturn_bits: u8,
-    /// Width of the position within a revolution in bits, 0…32.
+    /// Width of the position within a revolution in bits, 0 to 32.
     pub singleturn_bits: u8,
     /// Whether the multiturn width is known. If it is not, turns and steps are only the upper and lower part of the
     /// position.
@@ -66,7 +66,7 @@ impl PositionReading {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
 
-    /// Returns the position as a single number of steps.
+    /// Returns turns and steps as a single number of steps.
     pub const fn position(&self) -> u64 {
         (self.turns as u64) << self.singleturn_bits | self.steps as u64
     }
@@ -82,7 +82,7 @@ impl PositionReading {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns `false` if the error bit marks the position as invalid.
+    /// Returns whether the position is valid. This is not the case if the error bit is set.
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }
@@ -111,7 +111,7 @@ pub struct WatchedReading {
     pub value: Result<Vec<u8>, Error>,
 }
 
-/// Reads the position once. Damaged frames are a valid result if good ones have been received before.
+/// Reads the position once. Damaged frames are not an error if good ones have been received before.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -134,7 +134,8 @@ pub fn read_watched_value(master: &mut Master<'_>, what: RegisterRange) -> Resul
     let description = master.station().description.clone();
     let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
     let value = match what.addresses().find(|address| of_area(*address)) {
-        // Data is not read while the shaft turns (manual 6.5), and the user does not stop the shaft for this.
+        // Data areas are not read while the shaft turns (manual 6.5), and the user does not stop the shaft to watch a
+        // register.
         Some(address) => Err(Error::NotWatched { address }),
         None => match master.read_consecutive(what.start(), what.count().into()) {
             Err(error) if !matches!(error, Error::NoSuchRegister { .. }) => return Err(error),

@@ -52,7 +52,7 @@ impl Registers {
     /// Reads consecutive registers and stores their values.
     ///
     /// # Errors
-    /// Returns the errors of [`Master::read_consecutive`].
+    /// Returns an error of [`Master::read_consecutive`].
     pub(super) fn read(
         &mut self,
         master: &mut Master<'_>,

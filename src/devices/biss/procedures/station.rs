@@ -74,7 +74,7 @@ parameters! {
 pub enum Transport {
     /// UBICOM over the configuration pin, which selects registers by global address.
     ConfigPin,
-    /// BiSS over an adapter, which selects registers by bank and address.
+    /// BiSS over an adapter, which selects registers by bank and by address within it.
     Adapter,
 }
 
@@ -135,8 +135,8 @@ pub struct Station {
     /// Time of the last frame of any earlier stream.
     pub(super) streamed_until: Option<SampleTime>,
     pub(super) written_at: Option<Moment>,
-    /// Whether a store, a calibration or a restart may still be running. The reason is a write that ended early without
-    /// returning the encoder to operation.
+    /// Whether a store, a calibration or a restart may still be running, because a write ended early without returning
+    /// the encoder to operation.
     pub unfinished: bool,
 }
 
@@ -224,14 +224,14 @@ impl Station {
         self.layout.clone().or_else(described).unwrap_or_default()
     }
 
-    /// Forgets the adapter, so that it is identified and configured again.
+    /// Discards the identity of the adapter, so that it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget_identity();
         self.flow = None;
         self.forget_settings();
     }
 
-    /// Forgets the bus settings and the supply, which an adapter loses when it is reset.
+    /// Discards the bus settings and the state of the supply, which an adapter loses when it is reset.
     pub(super) fn forget_settings(&mut self) {
         (self.bank, self.bus) = (None, None);
         if let Some(supply) = &mut self.supply {

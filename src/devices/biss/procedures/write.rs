@@ -17,7 +17,7 @@ pub struct WrittenValues {
     pub written: u64,
     /// Number of registers read back with the correct value.
     pub verified: u64,
-    /// Number of persistent writes that were, or may have been, performed.
+    /// Number of persistent writes that were or may have been performed.
     pub write_cycles: u64,
     pub outcomes: Vec<Outcome>,
 }
@@ -36,10 +36,10 @@ pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Failure, Writte
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
-    /// The step reached in the running operation.
+    /// The current step of the running operation.
     pub at: ProcedureStep,
-    /// State of an encoder that could not be returned to operation, as far as it is known. `None` if the encoder is in
-    /// operation with the password cleared. A loss of power also returns the encoder to operation.
+    /// State of an encoder that could not be returned to operation, as far as it is known. It is `None` if the encoder
+    /// is in operation with the password cleared, which is also its state after a loss of power.
     pub standing: Option<LeftState>,
 }
 
@@ -63,7 +63,7 @@ pub struct EncoderWriter<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWriter<'w, 'm> {
-    /// Creates the writer for the encoder with the given identity. Every step is reported to `tell`.
+    /// Creates the writer for the encoder with the given identity. Every step is reported through `tell`.
     ///
     /// # Errors
     /// Returns an error if the encoder has not been identified.
@@ -128,7 +128,7 @@ impl Write for EncoderWriter<'_, '_> {
     }
 
     /// Performs an operation and then returns the encoder to operation, even after a failure. Cancellation is checked
-    /// between exchanges, unless stopping would leave something incomplete.
+    /// between exchanges, unless an abort would leave something incomplete.
     fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut WrittenValues) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin_operation(done.outcomes.len());
@@ -199,10 +199,11 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Rejects an encoder in a device mode. Its registers could show values that were entered but not saved.
+/// Checks that the encoder is not in a device mode, in which its registers could show values that were entered but not
+/// saved.
 ///
 /// # Errors
-/// Returns [`Error::NotInOperation`] in a device mode. Returns other errors if the exchange fails.
+/// Returns [`Error::NotInOperation`] in a device mode, or another error if the exchange fails.
 pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
     match non_operational_mode(master, description)? {
         None => Ok(()),
@@ -210,8 +211,8 @@ pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description)
     }
 }
 
-/// Returns the device mode, in which registers may show values that were never saved. Returns `None` in operation, or
-/// if the encoder has no device modes.
+/// Returns the device mode, in which registers may show values that were never saved. Returns `None` in operation and
+/// for an encoder without device modes.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -225,8 +226,8 @@ pub fn non_operational_mode(master: &mut Master<'_>, description: &Description) 
 /// banks.
 ///
 /// # Errors
-/// Returns [`Error::Moving`] if banks are read while the shaft turns, and [`Error::NotInOperation`] in a device mode.
-/// Returns other errors if the exchange fails.
+/// Returns [`Error::Moving`] if banks are read while the shaft turns, [`Error::NotInOperation`] in a device mode, or
+/// another error if the exchange fails.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,

@@ -47,7 +47,7 @@ impl MountingSteps {
     /// Checks that the motor does not depend on this encoder, if a step needs a motor.
     ///
     /// # Errors
-    /// Returns [`PlanError::DrivenByThisEncoder`] for such a motor.
+    /// Returns [`PlanError::DrivenByThisEncoder`] if it does.
     pub fn check_motor(&self, motor: MotorSource) -> Result<(), PlanError> {
         if self.needs_motor() && motor == MotorSource::ThisEncoder {
             return Err(PlanError::DrivenByThisEncoder);
@@ -68,7 +68,8 @@ pub enum RegisterKind<'d> {
 /// Returns the way in which a register must be written.
 ///
 /// # Errors
-/// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that only the procedures write.
+/// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that may only be written by the
+/// procedures.
 pub fn register_kind(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
     if is_protected_register(description, address) {
         return Err(PlanError::Guarded { address });
@@ -95,7 +96,7 @@ fn is_protected_register(description: &Description, address: RegisterAddress) ->
 /// Returns the encoder's procedure of the given kind.
 ///
 /// # Errors
-/// Returns [`PlanError::NoProcedure`] or [`PlanError::FirmwareTooOld`].
+/// Returns [`PlanError::NoProcedure`] or [`PlanError::FirmwareTooOld`] if the encoder does not have the procedure.
 pub fn find_procedure(
     description: &Description,
     firmware: Option<Firmware>,
@@ -116,7 +117,7 @@ pub fn find_procedure(
 /// has the value `None`.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// Returns a [`PlanError`] if an edit is not allowed.
 pub fn plan_edits(
     description: &Description,
     banks: &[Bank],
@@ -220,7 +221,8 @@ pub fn plan_preset(
 /// Plans the guided procedures after an encoder was mounted.
 ///
 /// # Errors
-/// See [`PlanError`]. A motor that depends on this encoder is rejected if a step needs a motor.
+/// Returns a [`PlanError`] if a step is not possible. This includes a step that needs a motor if the motor depends on
+/// this encoder.
 pub fn plan_mounting(
     description: &Description,
     device: &DeviceState,

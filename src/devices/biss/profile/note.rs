@@ -1,5 +1,5 @@
-//! Changes of an operation for the logbook. Registers have an address and the name of the manual, in every language of
-//! the window.
+//! Changes made by an operation, for the logbook. Registers are listed with their address and their name from the
+//! manual, in every language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;

@@ -1,4 +1,4 @@
-//! Check whether an encoder is of the same type as the encoder of a profile. The type consists of profile ID,
+//! Checks whether an encoder is of the same type as the encoder of a profile. The type consists of profile ID,
 //! manufacturer, device ID and the position widths. The widths matter because a preset is a number of steps, which is a
 //! different angle with other widths.
 

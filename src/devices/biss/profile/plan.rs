@@ -7,7 +7,7 @@ use crate::profile::{Operation, Plan};
 /// A plan of writes to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// The current values on which a plan is based. They include everything readable that the operations change.
+/// The current values on which a plan is based. They include all readable values that the operations change.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Data banks that the plan changes.

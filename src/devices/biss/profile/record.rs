@@ -230,12 +230,12 @@ impl From<Bank> for ListedBank {
 }
 
 impl DataImage {
-    /// Creates the image of an area from the given banks, which must be in ascending order. If the image is complete,
-    /// empty banks are omitted.
+    /// Creates the image of an area from the given banks, which must be in ascending order. If the image covers the
+    /// whole area, empty banks are omitted.
     pub fn new(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.uniform_byte() == Some(byte)).count();
-        // These are the contents of memory that was never written or was erased.
+        // Memory that was never written or was erased has these contents.
         let most = [0x00, 0xFF].into_iter().rev().max_by_key(|byte| count(*byte));
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
         let holds = |bank: &Bank| empty.is_none() || bank.uniform_byte() != empty;

@@ -7,7 +7,7 @@ use super::other_type::{TypeMismatch, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress};
 
-/// The current state of an encoder, as far as it is needed for a plan.
+/// The current state of an encoder, to the extent that a plan requires it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
@@ -28,7 +28,7 @@ pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 /// The reason why a change cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
-    /// The profile was read from an encoder with another serial number.
+    /// The profile was read from an encoder with a different serial number.
     #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
     OtherDevice {
         /// Serial number in the profile.
@@ -36,7 +36,7 @@ pub enum PlanError {
         /// Serial number of the encoder.
         device: String,
     },
-    /// The profile was read from an encoder of another type.
+    /// The profile was read from an encoder of a different type.
     #[error(transparent)]
     TypeMismatch(#[from] TypeMismatch),
     /// The bank does not belong to a data area of the encoder, or cannot be written.
@@ -105,7 +105,8 @@ pub enum PlanError {
         /// Code of the active filter.
         code: u8,
     },
-    /// The drive of the motor closes its loop on this encoder, which provides no position during the procedure.
+    /// The drive of the motor closes its loop on this encoder, and the encoder provides no position during the
+    /// procedure.
     #[error("the motor is driven by this encoder's position, which is not there during the procedure")]
     DrivenByThisEncoder,
 }
@@ -119,7 +120,7 @@ pub fn required_banks(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
 /// Plans a restore without writing anything.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// Returns a [`PlanError`] if the restore is not allowed.
 pub fn plan_restore(
     profile: &BissProfile,
     device: &DeviceState,
@@ -136,20 +137,20 @@ pub fn plan_restore(
 }
 
 /// Plans to write only the data areas of a profile to an encoder that is being mounted. The plan includes the values
-/// that are only valid on this motor. No data is written yet.
+/// that are only valid on this motor.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// Returns a [`PlanError`] if the data areas cannot be written.
 pub fn plan_data_areas(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
     let mut planner = Planner::new(profile, device, MountingPolicy::Own);
     planner.data()?;
     Ok(planner.finish())
 }
 
-/// Checks that a profile was read from this encoder. An encoder without a serial number never passes.
+/// Checks that a profile was read from this encoder. The check always fails for an encoder without a serial number.
 ///
 /// # Errors
-/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`].
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if it was read from another encoder.
 pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
@@ -158,7 +159,7 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
 /// serial number does not include another type, whose registers may have other meanings.
 ///
 /// # Errors
-/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`].
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder is not allowed.
 pub fn check_allowed(
     profile: &BissProfile,
     device: &ProfileIdentity,
@@ -187,7 +188,7 @@ fn has_same_serial_number(profile: &BissProfile, device: &ProfileIdentity) -> bo
 /// Checks that a preset value fits the position.
 ///
 /// # Errors
-/// Returns [`PlanError::PresetTooWide`] if it does not.
+/// Returns [`PlanError::PresetTooWide`] if the value does not fit.
 pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity) -> Result<(), PlanError> {
     let parts = [
         ("singleturn", value.singleturn(), identity.singleturn_bits),
@@ -201,7 +202,7 @@ pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity)
     Ok(())
 }
 
-/// The treatment of values that are only valid for one encoder on its motor.
+/// How to treat values that are only valid for one encoder on its motor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum MountingPolicy {
     /// The values belong to this encoder.
@@ -338,8 +339,8 @@ fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
     BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }
 
-/// Returns the operations that store changes in an area. There is a single operation if the area is opened and saved as
-/// a whole, and otherwise one for each register.
+/// Returns the operations that store changes in an area. This is a single operation if the area is opened and saved as
+/// a whole, and otherwise one operation per register.
 pub(super) fn store_operations(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
     if area.open.is_some() {
         return vec![Op::StoreData { area: area.clone(), registers }];

@@ -58,7 +58,7 @@ impl RegisterAddress {
     /// Returns the seven-bit address for the control frame. It is 40h to 7Fh for a direct register, and 00h to 3Fh
     /// within a bank.
     pub const fn address(self) -> u8 {
-        // Always below 40h.
+        // The value is always below 40h.
         let offset = (self.0 % 0x40) as u8;
         if self.0 < 0x40 { 0x40 + offset } else { offset }
     }

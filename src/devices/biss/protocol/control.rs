@@ -63,7 +63,7 @@ pub enum ControlError {
     /// No encoder with the given number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
-    /// The encoder did not echo the access type, so it did not understand the request or rejected it.
+    /// The encoder did not echo the access type, because it did not understand the request or rejected it.
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
     /// The encoder delayed its reply for too many cycles.

@@ -64,7 +64,7 @@ impl Crc {
     /// means no checksum. The notation omits the lowest term, so that 21h stands for 43h.
     ///
     /// # Errors
-    /// Returns the same errors as [`new`](Self::new).
+    /// Returns an error of [`new`](Self::new) if the parameters are invalid.
     pub fn from_data_sheet(polynomial: u32, start: u32) -> Result<Option<Self>, CrcError> {
         match polynomial {
             0 => Ok(None),
@@ -93,13 +93,13 @@ impl Crc {
     }
 
     /// Returns the checksum of the lowest `bits` bits of `data`, highest bit first. The result is inverted if the
-    /// checksum is sent inverted. Values of `bits` above 64 count as 64.
+    /// checksum is sent inverted. Values of `bits` above 64 are treated as 64.
     pub fn compute(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;
         let mut left = u32::from(bits.min(64));
         while left > 0 {
-            // The remaining bits come first, so that complete bytes follow.
+            // The bits of the incomplete byte come first, so that only complete bytes follow.
             let now = if left.is_multiple_of(8) { 8 } else { left % 8 };
             left -= now;
             let group = (data >> left) as u32 & ((1 << now) - 1);
@@ -139,7 +139,7 @@ pub(super) fn crc4(data: u16, bits: u8) -> u8 {
 }
 
 fn crc_table(polynomial: u64, degree: u32) -> [u32; 256] {
-    // The polynomial without its highest term, aligned to the upper end of 32 bits.
+    // The polynomial without its highest term, aligned to the most significant bit of 32.
     let low_terms = ((polynomial ^ 1 << degree) << (32 - degree)) as u32;
     let mut table = [0; 256];
     for (index, entry) in (0u32..).zip(&mut table) {

@@ -90,7 +90,7 @@ pub struct Procedure {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct DescriptionError {
-    /// Name of the file.
+    /// Name of the description file.
     pub file: String,
     /// Line number, counted from 1.
     pub line: usize,
@@ -108,8 +108,8 @@ impl Description {
     /// Parses a description. `file` is the name used in error messages.
     ///
     /// # Errors
-    /// Returns line and column if the text is not valid RON, a key is unknown or missing, a number is out of range, or
-    /// registers overlap.
+    /// Returns an error with line and column if the text is not valid RON, a key is unknown or missing, a number is out
+    /// of range, or registers overlap.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
         file::parse(text).map_err(|(place, what)| DescriptionError {
             file: file.to_owned(),
@@ -262,7 +262,7 @@ impl Descriptions {
         self.0.iter().find(|description| description.name == name)
     }
 
-    /// Returns an iterator over all descriptions.
+    /// Returns an iterator over the descriptions, most specific first.
     pub fn iter(&self) -> impl Iterator<Item = &Description> {
         self.0.iter()
     }

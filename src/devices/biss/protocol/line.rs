@@ -29,7 +29,7 @@ pub enum CycleError {
     Short {
         /// Number of samples needed for the control bit and the frame.
         expected: usize,
-        /// Number of samples after the start bit.
+        /// Number of samples received after the start bit.
         got: usize,
     },
     /// The line is high after the frame, although the time-out cannot be over yet.
@@ -44,9 +44,10 @@ impl BissCycle {
     /// Finds the frame in the samples of a cycle. Samples after the start of the time-out are ignored.
     ///
     /// # Errors
-    /// Returns a [`CycleError`]. The checksum of the frame is verified by [`Layout::parse`] and not here.
+    /// Returns a [`CycleError`] if the samples do not contain a complete cycle. The checksum of the frame is not
+    /// verified here, but by [`Layout::parse`].
     pub fn parse(samples: &[bool], layout: &Layout) -> Result<Self, CycleError> {
-        // The line is at rest before the acknowledge.
+        // The line is high before the acknowledge.
         let low = samples.iter().position(|sample| !sample).ok_or(CycleError::NoAcknowledge)?;
         let behind_low = samples.get(low..).unwrap_or_default();
         let acknowledge = behind_low.iter().position(|sample| *sample).ok_or(CycleError::NotReady)?;
@@ -92,7 +93,7 @@ mod tests {
         let cycle = BissCycle { acknowledge: 3, control: false, raw: 0x024_6980_00CF };
         assert_eq!(BissCycle::parse(&samples(SAMPLES), &layout), Ok(cycle));
         assert_eq!(cycle.emit(&layout), samples(SAMPLES));
-        // A line at rest before the cycle, and the level after the time-out, make no difference.
+        // The level of the line before the cycle and after the time-out makes no difference.
         let rested = [vec![true; 2], samples(SAMPLES), vec![false, true, true]].concat();
         assert_eq!(BissCycle::parse(&rested, &layout), Ok(cycle));
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };

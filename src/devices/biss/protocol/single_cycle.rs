@@ -46,7 +46,7 @@ pub struct PositionData {
     pub singleturn: u32,
     /// Whether the encoder reports that the position is invalid. The bit on the line is then 0.
     pub error: bool,
-    /// Whether the encoder reports a warning. The bit on the line is then 0, and the position remains valid.
+    /// Whether the encoder reports a warning. The bit on the line is then 0, but the position remains valid.
     pub warning: bool,
 }
 
@@ -146,7 +146,7 @@ impl Layout {
     /// Parses a right-justified frame, with the last received bit in bit 0.
     ///
     /// # Errors
-    /// Returns a [`FrameError`], which distinguishes a stuck line from a wrong checksum.
+    /// Returns a [`FrameError`] if the bits are not a valid frame. It distinguishes a stuck line from a wrong checksum.
     pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
         let whole = low_bits_mask(self.bits());
         if raw & !whole != 0 {

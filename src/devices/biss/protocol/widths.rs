@@ -5,15 +5,16 @@ use super::crc::Crc;
 
 /// Range of data widths to try, in bits (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
-/// Required number of consecutive frames with a matching checksum. Repeated data does not count (`U`).
+/// Required number of consecutive frames with a matching checksum. Frames that repeat the previous data are not counted
+/// (`U`).
 const REQUIRED_FRAMES: usize = 8;
 
 /// Returns the data width without the checksum, or `None` if no length fits or too few frames differ.
 ///
 /// Each frame contains the first `clocked` bits after the control bit, and the last bit received is bit 0.
 ///
-/// Consecutive frames with the same data count once. At a wrong length, one frame in 64 matches by chance, and every
-/// repetition would match again.
+/// Consecutive frames with the same data are counted once. At a wrong length, one frame in 64 matches by chance, and
+/// each repetition of it would match as well.
 pub fn detect_data_bits(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
     DATA_BITS.into_iter().find(|bits| matches_widths(frames, clocked, *bits, crc))
 }

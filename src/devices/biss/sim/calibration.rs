@@ -1,8 +1,8 @@
 //! Singleturn calibration. It has a counterclockwise and a clockwise run of about five seconds each. See manual 6.4.
 //!
-//! The manual leaves some rules open (`U`). In this model, an unmet condition ends a run after one second, and a change
-//! of speed ends it at once. The second run is rejected if the first was not completed. If the status is kept, it is
-//! shown until the next run has begun, even after a change of the device mode.
+//! The manual leaves some rules open (`U`). In this model, a run ends after one second if a condition is not met, and
+//! immediately if the speed changes. The second run is rejected if the first was not completed. A final status is kept
+//! until the next run has begun, even if the device mode changes.
 
 use std::time::Duration;
 

@@ -13,8 +13,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual encoder. By default the encoder has factory settings and the newest known firmware, is at
-    /// rest and has no faults.
+    /// Settings of a virtual encoder. By default, the encoder has factory settings and the newest known firmware,
+    /// stands still, and has no faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -42,11 +42,11 @@ parameters! {
 }
 
 impl Config {
-    /// Parses key-value pairs that are already percent-decoded. If a key occurs twice, the last value counts. Numbers
-    /// are decimal or `0x…`.
+    /// Parses key-value pairs that are already percent-decoded. If a key occurs twice, the last value applies. Numbers
+    /// are decimal or hexadecimal with the prefix `0x`.
     ///
     /// # Errors
-    /// Returns an error that names the key and the allowed values.
+    /// Returns an error with the key and the allowed values if a setting is invalid.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         setting::read(VirtualDevice::Encoder, pairs)
     }

@@ -64,10 +64,10 @@ enum Power {
 }
 
 impl Encoder {
-    /// Time from power-up until control communication is available, 500 ms (data sheet, 02:0Eh).
+    /// Time from power-up until registers can be accessed, 500 ms (data sheet, 02:0Eh).
     pub(super) const START: Duration = Duration::from_millis(500);
     const MAX_BANK: u8 = 0x43;
-    /// Temperature at which the warning is set, 125 °C. The warning clears below 123 °C (manual 6.8).
+    /// Temperature in degrees Celsius at which the warning is set. The warning is cleared below 123 °C (manual 6.8).
     const HOT: i16 = 125;
     const COOL: i16 = 123;
     const DIAGNOSTICS_SINCE: Firmware = Firmware::new(1, 6, 0);
@@ -75,7 +75,7 @@ impl Encoder {
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
     const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
 
-    /// Creates an encoder that has been powered for a long time.
+    /// Creates an encoder that has been powered on for a long time.
     pub fn new(config: &Config) -> Self {
         let flash = Flash { filter: config.filter, ..Flash::factory_default(config.cycles) };
         let mut encoder = Encoder {
@@ -134,7 +134,7 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Sets other faults for the flash. The count of stores is kept.
+    /// Replaces the simulated faults of the flash. The count of stores is kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.die_in_store = faults.failing_store();
     }
@@ -225,7 +225,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`. Returns `false` and does not change anything if the encoder rejects the request.
+    /// Writes a register at `now`. Returns `false` without any effect if the encoder rejects the request.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.update(now);
         let offset = address.address();

@@ -32,11 +32,11 @@ pub(super) enum EntryEffect {
     /// A data area is opened. Its content must then be passed to [`DataEntry::open`].
     Open(Area),
     SaveData(Area, Vec<u8>),
-    /// The filter is written to the flash, followed by a restart.
+    /// The filter is written to the flash. A restart follows.
     SaveFilter(PositionFilter),
-    /// The preset value is written to the flash, followed by a restart.
+    /// The preset value is written to the flash. A restart follows.
     SavePreset(PresetValue),
-    /// The singleturn part, the multiturn part or both are set to the preset value, followed by a restart.
+    /// The singleturn part, the multiturn part or both are set to the preset value. A restart follows.
     Preset {
         singleturn: bool,
         multiturn: bool,

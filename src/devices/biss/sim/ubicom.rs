@@ -77,7 +77,7 @@ impl UbicomPort {
         &mut self.encoder
     }
 
-    /// Sets other faults for the line and the encoder. The counts of frames and stores are kept.
+    /// Replaces the simulated faults of the line and the encoder. The counts of frames and stores are kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);
@@ -130,7 +130,7 @@ impl UbicomPort {
             }
             Request::Position { .. } => None,
         };
-        // A write during which the encoder lost power is not answered.
+        // The encoder does not reply to a write during which it loses power.
         if let Some(reply) = reply.filter(|_| self.encoder.has_power()) {
             self.talks_until = self.drive(at, &reply.emit(), true);
         }
@@ -141,7 +141,7 @@ impl UbicomPort {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.duration_of_bits(character_bits(format)), bytes);
         for heard in sent.heard {
-            // With mismatched serial settings, no byte is received as sent.
+            // If the serial settings differ, no byte is received as it was sent.
             let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };
             let to = if from_encoder { &mut self.to_host } else { &mut self.to_encoder };
             to.insert(heard.end, byte);

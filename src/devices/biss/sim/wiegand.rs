@@ -1,5 +1,5 @@
-//! The Wiegand sensor test (manual 6.3), which collects pulses for 515 revolutions in each direction. The encoder does
-//! not know which direction is which.
+//! The Wiegand sensor test (manual 6.3), which collects pulses for 515 revolutions in each direction. The encoder
+//! cannot tell clockwise from counterclockwise.
 //!
 //! The manual leaves two details open (`U`). In this model, the encoder notices that the second run turns in the same
 //! direction as the first. A sensor without pulses fails with code 01h.

@@ -17,7 +17,7 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// Interval between readings of watched registers, which change slowly and delay the position readings.
+/// Interval between readings of watched registers. They change slowly, and each reading delays the position readings.
 const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -94,7 +94,7 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a newly visible bank should be read. This requires that the bank has not been read, nothing is
+    /// Returns whether a newly visible bank should be read. This is the case if the bank has not been read, nothing is
     /// running, no stream would be interrupted, and no earlier attempt failed.
     pub fn should_read_bank(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.active_stream().is_none();

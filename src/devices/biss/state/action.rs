@@ -1,4 +1,4 @@
-//! Actions of the BiSS encoder that is displayed.
+//! Actions on the displayed BiSS encoder.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub enum BissAction {
     Check,
     /// Starts or stops reading the given register along with the position.
     Watch(Box<Register>, bool),
-    /// Reads a bank, or the direct registers if it is `None`.
+    /// Reads a bank, or the direct registers for `None`.
     ReadBank(Option<u8>),
     /// Reads a bank that has become visible and was never read. Has no effect while another job is running.
     SeeBank(Option<u8>),
@@ -31,8 +31,8 @@ pub enum BissAction {
         count: usize,
     },
     Plan(Box<Change>),
-    /// Plans the procedures after mounting and shows their effect. A profile that is open in another session provides
-    /// the values for the data areas.
+    /// Plans the procedures after mounting and shows what they change. A profile that is open in another session
+    /// provides the values for the data areas.
     PlanMounting {
         /// Steps of the run, without the values for the data areas.
         run: Box<MountingSteps>,

@@ -29,12 +29,12 @@ pub enum BissLinkKind {
     Replay,
 }
 
-/// Values of the connection form. Values for other kinds of connection are kept but not included in the link. An empty
-/// field means the default.
+/// Values of the connection form. Values for other kinds of connection are kept, but are not included in the link. An
+/// empty field stands for the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
     pub kind: BissLinkKind,
-    /// Whether a virtual encoder is behind a virtual adapter, or a recording was made through an adapter.
+    /// Whether the virtual encoder is behind a virtual adapter, or the recording was made through an adapter.
     pub behind_adapter: bool,
     /// Whether to connect over a network instead of a local serial port.
     pub network: bool,
@@ -50,7 +50,7 @@ pub struct BissForm {
     pub leave_supply: bool,
     /// Values typed for the other parameters.
     pub typed: EnteredValues,
-    /// Link parameters that have no form field.
+    /// Link parameters without a form field.
     pub rest: Vec<(String, String)>,
 }
 
@@ -264,7 +264,7 @@ mod tests {
             "bridge:/dev/ttyACM0?leave-supply=on",
             "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
             "bridge:/dev/ttyACM0?leave-supply=off",
-            // Issue 22.20.
+            // See issue 22.20.
             "bridge:/dev/ttyACM0?mt=12&st=19&crc=0x43",
             "serial:/dev/ttyUSB0?st=14&crc=none",
             "replay:monday.trace",

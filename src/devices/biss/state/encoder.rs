@@ -155,15 +155,15 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Updates the device mode in which registers were just read. `None` means operation.
+    /// Stores the device mode in which registers have just been read. `None` stands for operation.
     pub(super) fn set_device_mode(&mut self, unsaved: Option<DeviceMode>) {
         if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
             *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
         }
     }
 
-    /// Returns a message if registers may show values that were never saved. The cause is the device mode of the
-    /// encoder, or the mode in which the profile was read.
+    /// Returns a message if registers may show values that were never saved, because the encoder is in a device mode or
+    /// was in one when the profile was read.
     pub fn unsaved_warning(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
             return words::profile_unsaved(profile);

@@ -166,7 +166,7 @@ impl SessionEvents for Encoder {
     }
 
     fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
-        // The next request sets the rejection again if needed.
+        // The next request sets the message again if necessary.
         self.refusal = None;
         self.session.submit(job, services)
     }

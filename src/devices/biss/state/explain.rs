@@ -37,7 +37,7 @@ pub fn name_text(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
-/// Returns the messages for a job that ended early. Each message may be shown on a separate line.
+/// Returns the messages for a job that ended early. Each can be shown on a separate line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder_error_text(error)],

@@ -32,7 +32,7 @@ impl PresetForm {
     pub fn parse_singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = parse_in_range(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
-        // The result is less than the step count and fits into 32 bits.
+        // The result is less than the number of steps, so it fits into 32 bits.
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
     }
 
@@ -48,7 +48,7 @@ impl PresetForm {
     /// Returns the preset value that both fields define.
     ///
     /// # Errors
-    /// Returns a message with the valid range of the first invalid field.
+    /// Returns a message with the valid range of the first invalid field, if any.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
         let (singleturn, multiturn) = (self.parse_singleturn(layout)?, self.parse_multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))
@@ -70,7 +70,7 @@ mod tests {
         for (degrees, singleturn) in [("270", 98_304), ("0", 0), ("180", 65_536), ("90", 32_768), ("1", 364)] {
             assert_eq!(form(degrees, "7").value(&layout).unwrap(), PresetValue::new(singleturn, 7).unwrap());
         }
-        // Angles in the last half step round up to step 0 of the next revolution.
+        // Angles within the last half step are rounded up to step 0 of the next revolution.
         assert_eq!(form("359.9999", "0").value(&layout).unwrap().singleturn(), 0);
         assert_eq!(PresetForm::from_value(PresetValue::new(98_304, 7).unwrap(), &layout), form("270", "7"));
     }

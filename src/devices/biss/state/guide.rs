@@ -44,7 +44,7 @@ pub enum StepStatus {
     Failed,
     /// The user cancelled the procedure during the step.
     Cancelled,
-    /// The step has not been reached, and may never be.
+    /// The step has not been reached and may never be.
     Ahead,
 }
 

@@ -1,10 +1,10 @@
-//! Validity of the last position. The position itself contains it, or the last status reading provides it in the error
-//! and warning registers.
+//! Validity of the last position. It is either part of the position or known from the error and warning registers, as
+//! read with the last status.
 
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::FlagRegister;
 
-/// The validity mark on a position.
+/// A mark that shows the validity of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValidityMark {
     Invalid,

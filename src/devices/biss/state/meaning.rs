@@ -56,8 +56,7 @@ impl FrameDecoder {
         })
     }
 
-    /// Decodes bytes received over the configuration pin after a request. After a damaged part, the reply may still
-    /// follow.
+    /// Decodes bytes received over the configuration pin after a request. The reply may follow a damaged part.
     fn reply(&mut self, bytes: &[u8]) -> FrameExplanation {
         let broken = |damage| FrameExplanation::from_error(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(ReplyDamage::NoFrame { bytes: bytes.len() }) };

@@ -1,8 +1,8 @@
-//! The registers read from an encoder, and the edited values. A plan is later made from the difference. This module
-//! does not write anything to an encoder.
+//! The registers read from an encoder, and the edited values. The difference between them is the basis of a plan. This
+//! module does not write anything to an encoder.
 //!
 //! Only bytes of a data area that the description marks as writable can be edited. Other writes, such as a filter, a
-//! preset or a command, are reviewed separately and are not edits.
+//! preset or a command, are reviewed separately and are not treated as edits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -164,7 +164,7 @@ impl Memory {
         self.iter().map(|(at, byte)| (at.global_number(), byte)).collect()
     }
 
-    /// Restores edits from a draft. Once the encoder's values have been read, edits that equal them are dropped.
+    /// Restores edits from a draft. Edits that equal the encoder's values are dropped as soon as these have been read.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.edit_values(places);

@@ -1,4 +1,5 @@
-//! The recorded format of drafts in users' files: the draft must be read, and written back unchanged.
+//! The recorded format of drafts in users' files. The draft must be readable, and must be the same after it is written
+//! back.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::biss::jobs::Biss;

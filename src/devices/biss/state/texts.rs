@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// The catalogue of BiSS messages and labels. Other ids refer to the common catalogue.
+/// The catalogue of BiSS messages and labels. The common catalogue provides all other IDs.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/biss.ron"));

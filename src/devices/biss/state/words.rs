@@ -101,7 +101,7 @@ pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
     described.map_or_else(|| literal_text(field.name), |register| words::name_text(&register.name))
 }
 
-/// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages, and these
-/// fields are the same in every data sheet.
+/// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages. The
+/// fields are identical in every data sheet.
 static KIT_DESCRIPTION: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

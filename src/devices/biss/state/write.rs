@@ -20,7 +20,7 @@ use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::JobInterruption;
 
-/// A substitute for an absent operator. It waits three seconds for the shaft to come to rest.
+/// A substitute for an absent operator. It waits three seconds for the shaft to stop.
 const UNATTENDED: UnattendedOperator = UnattendedOperator { patience: Duration::from_secs(3) };
 
 impl Encoder {

@@ -105,7 +105,7 @@ fn area_bytes_ui(
         });
     } else {
         ScrollArea::vertical().id_salt("area").auto_shrink(false).show(ui, |ui| {
-            // Leaves room for the focus ring.
+            // Leave room for the focus ring.
             ui.add_space(theme.space.inside);
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             typed_view(ui, theme, view.hex.to_read(wanted));

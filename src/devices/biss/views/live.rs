@@ -34,7 +34,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     if !is_angle {
         row(ui, theme, &theme.translate("unit.steps"), theme.monospace(reading.position().to_string()));
     } else if ui.available_height() < LOW_PANEL_HEIGHT {
-        // In a window of small height, the plot needs the space.
+        // In a low window, the plot needs the space.
         let (turns, steps) = (theme.translate("live.turns"), theme.translate("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));

@@ -9,7 +9,7 @@ use crate::sim::Motor;
 use crate::ui::controls::{enabled_button, folding_card, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Offered speeds in rpm: standstill and the speeds required by the procedures.
+/// Speeds offered in rpm: standstill and the speeds required by the procedures.
 const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {

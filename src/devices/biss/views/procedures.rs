@@ -225,7 +225,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         let layout = &identity.layout;
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        // Only the first error is shown. It names its field.
+        // Only the first error is shown, with the name of its field.
         show_error_below(
             ui,
             theme,

@@ -20,7 +20,7 @@ pub(super) struct RegistersUiState {
     folded: bool,
 }
 
-/// Width of the bank list. On a page narrower than `BESIDE`, a drop-down above the table replaces the list.
+/// Width of the bank list. On a page that is narrower than `BESIDE`, a drop-down list above the table is shown instead.
 const BANK_LIST_WIDTH: f32 = 176.0;
 const MIN_TWO_COLUMN_WIDTH: f32 = 840.0;
 
@@ -41,7 +41,7 @@ pub(super) fn page_ui(
     let groups: Vec<RegisterGroup> =
         encoder.table.groups().iter().map(|own| register_group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
-        // Users look at one bank at a time, and most often at the direct registers.
+        // Users look at one bank at a time, mostly at the direct registers.
         (1..groups.len()).for_each(|at| view.table.set_folded(at, true));
     }
     let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;

@@ -17,7 +17,7 @@ use crate::ui::{Theme, icons};
 
 pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &ProcedureRun, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    // The view scrolls to the result once it is available.
+    // The view scrolls to the result as soon as it is available.
     let is_over = guide.end.is_some();
     let seen = ui.scope_id().with("end");
     if is_over && !ui.data(|data| data.get_temp(seen)).unwrap_or(false) {
@@ -86,7 +86,7 @@ fn step_row(
     let mut step = StepRow { title, state, word: translate(theme, word), ..StepRow::default() };
     match (reached, guide.step_detail()) {
         (StepStatus::Waits, Some(StepDetail::Demand(demand))) => {
-            // The recommended speed is marked on the gauges, which stay in place.
+            // The recommended speed is marked on the gauges, which remain visible.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, OperatorAdvice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.format_text(&says::advice_text(*own))).collect();
             step.note = notes.join("\n");

@@ -71,7 +71,7 @@ pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs)
     }
     let drive_list: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
     let done = print_write_result(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
-    // The action may have been executed without the desired effect.
+    // The action may have been executed without having the desired effect.
     match action {
         HiperdriveAction::PresenceTest => check_present(&before, &found)?,
         HiperdriveAction::Acknowledge if !operations.is_empty() => {

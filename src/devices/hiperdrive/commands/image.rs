@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::{
 /// empty if no layout has this length.
 ///
 /// # Errors
-/// Returns the reason why the data cannot have been sent in the known direction.
+/// Returns an error with the reason if the data cannot have been sent in the known direction.
 pub(super) fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = decode_parameter_word(bytes, known);

@@ -123,7 +123,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
 enum FactSeverity {
     Error,
     Warning,
-    /// A past error that remains only in the error buffer.
+    /// A past error that is only present in the error buffer.
     Earlier,
 }
 
@@ -142,9 +142,9 @@ impl DriveFact {
 
 /// Returns the errors and warnings that a drive reports.
 ///
-/// Entries in the error buffer survive a power cycle, so only the newest ones count as errors. Their number is the
-/// fault count since the last acknowledgement, or at least one during a fault. A drive outside its limits and a
-/// communication error are warnings. See reference 4.
+/// Entries in the error buffer survive a power cycle, so only the newest ones are treated as errors. Their number is
+/// the fault count since the last acknowledgement, but at least one during a fault. A drive outside its limits and a
+/// communication error are treated as warnings. See reference 4.
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.is_set(StatusBit::Fault);

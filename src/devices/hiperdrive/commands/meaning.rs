@@ -39,11 +39,11 @@ impl WordMeaning {
     }
 }
 
-/// Returns the possible meanings of a word. If the direction is known, there is only one. Otherwise bit 11 usually
-/// decides: it is never set in a control word and always set in the status word of a detected drive.
+/// Returns the possible meanings of a word, or a single one if the direction is known. Otherwise, bit 11 usually
+/// decides: it is never set in a control word, and always set in the status word of a detected drive.
 ///
 /// # Errors
-/// Returns the reason why the word must not be sent, if its direction makes it a control word.
+/// Returns an error with the reason if the direction shows that the word is a control word that must not be sent.
 pub(super) fn from_word(word: u16, known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {

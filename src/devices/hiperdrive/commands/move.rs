@@ -1,5 +1,5 @@
-//! The `move` command: moves a drive to a position. However the motion ends, the drive is stopped and switched off. No
-//! other command moves a drive.
+//! The `move` command, which moves a drive to a position. However the motion ends, the drive is stopped and switched
+//! off. No other command moves a drive.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -33,7 +33,7 @@ use crate::units::Moment;
 
 /// Interval for refreshing a motion request.
 const REFRESH: Duration = Duration::from_millis(20);
-/// Maximum time for the stop ladder and for switching off.
+/// Maximum time for the stop sequence and for switching off.
 const STOP_TIMEOUT: Duration = Duration::from_secs(3);
 
 enum MotionOutcome {
@@ -69,7 +69,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
         Duration::from_secs(wanted.timeout.into()),
     );
     let stood = stop_and_switch_off(&runner, drive);
-    // Control is released even after a lost connection; that loss has already been reported.
+    // Control is released even if the connection is lost. The loss has already been reported.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
     let reached = matches!(came, MotionOutcome::Ended(ActionEnd::Arrived));
@@ -100,7 +100,7 @@ fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
 
-/// Describes the target and the limits in the present scale, so that a change of scale is noticed.
+/// Describes the target and the limits in the current scale, so that the user notices a change of scale.
 fn describe_range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
     let turns = |steps: i32| match scale {
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
@@ -199,7 +199,7 @@ fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnaps
         motion.refresh();
         sleep(REFRESH);
     }
-    // Without a report from the drive, the position is unknown.
+    // The position is unknown without a report from the drive.
     stood.filter(|own| own.actual.status.is_present())
 }
 

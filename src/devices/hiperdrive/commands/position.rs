@@ -58,14 +58,14 @@ impl TurnPosition {
         // Fractions of a step make a turn a whole number.
         let (turn, parts) = (256 * numerator, i64::from(position) * denominator);
         let rest = parts.rem_euclid(turn);
-        // At most 256 · 65535, which `f64` represents exactly.
+        // The values are at most 256 · 65535, which `f64` represents exactly.
         let (exact, turn_parts, step_parts) = (rest as f64, turn as f64, denominator as f64);
         TurnPosition { turns: parts.div_euclid(turn), steps: exact / step_parts, degrees: 360.0 * exact / turn_parts }
     }
 
     /// Returns the steps as JSON, as an integer where possible.
     fn steps_json(self) -> serde_json::Value {
-        // At most 2^24, so the cast is exact.
+        // The value is at most 2^24, so the cast is exact.
         if self.steps.fract() == 0.0 { json!(self.steps as i64) } else { json!(self.steps) }
     }
 }

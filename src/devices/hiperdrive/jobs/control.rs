@@ -171,7 +171,7 @@ impl Hiperdrive {
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
-        // This request has no reply, and it does not matter if the device is disconnected.
+        // This request has no reply, and its failure does not matter if the device is disconnected.
         if had_control && let Err(why) = self.create_master(context).unregister_session() {
             tracing::debug!("{why}");
         }
@@ -183,7 +183,7 @@ impl Hiperdrive {
     }
 
     /// Closes a lost cyclic connection at the target as well, and reports the loss once. A loss of explicit messaging
-    /// counts too, because motion is not allowed without access to the parameters.
+    /// is treated in the same way, because motion is not allowed without access to the parameters.
     pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check_connection().is_err() {
             self.control.stop_after_session_loss();
@@ -222,7 +222,7 @@ impl Hiperdrive {
         }
         let ended = carry_through(self, context, commit, tell);
         let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
-        // A lost device is not queried again.
+        // A device that is lost is not queried again.
         if !lost && let Err(why) = self.read_rules(context, identity) {
             tracing::warn!("{why}");
         }
@@ -230,8 +230,8 @@ impl Hiperdrive {
     }
 }
 
-/// Checks that packets can be sent at an interval. With half of it as the step, a packet is late by half an interval at
-/// most, and the target waits for several.
+/// Checks that packets can be sent at an interval. With a timer step of up to half the interval, a packet is late by
+/// half an interval at most, and the target waits for several intervals.
 fn check_timer(step: Duration, interval: Duration) -> Result<(), Error> {
     let milliseconds = |time: Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
     if step > interval / 2 {

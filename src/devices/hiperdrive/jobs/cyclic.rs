@@ -1,9 +1,9 @@
-//! The thread of a cyclic connection. It sends at absolute deadlines, receives in between, and checks the dead-man
-//! controls for every packet. A stop goes out with the next packet, at most one interval later.
+//! The thread of a cyclic connection. It sends packets at absolute deadlines, receives in between, and checks the
+//! dead-man controls for every packet. A stop is sent with the next packet, at most one interval later.
 //!
-//! The thread ends on request, when its handle is dropped, when the connection is lost, or when the program exits: the
-//! drives are stopped and then switched off, after which nothing more is sent. If sending or receiving fails,
-//! transmission ends immediately and the target's watchdog stops the drives.
+//! The thread ends on request, when its handle is dropped, when the connection is lost, or when the program exits. The
+//! drives are then stopped and switched off, and nothing more is sent. If sending or receiving fails, transmission ends
+//! immediately and the target's watchdog stops the drives.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,7 +33,8 @@ struct CyclicCommands {
     lost: Mutex<Option<ConnectionLoss>>,
 }
 
-/// Item type of a channel that never carries a value. The channel signals by disconnecting that the thread has ended.
+/// Item type of a channel that never carries a value. The channel only signals, by disconnecting, that the thread has
+/// ended.
 enum Never {}
 
 /// A cyclic connection without a thread, driven by its owner. Tests run it in virtual time.
@@ -46,7 +47,7 @@ pub struct CyclicRunner {
     packet: Vec<u8>,
 }
 
-/// Maximum time to wait for the thread to end. Covers the stop sequence, three packets with the drives off, and a
+/// Maximum time to wait for the thread to end. It covers the stop sequence, three packets with the drives off, and a
 /// margin for the operating system.
 const END_TIMEOUT: Duration = Duration::from_millis(1500);
 /// Maximum number of received packets handled once the next send is due. The limit keeps a flooded port from delaying
@@ -57,7 +58,7 @@ impl Cyclic {
     /// Starts the thread for an open connection; `port` must be directed at the target.
     ///
     /// # Errors
-    /// Fails if the system cannot create a thread; no data has been sent in that case.
+    /// Returns an error if the system cannot create a thread. In this case, no data has been sent.
     pub fn start(
         port: Box<dyn DatagramChannel>,
         opened: &OpenedConnection,

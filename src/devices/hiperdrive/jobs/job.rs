@@ -52,7 +52,7 @@ pub enum Change {
         drive: DriveNumber,
         /// New position in scaled steps, rounded to a multiple of 64.
         position: i32,
-        /// Whether to save the position, along with all other unsaved values.
+        /// Whether to save the position. All other unsaved values are saved as well.
         save: bool,
     },
     Do(Service),
@@ -62,7 +62,7 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// A write of edits. Edits that have not been written yet are kept as edits.
+    /// A write of edits. Edits that were not written remain as edits.
     Edits,
     Try,
     Position,
@@ -131,9 +131,9 @@ pub type Committed = crate::worker::CommitResult<WrittenChanges>;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {
-    /// The cyclic connection was lost and the drives stop; the session's `Motion` holds the cause.
+    /// The cyclic connection was lost and the drives are being stopped. The session's `Motion` holds the cause.
     ControlLost,
-    /// The limits of a drive under control cannot be read. Reading is retried until it succeeds.
+    /// The limits of a drive under control cannot be read. The reading is repeated until it succeeds.
     RulesUnread(Box<Error>),
     RulesRead,
 }

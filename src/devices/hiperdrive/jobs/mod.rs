@@ -52,7 +52,7 @@ impl fmt::Debug for Hiperdrive {
     }
 }
 
-/// Interval between checks of the drives under control, a fraction of the time allowed between two requests.
+/// Interval between checks of the drives under control. It is a fraction of the maximum interval between two requests.
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);

@@ -1,5 +1,6 @@
-//! The motion handle. Its requests pass through a cell that holds only the latest one. The state of the drives returns
-//! the same way. The thread of the cyclic connection reads the requests and writes the state. Neither side waits.
+//! The motion handle. Its requests pass through a cell that holds only the latest one, and the state of the drives is
+//! returned in the same way. The thread of the cyclic connection reads the requests and writes the state. Neither side
+//! waits for the other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -29,7 +30,7 @@ struct Shared {
 
 struct Cell {
     intent: MotionIntent,
-    /// Limits of each drive. There is no other copy of them.
+    /// The limits of each drive, which are not stored anywhere else.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
@@ -59,7 +60,7 @@ pub struct MotionSnapshot {
     pub link: LinkStatistics,
     /// Parameters read through the parameter words, or `None` if the connection has none.
     pub parameters: Option<ParameterReadings>,
-    /// Whether the connection thread runs with priority over ordinary threads.
+    /// Whether the connection thread has a higher priority than ordinary threads.
     pub punctual: bool,
     /// Reason for the loss if the connection was lost.
     pub lost: Option<ConnectionLoss>,
@@ -79,7 +80,7 @@ pub struct DriveSnapshot {
     pub ended: Option<(u64, ActionEnd)>,
 }
 
-/// Time for which a parameter is read after the latest request. A reading counts as recent for the same time.
+/// Time for which a parameter is read after the latest request. A reading is considered recent for the same time.
 const WATCH_DURATION: Duration = Duration::from_secs(5);
 
 impl Motion {
@@ -152,7 +153,7 @@ impl Motion {
         self.with_limits(drive, |own| *own = limits);
     }
 
-    /// Changes the limits of a drive atomically, so that no reader sees or confirms a partial change.
+    /// Changes the limits of a drive atomically, so that no reader sees a partial change and no user confirms one.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
     }
@@ -173,7 +174,7 @@ impl Motion {
     }
 
     /// Confirms the limits of a drive as shown to the user. Returns `false` and has no effect if the limits have
-    /// changed since.
+    /// changed since then.
     pub fn confirm_limits(&self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
         self.with_limits(drive, |limits| limits.confirm_displayed(seen))
     }
@@ -304,8 +305,7 @@ impl Motion {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Returns whether every drive was told to stop, which means that the last control word sent to it is a stop.
-    /// Returns `true` without a connection.
+    /// Returns whether the last control word sent to every drive is a stop. Returns `true` without a connection.
     pub fn is_at_rest(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_at_rest())

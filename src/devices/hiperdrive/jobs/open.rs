@@ -26,7 +26,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 /// recording. A recording has no cyclic connection.
 ///
 /// # Errors
-/// Returns an [`OpenError`] if the link cannot be opened. Nothing has been sent then.
+/// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
     let (station, config) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());

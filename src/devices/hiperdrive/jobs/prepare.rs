@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. Only reads.
+//! Preparation of a plan from a change. The device is only read.
 
 use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::{FaultReset, find_remedy};

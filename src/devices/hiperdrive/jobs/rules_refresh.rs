@@ -13,7 +13,7 @@ use crate::worker::SessionContext;
 /// Length of a time slot while no drive moves. The groups of limit parameters take turns, with one slot per group per
 /// second.
 const TURN: Duration = Duration::from_millis(250);
-/// Length of a time slot while a drive moves. Each slot sends a request, and a device that does not answer ends the
+/// Length of a time slot while a drive moves. Each slot sends a request, and a device that does not reply ends the
 /// motion.
 const TURN_IN_MOTION: Duration = REQUEST;
 /// Pause after a failed reading.
@@ -32,7 +32,7 @@ fn due_groups(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize>
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
-/// Returns how many turns of a group have begun by the given time.
+/// Returns how many time slots of a group have begun by the given time.
 fn turns_begun(group: usize, at: Moment, turn: Duration) -> u128 {
     let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
@@ -99,7 +99,7 @@ impl Hiperdrive {
         // All limits are read before anything moves again.
         self.control.motion().invalidate_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check_connection().is_err() {
-            // The device can no longer be queried, which counts as a loss.
+            // A device that can no longer be queried is treated as lost.
             return self.control.stop_after_session_loss();
         }
         if self.control.rules_refresh.rests.replace(context.clock.now() + RETRY_PAUSE).is_none() {

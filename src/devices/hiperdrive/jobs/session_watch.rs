@@ -1,5 +1,6 @@
-//! Supervision of explicit messages while drives are under control: how long the device has left a request without a
-//! reply. A device that stops replying ends a motion as fast as any other loss, even if its cyclic packets continue.
+//! Supervision of explicit messages while drives are under control. It measures how long the device has left a request
+//! without a reply. A device that stops replying ends a motion as fast as any other loss, even if its cyclic packets
+//! continue.
 //!
 //! | case | time |
 //! |---|---|
@@ -7,8 +8,8 @@
 //! | maximum time without a reply ([`REPLY_TIMEOUT`]), or twice the recent response time | 130 ms |
 //! | total | 190 ms |
 //!
-//! Only time during which the thread has listened counts: a thread that was prevented from listening by a busy computer
-//! cannot conclude that there was no reply. After a further [`UNCHECKED_TIMEOUT`], the reply counts as missing.
+//! Only time during which the thread has listened is counted. If a busy computer prevented the thread from listening, a
+//! missing reply proves nothing. After a further [`UNCHECKED_TIMEOUT`], the reply is considered missing anyway.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -22,18 +23,18 @@ use crate::units::{CharacterFormat, Moment};
 pub(super) const REQUEST: Duration = Duration::from_millis(60);
 /// Maximum time for which a device may leave a request unanswered while a drive moves.
 const REPLY_TIMEOUT: Duration = Duration::from_millis(130);
-/// Additional time after which a request counts as unanswered even if the line was not checked.
+/// Additional time after which a request is considered unanswered even if the line was not checked.
 const UNCHECKED_TIMEOUT: Duration = Duration::from_millis(250);
 /// Interval between checks of the line while a reply is awaited.
 const CHECK_INTERVAL: Duration = Duration::from_millis(10);
-/// Maximum time allowed to a device for a reply, however slow it was before.
+/// Maximum time allowed for a reply, no matter how slow the device was before.
 const MAX_REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ReplyMonitor {
     /// Time at which the oldest unanswered request was sent.
     requested: Option<Moment>,
-    /// Time at which the line was last checked and nothing had arrived.
+    /// Time of the last check of the line in which nothing had arrived.
     looked: Moment,
     /// Longest recent reply time. Each shorter reply lowers it by up to an eighth.
     slowest: Duration,
@@ -67,7 +68,8 @@ impl ReplyMonitor {
         self.broken = true;
     }
 
-    /// Returns whether the device has been silent for too long to allow motion, or has sent bytes that are not a frame.
+    /// Returns whether motion must end because the device has been silent for too long or has sent bytes that are not a
+    /// frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(REPLY_TIMEOUT, MAX_REPLY_TIMEOUT);
         let is_late = |asked| {
@@ -251,7 +253,7 @@ mod tests {
         }
         watch.record_silence(at(12_090 + 131));
         assert!(watch.is_silent(at(12_090 + 131)), "{watch:?}");
-        // A presence test takes eight seconds on a hub, and does not count for later requests.
+        // A presence test takes eight seconds on a hub, which does not affect the time allowed for later requests.
         let mut watch = ReplyMonitor::default();
         watch.record_request(at(0));
         watch.record_reply(at(8000));

@@ -85,7 +85,7 @@ pub enum CheckFinding {
     UnknownSwitch(i64),
     /// Source of the address when the switches are at 0.
     Source(AddressSource),
-    /// The memory is intact and no save is in progress.
+    /// The memory is intact, and no save is in progress.
     Saved,
     /// Parameter 47 is not 0, because the memory is faulty or the device is busy.
     NotSaved(i64),
@@ -172,7 +172,7 @@ const TEMPERATURE_RANGE: std::ops::RangeInclusive<i64> = -10..=70;
 /// Runs the check, which ends early only if the device fails.
 ///
 /// # Errors
-/// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
+/// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.
 pub fn check_device(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, CheckStep),
@@ -301,7 +301,7 @@ fn error_findings(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     }
     findings.extend((*drive != 0).then_some((Verdict::Attention, CheckFinding::DriveWord(*drive))));
     findings.extend((*motion != 0).then_some((Verdict::Attention, CheckFinding::MotionWord(*motion))));
-    // Entries of the error buffer may be old. They matter only if faults have been counted.
+    // Entries of the error buffer may be old. They are relevant only if faults have been counted.
     let of_buffer = if *faults == 0 { Verdict::Good } else { Verdict::Attention };
     findings.extend(buffer.iter().map(|code| (of_buffer, CheckFinding::Error(*code))));
     findings.extend((*faults != 0).then_some((Verdict::Attention, CheckFinding::Faults(*faults))));

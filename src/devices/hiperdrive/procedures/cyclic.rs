@@ -6,9 +6,9 @@
 //! port)
 //! ```
 //!
-//! Motion stops if nothing has arrived for three intervals. The connection is lost if nothing arrives in a further such
-//! period of uninterrupted listening. The drives are then stopped and switched off, and the connection ends. It is
-//! never restored; the user opens another.
+//! Motion stops if nothing has arrived for three intervals. The connection is lost if nothing arrives for another three
+//! intervals of uninterrupted listening. The drives are then stopped and switched off, and the connection ends. It is
+//! never restored, but the user can open another one.
 
 mod connection;
 mod drives;

@@ -1,5 +1,6 @@
-//! The dead-man control. It alone generates the control word of a drive in every interval, from the drive's report, the
-//! user's request and the drive's permit (reference 3). Time is an argument, and no call blocks.
+//! The dead-man control, which is the only source of a drive's control word. In every interval, it derives the word
+//! from the drive's report, the user's request and the drive's permit (reference 3). Time is an argument, and no call
+//! blocks.
 //!
 //! Invariants for any input:
 //! - A word that could start a motion is sent only while a fresh action of the user requests that motion. All other
@@ -55,7 +56,7 @@ pub struct DeadMan {
     spent: u64,
     /// Speed and torque of the last motion.
     effort: SpeedTorque,
-    /// Whether speed mode was entered. The drive may remember the run and must first go below operational.
+    /// Whether speed mode was entered. The drive may remember the run and must first leave the operational state.
     after_run: bool,
     /// Whether reports are currently missing. No motion may start then.
     is_out_of_contact: bool,
@@ -65,7 +66,7 @@ pub struct DeadMan {
 #[derive(Clone, Copy, Debug)]
 struct UserAction {
     number: u64,
-    /// Latest request of the action. Pausing a job also counts as a request.
+    /// Latest request of the action. A pause of the job is also a request.
     request: MotionRequest,
     motion: Option<Motion>,
     watch: Option<ActionMonitor>,
@@ -87,10 +88,10 @@ const START: Duration = Duration::from_secs(1);
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 /// Maximum delay of a report between a hub and its drives (`U`).
 pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);
-/// Time for which positions must have arrived before they count as those of the drive. A hub first queries all its
+/// Time for which positions must have arrived before they are taken as those of the drive. A hub first queries all its
 /// drives (`U`).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
-/// Time at standstill after which a drive counts as not having reached its target.
+/// Time at standstill after which a drive is considered to have missed its target.
 const NOT_REACHED_TIME: Duration = Duration::from_millis(500);
 
 impl DeadMan {
@@ -221,8 +222,8 @@ impl DeadMan {
         }
     }
 
-    /// Marks a request as spent if it can no longer start a motion. This is a rest or a stop, a request for another
-    /// drive, or one that was not refreshed in time. Earlier requests are spent as well.
+    /// Marks a request as spent if it can no longer start a motion. This applies to a rest, a stop, a request for
+    /// another drive, and a request that was not refreshed in time. Earlier requests are spent as well.
     fn discard_void_request(&mut self, now: Moment, intent: &MotionIntent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
@@ -245,7 +246,7 @@ impl DeadMan {
     /// Starts a new action if one is requested and the last action has ended.
     fn accept_intent(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.discard_void_request(now, intent);
-        // A step counts from the present position.
+        // A relative step starts from the present position.
         let has_arrived = self.first.is_some_and(|first| now.duration_since(first) >= ARRIVAL_TIME);
         let has_place = has_arrived || !matches!(intent.request, MotionRequest::Step { .. });
         let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));

@@ -29,7 +29,7 @@ const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Broadcasts a request and collects replies for a second. Each device is returned once, in the order of addresses.
 ///
 /// # Errors
-/// Returns a network error, or [`Error::Cancelled`] if cancelled.
+/// Returns a network error, or [`Error::Cancelled`] if the job is cancelled.
 pub fn discover(
     shout: &mut dyn BroadcastChannel,
     clock: &dyn Clock,

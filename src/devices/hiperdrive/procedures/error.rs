@@ -130,14 +130,16 @@ pub enum Error {
         /// Extended status word, either 0100h or 0106h.
         extended: u16,
     },
-    /// The device offers a longer send or receive interval than requested. A drive could not be stopped in time.
+    /// The device offers a longer send or receive interval than requested, with which a drive could not be stopped in
+    /// time.
     #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
     TooSlow {
         /// Requested interval in milliseconds.
         asked_ms: u64,
         got_ms: u64,
     },
-    /// The timer of this computer is too coarse to send at the requested interval. A drive could not be stopped in time.
+    /// The timer of this computer is too coarse to send at the requested interval, so a drive could not be stopped in
+    /// time.
     #[error("the timer of this computer has steps of {step_ms} ms, too coarse for an interval of {asked_ms} ms")]
     CoarseTimer { asked_ms: u64, step_ms: u64 },
     #[error("the cyclic connection is open")]
@@ -223,7 +225,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device cannot be reached, so that further attempts are useless.
+    /// Returns whether the device cannot be reached, which makes further attempts useless.
     pub const fn is_lost(&self) -> bool {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }

@@ -134,8 +134,8 @@ impl Identity {
 /// Reads the identity of a device.
 ///
 /// # Errors
-/// Returns [`Error::NotHiperdrive`] for another device, or an error if the device rejects a request or the exchange
-/// fails.
+/// Returns [`Error::NotHiperdrive`] for another device, or another error if the device rejects a request or the
+/// exchange fails.
 pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Identity, Error> {
     // Number of parameters of a drive, and of the device.
     const DRIVE: u64 = 6;
@@ -191,7 +191,7 @@ fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
 /// Reads identity and status of a device.
 ///
 /// # Errors
-/// Returns the same errors as [`identify`].
+/// Returns an error of [`identify`] if the identity or the status cannot be read.
 pub fn read_survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
     let identity = identify(master, progress)?;
     let numbers: Vec<ParameterNumber> = readable_parameters(&identity).collect();
@@ -228,7 +228,7 @@ const OF_STATUS: u64 = 15;
 /// Reads the errors and states of all drives.
 ///
 /// # Errors
-/// Returns the same errors as [`identify`].
+/// Returns an error of [`identify`] if the status cannot be read.
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = read_topology(master)?;
     // For each port, one read shows whether a drive is present. The other reads are those of its status.
@@ -279,7 +279,8 @@ fn read_drive_status(
 /// Reads parameters 105, 106 and 107 of a drive.
 ///
 /// # Errors
-/// Returns [`Error::NoPlace`] or [`Error::NoDrive`] if the drive does not exist, or an error if the exchange fails.
+/// Returns [`Error::NoPlace`] or [`Error::NoDrive`] if the drive does not exist, or another error if the exchange
+/// fails.
 pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
     let status = StatusWord::new(read_word(master, STATUS, drive)?);
     // The types of both parameters have this width.

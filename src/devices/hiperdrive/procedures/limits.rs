@@ -1,8 +1,8 @@
 //! Motion limits of a drive. Scale, limits, confirmation, locks and time of reading form one value with a single owner.
 //!
 //! The worker updates the value when parameters are read, and the window displays it. The dead-man control obtains a
-//! [`Permit`] from it for each packet. The settings store the part that must outlast a session, which is the limits to
-//! be confirmed.
+//! [`Permit`] from it for each packet. The settings store only the part that must outlast a session: the limits to be
+//! confirmed.
 
 use std::time::Duration;
 
@@ -23,7 +23,8 @@ pub struct DriveLimits {
     unconfirmed: bool,
     /// Time at which each group of parameters was read, or `None` if they may have changed and must be read.
     read: Option<[Moment; GROUPS]>,
-    /// Time at which the readings became doubtful. All groups must be read after it before the next motion starts.
+    /// Time at which the readings became doubtful. All groups must be read again after this time before the next motion
+    /// starts.
     doubted: Option<Moment>,
 }
 
@@ -36,7 +37,7 @@ pub struct DisplayedLimits {
     pub limits: (i64, i64),
 }
 
-/// Time for which a reading of the limits is valid, longer than a slow device may take to reply to all requests.
+/// Time for which a reading of the limits is valid. It is longer than a slow device may take to reply to all requests.
 const VALIDITY: Duration = Duration::from_secs(4);
 
 /// Returns whether a drive with this value of parameter 186 stops when communication is lost. Values that the manual
@@ -100,7 +101,8 @@ impl DriveLimits {
         self.unconfirmed
     }
 
-    /// Confirms the limits as shown to the user. Returns `false` and has no effect if the limits have changed since.
+    /// Confirms the limits as shown to the user. Returns `false` and has no effect if the limits have changed since
+    /// then.
     pub fn confirm_displayed(&mut self, seen: DisplayedLimits) -> bool {
         let counts = self.displayed_limits() == Some(seen);
         self.unconfirmed &= !counts;
@@ -143,7 +145,7 @@ impl DriveLimits {
     /// Returns the reasons why motion is locked, the most important first.
     pub fn motion_locks(&self) -> Vec<MotionLock> {
         let MotionLimitParameters { requested, timeout, .. } = self.rules;
-        // An invalid scale or range counts as not read.
+        // An invalid scale or range is treated like one that was not read.
         let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
         [
             (MotionLock::Unread, unread),
@@ -171,7 +173,7 @@ impl DriveLimits {
         }
     }
 
-    /// Returns the number of scaled steps per degree, at least 1; also 1 if the scale has not been read.
+    /// Returns the number of scaled steps per degree, at least 1. Returns 1 if the scale has not been read.
     pub fn steps_per_degree(&self) -> u32 {
         self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
     }
@@ -250,8 +252,8 @@ mod tests {
         assert!(!other.is_endless_run_allowed(), "its factory values are not known");
     }
 
-    /// Issue 21.3: an invalid scale, range or time-out counts as not read. Types and ranges are those of the manual:
-    /// 152 is 0 or 1, 160 is above 158, 186 is 1 to 100, or 255 for never (reference 4).
+    /// Issue 21.3: an invalid scale, range or time-out is treated like one that was not read. Types and ranges are
+    /// those of the manual: 152 is 0 or 1, 160 is above 158, and 186 is 1 to 100, or 255 for never (reference 4).
     #[test]
     fn invalid_parameter_values_permit_no_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], MotionLock);
@@ -278,7 +280,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.3: the later of two doubts counts, regardless of the order in which they arrive.
+    /// Issue 21.3: the later of two doubts applies, regardless of the order in which they arrive.
     #[test]
     fn an_earlier_doubt_does_not_replace_a_later_one() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));

@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
     /// Waits, but returns early if cancelled.
     ///
     /// # Errors
-    /// Returns [`Error::Cancelled`] if cancelled.
+    /// Returns [`Error::Cancelled`] if the job is cancelled.
     pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         Ok(self.line.wait(duration)?)
     }
@@ -108,9 +108,9 @@ impl<'a> Master<'a> {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or
-    /// [`Error::Refused`] if the parameter cannot be read. Returns [`Error::Length`] for a number of the wrong length,
-    /// or an error if the exchange fails.
+    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::Refused`]
+    /// if the parameter cannot be read, [`Error::Length`] if the number has the wrong length, or another error if the
+    /// exchange fails.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
         if row.access == ParameterAccess::Write {
@@ -131,7 +131,7 @@ impl<'a> Master<'a> {
     /// Reads a numeric parameter.
     ///
     /// # Errors
-    /// Returns the same errors as [`read`](Self::read).
+    /// Returns an error of [`read`](Self::read).
     pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
         match self.read(number)? {
             Value::Number(value) => Ok(value),
@@ -142,7 +142,7 @@ impl<'a> Master<'a> {
     /// Reads a string parameter.
     ///
     /// # Errors
-    /// Returns the same errors as [`read`](Self::read).
+    /// Returns an error of [`read`](Self::read).
     pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
         match self.read(number)? {
             Value::Text(text) => Ok(text),
@@ -154,8 +154,9 @@ impl<'a> Master<'a> {
     /// value yet. A parameter that triggers an action is never sent twice.
     ///
     /// # Errors
-    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything. Returns
-    /// [`Error::Refuses`] or [`Error::Refused`] if the device rejects the value, or an error if the exchange fails.
+    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything if the value
+    /// may not be set. Returns [`Error::Refuses`] or [`Error::Refused`] if the device rejects the value, or another
+    /// error if the exchange fails.
     pub(super) fn set_parameter(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
         // The plan has already checked the travel.
@@ -186,7 +187,7 @@ impl<'a> Master<'a> {
     /// Reads the identity object, which every EtherNet/IP device has.
     ///
     /// # Errors
-    /// Returns [`Error::Refused`], or an error if the exchange fails.
+    /// Returns [`Error::Refused`] if the device rejects the request, or another error if the exchange fails.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
         let requested = RequestedItem::Identity;
         let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), RetryPolicy::Always)?;
@@ -210,7 +211,7 @@ impl<'a> Master<'a> {
     /// replies.
     ///
     /// # Errors
-    /// Returns [`Error::Refused`], or an error if the exchange fails.
+    /// Returns [`Error::Refused`] if the device rejects the request, or another error if the exchange fails.
     pub(super) fn set_attribute(
         &mut self,
         requested: RequestedItem,
@@ -284,7 +285,7 @@ impl<'a> Master<'a> {
         Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
     }
 
-    /// Sends a request, and repeats it if a repetition is useful and harmless.
+    /// Sends a request, and repeats it if this is useful and harmless.
     fn send_with_retries<T>(
         &mut self,
         requested: RequestedItem,
@@ -309,11 +310,11 @@ impl<'a> Master<'a> {
                 ExchangeError::Status(_) => {}
             }
             let longest = within + self.station.line.margin;
-            // The device rejects a session at once.
+            // The device rejects a session immediately.
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_retry(&mut self.station.line, tries, took);
             match trouble {
-                // The device has forgotten the session, so the request was not executed.
+                // The device does not know the session any more, so it did not execute the request.
                 ExchangeError::Status(EncapsulationStatus::NO_SESSION)
                     if may && requested != RequestedItem::Session =>
                 {
@@ -380,7 +381,7 @@ impl<'a> Master<'a> {
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { ReplyDamage::Cut { bytes }.into() }));
             }
-            // The reply to a request that sets something is always awaited.
+            // A request that sets something is always given time for its reply.
             if repeats == RetryPolicy::Always {
                 self.line.check_cancel()?;
             }
@@ -391,8 +392,8 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether a rejection contains the session number. A stream has a single session: if the reply to the first
-/// RegisterSession was lost, the next one is rejected with its number.
+/// Returns whether a rejection contains the session number. A stream has a single session. If the reply to the first
+/// RegisterSession was lost, the device rejects the next one and returns the number of the existing session.
 fn has_session(answer: &Frame) -> bool {
     answer.command == Command::REGISTER_SESSION
         && answer.status == EncapsulationStatus::UNSUPPORTED
@@ -409,8 +410,7 @@ fn parse_reply(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), Ex
     }
 }
 
-/// Returns whether a rejection contains the session number. A stream has a single session. If the reply to the first
-/// RegisterSession was lost, the device rejects the next one and returns the number of the existing session.
+/// Returns the table row of a parameter that may be set with explicit messages, or an error if it may not be.
 fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {

@@ -1,6 +1,6 @@
-//! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub. Explicit messages do all reading and writing,
-//! and the cyclic connection does all motion. Reading does not change anything. "Reference" is the project's
-//! "hiperdrive".
+//! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub. Explicit messages are used for all reading and
+//! writing, and the cyclic connection for all motion. Reading does not change anything. "Reference" is the project's
+//! reference "hiperdrive".
 //!
 //! ```text
 //! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)

@@ -48,7 +48,7 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
 /// Returns the network settings that a plan can change.
 ///
 /// # Errors
-/// Returns [`Error::Refused`] if the device has no such settings, or an error if the exchange fails.
+/// Returns [`Error::Refused`] if the device has no such settings, or another error if the exchange fails.
 pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     let (control, interface) = (ConfigurationControl::ATTRIBUTE, InterfaceConfiguration::ATTRIBUTE);
     let control = read_attribute(master, control, ConfigurationControl::parse)?;

@@ -42,20 +42,20 @@ impl Identity {
     }
 }
 
-/// Reads everything that can be restored. Parameters that the device does not report are left out.
+/// Reads all values that can be restored. Parameters that the device does not report are omitted.
 ///
 /// # Errors
-/// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
+/// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.
 pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
     let identity = identify(master, progress)?;
     let image = read_image(master, identity.stored_parameters().collect(), progress)?;
     Ok(HiperdriveProfile::from_image(identity.profile(), image))
 }
 
-/// Reads everything that a plan requires: all stored values, the given additional parameters, and the drive positions.
+/// Reads all values that a plan requires: the stored values, the given additional parameters, and the drive positions.
 ///
 /// # Errors
-/// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
+/// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,

@@ -41,10 +41,10 @@ pub struct Station {
     pub(super) line: LineState,
     pub(super) session: Option<u32>,
     pub(super) next: u64,
-    /// Last unanswered requests, each with its number, its time of sending, and whether the operation takes the device
-    /// long.
+    /// The most recent unanswered requests, each with its number, its time of sending, and whether its operation takes
+    /// the device a long time.
     open: VecDeque<(u64, Moment, bool)>,
-    /// Reply times, including late replies. Operations that take the device long are excluded.
+    /// Reply times, including late replies. Operations that take the device a long time are excluded.
     pub(super) replies: ReplyTimes,
     /// Received bytes that do not yet form a complete frame.
     pub(super) receiver: Receiver,
@@ -65,8 +65,8 @@ pub(super) struct KnownState {
 
 impl Station {
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
-    /// Number of unanswered requests whose late replies are recognised. The connection is abandoned before there are
-    /// more.
+    /// Maximum number of unanswered requests whose late replies can be recognised. The connection is abandoned before
+    /// this number is exceeded.
     const OPEN: usize = 8;
 
     pub fn new(margin: Duration) -> Self {

@@ -19,7 +19,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::profile::{ConfirmedPlan, Write};
 
-/// A write that ended early. Values written before that may be lost at power-off unless they are saved.
+/// A write that ended early. Values written before the end may be lost at power-off unless they are saved.
 pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, ()>;
 
 impl InterruptedWrite {
@@ -194,7 +194,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
     loop {
         let waited = master.now().duration_since(begun);
-        // During a reset the device may reject reads.
+        // During a reset, the device may reject reads.
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
             Ok(reads) => reads,

@@ -101,7 +101,7 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
 }
 
 /// Plans a service. The plan is based on everything that the device stores, since the old values cannot be determined
-/// afterwards. The base of an acknowledgement is empty.
+/// after the service. The base of an acknowledgement is empty.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
         Service::Acknowledge(_) => BTreeMap::new(),
@@ -148,7 +148,7 @@ impl Write {
         };
         let is_first = match base {
             UPPER_LIMIT => upper_first,
-            // Between the two writes, a turn never has more steps than before or after.
+            // Between the two writes, the number of steps per turn never exceeds both its old and its new value.
             DENOMINATOR => self.new > self.old,
             _ => false,
         };
@@ -180,7 +180,7 @@ fn check_position_limits(
     for number in missing {
         device.get(number).ok_or(PlanError::NotRead { item: Item(number) })?;
     }
-    // All four values are known.
+    // All four values are known here.
     let (Some((lower, upper)), Some(new), Some((_, old_upper))) =
         (after.limits(drive), after.scale(drive), device.limits(drive))
     else {
@@ -198,7 +198,7 @@ fn check_position_limits(
             return Err(PlanError::PositionOutside { drive, position, lower, upper });
         }
     }
-    // With the old upper limit, the new lower limit would be above it, or the drive would be outside.
+    // The new lower limit would be above the old upper limit, or the drive would be outside the limits.
     let too_low = old_upper <= lower || position.is_some_and(|position| position > old_upper);
     Ok(if too_low { WriteOrder::UpperFirst } else { WriteOrder::LowerFirst })
 }

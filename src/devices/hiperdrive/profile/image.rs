@@ -1,4 +1,4 @@
-//! Values that a device stores for itself and its drives, as far as they can be read.
+//! Values that a device stores for itself and its drives, to the extent that they can be read.
 
 use std::collections::BTreeMap;
 

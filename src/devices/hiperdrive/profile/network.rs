@@ -18,7 +18,7 @@ pub struct NetworkSettings {
 /// otherwise. `switch` is parameter 12, if known.
 ///
 /// # Errors
-/// Fails if the device would be unreachable at the addresses, or if the source is unknown.
+/// Returns an error if the device would be unreachable at the addresses, or if the source is unknown.
 pub fn plan_network(
     now: &NetworkSettings,
     switch: Option<i64>,

@@ -12,7 +12,7 @@ use crate::profile::{ChangedItem, Operation, Plan};
 pub type HiperdrivePlan = Plan<Base, Op>;
 
 /// Values on which a plan is based: everything that its operations change or depend on. Drive positions are excluded,
-/// since they also change without a write.
+/// since they can change without a write.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Values by parameter number.
@@ -75,7 +75,8 @@ pub enum Service {
     FactoryAll,
     /// 47 = −4: tests for the presence of the drives and resets them.
     Reset,
-    /// Clears the fault of a drive by writing 197 = 0. A reset (47 = −4) comes first if that alone does not suffice.
+    /// Clears the fault of a drive by writing 197 = 0. If this alone is not sufficient, a reset (47 = −4) is performed
+    /// first.
     Acknowledge(DriveNumber),
 }
 
@@ -137,7 +138,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes, counted as in a comparison. A save does not count.
+    /// Returns the number of changes, counted as in a comparison. A save is not counted.
     pub const fn change_count(&self) -> u64 {
         match self {
             Op::Write { .. } | Op::Network { .. } => 1,

@@ -33,11 +33,11 @@ impl DeviceState {
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
 /// Plans a restore for the ports that profile and device have in common. On another device, values that depend on the
-/// mounting are left out. These are the items marked by the user and the reference of each drive (198), which is never
+/// mounting are omitted. These are the items marked by the user and the reference of each drive (198), which is never
 /// written.
 ///
 /// # Errors
-/// Returns a [`PlanError`] if the restore is not possible. Nothing has been written then.
+/// Returns a [`PlanError`] if the restore is not possible. In this case, nothing has been written.
 pub fn plan_restore(
     profile: &HiperdriveProfile,
     device: &DeviceState,
@@ -65,8 +65,8 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Rejects an adapter, hub or drive that differs in type or identity from the profile. A profile without an identity
-/// fits any device. An empty port is accepted.
+/// Checks that the adapter or hub and its drives have the type and identity stored in the profile. A profile without an
+/// identity fits any device. An empty port is accepted.
 ///
 /// # Errors
 /// Returns [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first
@@ -85,7 +85,7 @@ pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> 
     whole.into_iter().map(|(profile, device)| TypeMismatch::Device { profile, device }).chain(drives).collect()
 }
 
-/// Rejects a device other than the one in the profile, unless the options allow it.
+/// Checks that the device is the one in the profile, unless the options allow another one.
 fn check_allowed(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,

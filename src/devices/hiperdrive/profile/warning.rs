@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 };
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
-/// Consequence of a plan that the user should know.
+/// A consequence of a plan that the user should know.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// The scale changes, so the same limits mean different positions in turns (reference 3, *Scaling moves soft

@@ -1,5 +1,5 @@
-//! The control word (STW, reference 3), built from the action that a host requests. Words built here have no reserved
-//! bits set. They have no jog bits set either, because a stop might not end a jog step.
+//! The control word (STW, reference 3), built from the action that a host requests. Words built here never have
+//! reserved bits set. They have no jog bits set either, because a stop might not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 

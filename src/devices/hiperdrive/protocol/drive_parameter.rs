@@ -1,5 +1,5 @@
-//! Numbers of the parameters that the code refers to by name. Most belong to drive 1; the device parameter saves and
-//! resets.
+//! Numbers of the parameters that the code refers to by name. Most of them belong to drive 1. The service parameter,
+//! which saves and resets, belongs to the device.
 
 use std::ops::RangeInclusive;
 
@@ -47,7 +47,7 @@ pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
 pub const HAND_DRIVE_WAIT: u16 = 182;
 /// RS-485 time-out.
 pub const TIMEOUT: u16 = 186;
-/// Time-out value with which a drive continues without commands.
+/// Time-out value with which a drive continues to move without commands.
 pub const NO_TIMEOUT: i64 = 255;
 /// RS-485 address.
 pub const RS485_ADDRESS: u16 = 188;
@@ -59,5 +59,5 @@ pub const RS485_COMPLETE: u16 = 192;
 pub const ACKNOWLEDGE: u16 = 197;
 /// Position assigned to the current location of the drive.
 pub const REFERENCE: u16 = 198;
-/// Resets the drive.
+/// Parameter that resets the drive.
 pub const RESET: u16 = 199;

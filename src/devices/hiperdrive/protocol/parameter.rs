@@ -32,7 +32,7 @@ pub struct ParameterRow {
     pub access: ParameterAccess,
     /// Whether the value survives a power cycle after it has been saved.
     pub saved: bool,
-    /// Whether the adapter or hub stores the value, rather than a drive.
+    /// Whether the adapter or hub stores the value, and not a drive.
     pub(super) kept_by_device: bool,
     /// Allowed values.
     pub range: ParameterRange,
@@ -41,8 +41,8 @@ pub struct ParameterRow {
     pub reach: Option<StepLimit>,
     /// Factory value.
     pub factory: FactoryValue,
-    /// Values that the device takes long to apply. The reply to writing any other value comes as soon as the reply to a
-    /// read.
+    /// Values that the device takes a long time to apply. The reply to any other written value comes as fast as the
+    /// reply to a read.
     pub slow: &'static [SlowValue],
 }
 
@@ -126,7 +126,7 @@ impl DriveNumber {
         if 1 <= number && number <= 8 { Some(DriveNumber(number)) } else { None }
     }
 
-    /// Returns the number.
+    /// Returns the drive number, 1 to 8.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -160,7 +160,7 @@ impl ParameterNumber {
         if 100 <= number && number <= 199 { Some(ParameterNumber(number + 100 * (drive.0 as u16 - 1))) } else { None }
     }
 
-    /// Returns the number.
+    /// Returns the parameter number, 1 to 899.
     pub const fn get(self) -> u16 {
         self.0
     }
@@ -227,8 +227,8 @@ impl ParameterRow {
         if range.contains(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
     }
 
-    /// Returns how long the device may take to reply when this value is written, or `None` if it takes no longer than
-    /// for other replies. For an unknown topology, the time of a hub applies.
+    /// Returns how long the device may take to reply when this value is written, or `None` if the usual reply time
+    /// applies. For an unknown topology, the time of a hub is returned.
     pub fn write_duration(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
         let slow = self.slow.iter().find(|slow| slow.value == value)?;
         Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })

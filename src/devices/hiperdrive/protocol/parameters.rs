@@ -33,7 +33,7 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
 }
 
 impl ParameterRow {
-    /// Makes the row writable, with a value that is lost at power-off.
+    /// Returns a copy of the row that is writable, with a value that is lost at power-off.
     const fn writable(self, range: ParameterRange, factory: FactoryValue) -> Self {
         ParameterRow { access: ParameterAccess::ReadWrite, range, factory, ..self }
     }

@@ -218,7 +218,7 @@ impl Percent {
         if percent <= 100 { Some(Percent(percent)) } else { None }
     }
 
-    /// Returns the number.
+    /// Returns the percentage, 0 to 100.
     pub const fn get(self) -> u8 {
         self.0
     }

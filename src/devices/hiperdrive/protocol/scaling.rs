@@ -25,7 +25,7 @@ pub struct Length {
 /// Drive family, which determines the number of turns in either direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Family {
-    /// HDA30 and HDA45. HRA is assumed to belong to this family (`U`).
+    /// HDA30 and HDA45. HRA is assumed to belong to this family as well (`U`).
     Short,
     /// HDA70.
     Long,
@@ -112,7 +112,7 @@ impl PositionScale {
 
     /// Converts degrees to steps, rounded up to at least 1.
     pub fn steps_of_degrees(self, degrees: f64) -> u32 {
-        // The float cast saturates.
+        // The float cast saturates at the limits of the type.
         (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
     }
 
@@ -159,7 +159,7 @@ impl SpeedScale {
 
     /// Converts rpm to the nearest transmitted speed that fits in 16 bits.
     pub fn speed(self, rpm: f64) -> i16 {
-        // The float cast saturates.
+        // The float cast saturates at the limits of the type.
         (rpm * f64::from(self.numerator) / f64::from(self.denominator)).round() as i16
     }
 }

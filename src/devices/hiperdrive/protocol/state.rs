@@ -31,7 +31,7 @@ pub enum Trigger {
     Set(ControlBit),
     /// A bit of the control word is clear.
     Clear(ControlBit),
-    /// A bit of the control word falls. If another bit is given, it must have the given level.
+    /// A bit of the control word changes from set to clear. If another bit is given, it must have the given level.
     Falls(ControlBit, Option<(ControlBit, bool)>),
     /// A job or a run starts.
     Starts,
@@ -50,7 +50,7 @@ pub struct Transition {
     pub trigger: Trigger,
     /// Resulting state.
     pub to: State,
-    /// The control word that causes the transition, if a single word does.
+    /// The control word that causes the transition, or `None` if no single word does.
     pub word: Option<ControlWord>,
     /// Whether the transition is assumed because the manual does not define it.
     pub assumed: bool,
@@ -107,8 +107,8 @@ impl State {
         TRANSITIONS.iter().filter(move |row| row.from.contains(&self))
     }
 
-    /// Returns the state after the control word changes from `before` to `now`. At most one transition takes place.
-    /// Motion does not follow from the control word alone.
+    /// Returns the state after the control word changes from `before` to `now`. At most one transition takes place. A
+    /// control word alone never leads to a moving drive.
     pub fn after_control_word(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
             Set(bit) => now.is_set(bit),

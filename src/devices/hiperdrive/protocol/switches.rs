@@ -11,8 +11,8 @@ pub enum AddressSwitch {
     Object,
     /// Switch positions 1 to 96: address 192.168.1.n with the mask 255.255.255.0 and no gateway.
     Fixed(Ipv4Addr),
-    /// Switch position 97: the stored address. If the switches are turned to 97 at runtime, the device also stores its
-    /// present address.
+    /// Switch position 97: the stored address. If the switches are turned to 97 during operation, the device also
+    /// stores its current address.
     Stored,
     /// Switch position 98: BOOTP.
     Bootp,

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleLoad {
-    /// Load as a percentage of the nominal torque. If the effective torque is lower, nothing moves.
+    /// Load as a percentage of the nominal torque. The spindle does not move if the effective torque is lower.
     pub percent: u8,
     /// Position of the lower obstacle, in steps of 65536 per shaft turn.
     pub wall_below: Option<f64>,
@@ -51,7 +51,7 @@ pub(super) enum AxisSetpoint {
 }
 
 impl AxisSetpoint {
-    /// Returns the effective demand on a drive at the given position after applying a defect.
+    /// Returns the setpoint that a drive with the given defect actually follows at this position.
     pub(super) fn with_defect(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
         let turned = |speed: f64| if defect == Some(DriveDefect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -105,7 +105,7 @@ impl Axis {
         let aim = match wanted {
             AxisSetpoint::Rest => 0.0,
             AxisSetpoint::Speed(speed) => speed,
-            // The speed is limited to one from which the drive can still brake, in steps of a millisecond.
+            // The speed is limited so that the drive can still brake in time, in steps of one millisecond.
             AxisSetpoint::Place { at, speed } => {
                 let (way, half) = (at - self.place, gain / 2.0);
                 way.signum() * speed.min((half * half + 2.0 * ACCELERATION * way.abs()).sqrt() - half)

@@ -1,5 +1,5 @@
 //! Settings of virtual drives and their adapter or hub in the query of a `sim:` link. An example is
-//! `hub=4&drives=1,0,1&position=65536`. Nothing is opened here.
+//! `hub=4&drives=1,0,1&position=65536`. This module opens no connection.
 
 use std::time::Duration;
 
@@ -66,11 +66,11 @@ parameters! {
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. Numbers are decimal or `0x…`. If a key occurs twice, the last value
-    /// applies.
+    /// Parses percent-decoded keys and values. Numbers are decimal or hexadecimal with the prefix `0x`. If a key occurs
+    /// twice, the last value applies.
     ///
     /// # Errors
-    /// Returns an error that names the key and the allowed values.
+    /// Returns an error with the key and the allowed values if a setting is invalid.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::Device("HIPERDRIVE"), pairs)?;
         config.plugged = config.drives.take().map(|drives| parse_ports(&drives, config.topology)).transpose()?;

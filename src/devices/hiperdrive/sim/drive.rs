@@ -6,9 +6,9 @@
 //! - A drive never leaves "not ready" if it is not requested (152 = 0) or if S3 selects it.
 //! - A target beyond the limits is fault 8503.
 //! - A blocked drive fails after 200 ms (8300, 8301), a drive that is too weak after 500 ms (8203), and a drive hotter
-//!   than 80 °C at once (8202).
-//! - A lost master is fault 8601.
-//! - A moving drive that loses operation brakes as for a stop.
+//!   than 80 °C immediately (8202).
+//! - The loss of the master is fault 8601.
+//! - A moving drive that leaves the operational state brakes as for a stop.
 
 use std::collections::VecDeque;
 
@@ -58,7 +58,7 @@ enum Motion {
         at: f64,
         jog: Option<Jog>,
     },
-    /// A paused job, which continues when control bit 5 is set.
+    /// A paused job, which is resumed when control bit 5 is set.
     Paused {
         at: f64,
     },
@@ -151,7 +151,7 @@ impl Drive {
         }
     }
 
-    /// Sets whether the drive may move over the bus. It may while S3 is at 0.
+    /// Sets whether the drive may move over the bus, which is the case while S3 is at 0.
     pub(super) const fn set_motion_allowed(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -192,14 +192,14 @@ impl Drive {
         .fold(StatusWord::FOUND, |status, (bit, set)| status.with_bit(bit, set))
     }
 
-    /// Returns whether nothing is moving or is going to move.
+    /// Returns whether the drive is at rest and has no motion pending.
     pub(super) fn is_at_rest(&self) -> bool {
         self.axis.is_at_rest() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
 
     /// Returns the position in scaled steps.
     pub(super) fn position(&self) -> i32 {
-        // The float cast saturates.
+        // The float cast saturates at the limits of the type.
         ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
     }
 
@@ -267,7 +267,7 @@ impl Drive {
         self.motion == Motion::Rest && self.axis.is_at_rest() && !begins && self.next(self.control) == self.state
     }
 
-    /// Returns the state to which the current control word leads after the given one.
+    /// Returns the state after the control word has changed from the given one to the current one.
     fn next(&self, before: ControlWord) -> State {
         match self.state {
             State::NotReady if !self.may_move() => State::NotReady,
@@ -373,7 +373,7 @@ impl Drive {
         let (target, jog) = match begins {
             MotionStart::Run => {
                 let clockwise = self.control.is_set(ControlBit::NoStop);
-                // A drive beyond the end of its range runs neither further nor back.
+                // A drive beyond the end of its range does not move further out, and does not return either.
                 let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
                 let to = (!self.control.is_set(ControlBit::NoPause)).then(|| self.mechanical_position(end));
                 return self.set_motion(Motion::Run { to, clockwise });

@@ -1,6 +1,6 @@
 //! Virtual drives behind an adapter or a hub (HIPERDRIVE reference): effects of process data and parameters, and the
-//! EtherNet/IP target in front of them, in virtual time. Where the manual is silent (`U`), the assumption made is
-//! documented.
+//! EtherNet/IP target in front of them, in virtual time. Where the manual leaves the behaviour open (`U`), the
+//! assumption is documented.
 //!
 //! | file | content |
 //! |---|---|

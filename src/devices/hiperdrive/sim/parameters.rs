@@ -1,7 +1,7 @@
 //! Reading and writing of the parameters of a drive.
 //!
-//! Assumptions (`U`): a rejected value is stored as error 8501, as in the manual, and is a fault if the drive is
-//! operational; 198 is accepted only at standstill.
+//! Assumptions (`U`): A rejected value is stored as error 8501, as in the manual, and is a fault if the drive is
+//! operational. Parameter 198 can only be written at standstill.
 
 use super::axis::TURN;
 use super::drive::Drive;

@@ -1,10 +1,10 @@
 //! All drives of an adapter or a hub: process data, parameters, saving, loss of the master.
 //!
 //! Assumptions (`U`):
-//! - A connection that ends for any reason is a lost master.
-//! - A packet with an idle header stops like control words of 0.
+//! - A connection that ends for any reason is treated as a loss of the master.
+//! - A packet with an idle header stops the drives, as control words of 0 do.
 //! - During a save or a reset, 47 is 1 and nothing is written.
-//! - A reset drive has its saved parameters.
+//! - A drive has its saved parameters after a reset.
 //! - In an empty port, only 120 and 152 can be read. Both are 0.
 //! - A string is read in elements of four characters, the first one lowest.
 
@@ -76,7 +76,7 @@ struct Master {
     heard: Moment,
 }
 
-/// Duration of a save, chosen within the time given by the manual.
+/// Duration of a save, chosen within the limit given by the manual.
 const SAVE_TIME: Duration = Duration::from_millis(150);
 /// Duration of a reset of all drives, unless the settings specify another.
 pub(super) const RESET_TIME: Duration = Duration::from_secs(1);
@@ -151,12 +151,12 @@ impl Station {
         self.store.dead
     }
 
-    /// Sets the number of the save, counted from 1, during which the supply is lost; `None` disables the loss.
+    /// Sets the number of the save, counted from 1, during which the supply is lost. `None` disables the loss.
     pub const fn fail_in_store(&mut self, number: Option<u32>) {
         self.store.dies_in = number;
     }
 
-    /// Injects a failure of writes. `None` removes the failure and repairs a lost line.
+    /// Injects a fault into writes of a parameter. `None` removes the fault and repairs a lost line.
     pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
         self.hindered = ActiveWriteFault::new(what);
     }
@@ -264,7 +264,7 @@ impl Station {
     /// Writes a parameter.
     ///
     /// # Errors
-    /// Returns [`ParameterError`] if the write is rejected. Nothing was written then.
+    /// Returns a [`ParameterError`] if the write is rejected. In this case, nothing has been written.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), ParameterError> {
         self.advance_to(now);
         self.answers_at = None;
@@ -374,8 +374,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Executes timed events at the time they are due rather than at the next access. Examples are a loss of supply
-    /// during a save and a time-out of the master.
+    /// Executes timed events when they are due, and not only at the next access. Examples are a loss of supply during a
+    /// save and a time-out of the master.
     fn advance_to(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

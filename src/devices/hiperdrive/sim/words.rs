@@ -18,7 +18,7 @@ impl Station {
             (Some(Task::None), _) => Pkw::default(),
             (Some(Task::Read), Kind::Text) => refused(PkwError::TYPE),
             (Some(Task::Read), _) => match self.read(now, number) {
-                // A shorter number is completely in the lower bits.
+                // A number of less than 32 bits fits into the lower bits.
                 Ok(Value::Number(value)) => {
                     reply(if wide { 2 } else { 1 }, if wide { value as u32 } else { (value as u16).into() })
                 }

@@ -1,5 +1,5 @@
-//! Actions of the user on a device and its drives. Edits and motion take effect at once. Everything else is a job of
-//! the session or a task.
+//! Actions of the user on a device and its drives. Edits and motion take effect immediately. Everything else is a job
+//! of the session or a task.
 
 use std::time::Duration;
 
@@ -119,7 +119,7 @@ impl HiperdriveDevice {
             MotorCommand::Resume => MotionRequest::Resume,
         };
         if let Err(why) = self.check_motion_allowed(drive, request) {
-            // The present motion continues, because nothing else has started.
+            // The current motion continues, because no other motion has started.
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
         for ended in explain::MOTION_ENDS {

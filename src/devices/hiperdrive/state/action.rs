@@ -1,4 +1,4 @@
-//! The actions of the selected adapter or hub, and of its drives.
+//! Actions on the selected adapter or hub, and on its drives.
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ pub enum HiperdriveAction {
     SetPitch(DriveNumber, Option<Length>),
     Edit(Box<Edit>),
     Plan(Box<Change>),
-    /// Opens the cyclic connection. Nothing moves.
+    /// Opens the cyclic connection without moving a drive.
     Take,
     Give,
     /// Moves the selected drive, or changes its state.
@@ -41,7 +41,7 @@ pub enum MotorCommand {
         /// Whether the press is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Presses a jog button in the axis set-up. The jog is slow and weak there, independent of other jog settings.
+    /// Presses a jog button in the axis set-up. The jog is slow and weak, independent of the jog settings elsewhere.
     SlowJogPress {
         direction: Direction,
         /// Whether the press is an automatic key repetition, which starts nothing.
@@ -65,7 +65,6 @@ pub enum MotorCommand {
         direction: Direction,
         end: RunEnd,
     },
-    /// Pauses the job.
     Pause,
     Resume,
     Stop,

@@ -1,13 +1,13 @@
-//! Axis set-up as one procedure, from an unknown drive to limits in millimetres that have survived a power cycle. It is
-//! a state machine between the facts that were read ([`DriveFacts`]) and the requests to the drive ([`DriveRequest`]).
-//! It performs no I/O, and no step continues before the drive confirms it.
+//! Axis set-up as a single procedure that leads from an unknown drive to limits in millimetres that have survived a
+//! power cycle. It is a state machine between the facts that were read ([`DriveFacts`]) and the requests to the drive
+//! ([`DriveRequest`]). It performs no I/O, and every step waits until the drive has confirmed it.
 //!
-//! The results of the steps form a chain. Each depends on facts of the drive: scale, pitch, reference, limits. When
+//! The results of the steps form a chain. Each depends on facts about the drive: scale, pitch, reference, limits. When
 //! these change, the result becomes void together with all later results, even if another program made the change. The
 //! displayed step is independent of that: it changes only when the user presses a button.
 //!
-//! Parameters are tried first: they are written and read back, but not saved. Saving is a separate step, the last but
-//! one. The manual does not guarantee that unsaved values are lost at power-off, so the previous ones are written back.
+//! Parameters are first written without saving and read back. Saving is a separate step, the last but one. The manual
+//! does not guarantee that unsaved values are lost at power-off, so the previous values are written back.
 
 mod act;
 mod differences;
@@ -55,7 +55,7 @@ pub enum AxisStep {
     Upper,
     /// The axis is moved to the middle of the range and to both limits.
     Test,
-    /// Everything is saved (47 = 1).
+    /// All parameters are saved (47 = 1).
     Save,
     PowerCycle,
 }
@@ -66,7 +66,7 @@ pub enum StepStatus {
     Now,
     Skipped,
     Failed,
-    /// The step follows later.
+    /// The step has not been reached yet.
     Ahead,
 }
 
@@ -76,7 +76,7 @@ pub enum SetupEnd {
     Cancelled,
 }
 
-/// A change made by the set-up. Changes are kept in order.
+/// A change made by the set-up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AxisChange {
     /// Change of a parameter, identified by its number for drive 1.
@@ -96,7 +96,7 @@ pub struct RunSummary {
 struct ConfirmedLimits {
     scale: Option<PositionScale>,
     seen: (i32, i32),
-    /// Limits seen by the user, or the taught limits that a reviewed plan has written since.
+    /// Limits that the user has seen, or the taught limits that a reviewed plan has written since then.
     agreed: (i32, i32),
     /// Taught limits of an interrupted plan. Each of them may have been written.
     begun: Option<(i32, i32)>,
@@ -124,7 +124,7 @@ pub struct Axis {
     saved: bool,
     power: Option<Power>,
     changes: Vec<AxisChange>,
-    /// Whether only some of the changes may have been made.
+    /// Whether possibly only some of the changes were made.
     partly: bool,
     returned: Vec<(u16, i64)>,
     asked: Option<DriveRequest>,
@@ -145,7 +145,6 @@ impl AxisStep {
         AxisStep::PowerCycle,
     ];
 
-    /// Returns whether the step needs the cyclic connection.
     pub const fn needs_cyclic(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
@@ -226,7 +225,7 @@ impl Axis {
         &self.changes
     }
 
-    /// Returns whether a write ended early. Some of the changes may then not have been made.
+    /// Returns whether a write ended early, so that some of the changes may not have been made.
     pub const fn is_partly_written(&self) -> bool {
         self.partly
     }

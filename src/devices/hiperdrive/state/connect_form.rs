@@ -1,4 +1,4 @@
-//! Connection form of a HIPERDRIVE and its link. Nothing is opened here.
+//! Connection form for HIPERDRIVE devices, and the link that it produces. This module opens no connection.
 
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
@@ -27,8 +27,8 @@ pub enum VirtualHub {
     Eight,
 }
 
-/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are preserved
-/// but left out of the link.
+/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are kept, but
+/// are not included in the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,

@@ -20,7 +20,7 @@ use crate::link::{CancelToken, Clock, RealClock, UdpBroadcast};
 pub struct Discovery {
     /// Number of the current discovery. Replies to earlier discoveries are dropped.
     number: u32,
-    /// Devices found, or the reason why the request failed; `None` while replies are being collected.
+    /// Devices found, or the reason why the request failed. `None` while replies are being collected.
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
@@ -60,7 +60,7 @@ impl Discovery {
     }
 }
 
-/// A substitute for the discovery broadcast, used by tests only.
+/// A substitute for the discovery broadcast in tests.
 #[derive(Clone)]
 pub struct DiscoveryStub(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
@@ -134,7 +134,7 @@ impl Finder for DiscoveryFinder {
         }
     }
 
-    /// Handles the discovery replies. HIPERDRIVE devices come first.
+    /// Handles the discovery replies. HIPERDRIVE devices are listed first.
     fn handle_result(finder: Option<&mut Self>, done: DiscoveryReplies, _services: &mut Services) {
         let DiscoveryReplies { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());

@@ -26,8 +26,8 @@ use crate::worker::{OpenError, Session};
 
 /// Default interval for reading the position of a drive.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
-/// Text ID of the notice that the limits of a drive under control cannot be read. The notice ends once they are read or
-/// no longer required.
+/// Text ID of the notice that the limits of a drive under control cannot be read. The notice is removed as soon as they
+/// are read or no longer required.
 const LIMITS_UNREADABLE_ID: &str = "hd_end.rules";
 
 /// Returns whether a drive in this state requires an acknowledgement before it moves.
@@ -110,8 +110,8 @@ impl HiperdriveDevice {
 
     fn handle_control_loss(&mut self, services: &mut Services) {
         self.moves.stop();
-        // The last data of the drives, including those not yet taken, are from before the loss. The present state is
-        // not known.
+        // The last data of the drives, including any that were not fetched yet, date from before the loss. Their
+        // current state is unknown.
         self.fetch_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
@@ -120,7 +120,7 @@ impl HiperdriveDevice {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Ends the fault notice once no drive has a fault. All drives share one notice.
+    /// Removes the fault notice when no drive has a fault any more. All drives share one notice.
     fn update_fault_notice(&self, failed: bool, services: &mut Services) {
         let fails =
             |drive: &DriveNumber| self.moves.actual_values(*drive).is_some_and(|own| has_failed(own.status.state()));
@@ -173,7 +173,7 @@ impl SessionEvents for HiperdriveDevice {
         self.decoder.explain(frame)
     }
 
-    /// Processes the session events since the last call and refreshes the actions that the window must keep alive.
+    /// Processes the session events since the last call, and refreshes the actions that the window must keep alive.
     fn process_events(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.set_remote(services.is_remote());
@@ -212,7 +212,7 @@ impl SessionEvents for HiperdriveDevice {
         match output {
             HiperdriveOutput::Hello(identity) => {
                 self.session.just_connected = false;
-                // The connected drives may have changed since.
+                // The connected drives may have changed in the meantime.
                 if self.is_different_device(&identity) || self.survey.is_none() || !self.has_polled {
                     self.submit(HiperdriveJob::Survey, services);
                 }
@@ -251,13 +251,13 @@ impl SessionEvents for HiperdriveDevice {
                     services.log.remove_from_window(lost, Some(&self.session.name()));
                 }
                 self.poll();
-                // Another master may have changed limits and scaling since they were read, so no motion uses the old
-                // ones. They are read as soon as the line is free.
+                // Another master may have changed limits and scaling since they were read. Therefore, no motion uses
+                // the old values. They are read again as soon as the line is free.
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
             HiperdriveOutput::Given => {
                 self.moves.send_heartbeat();
-                // The limits are no longer read.
+                // The limits are no longer read, so the notice is removed.
                 services.log.remove_from_window(LIMITS_UNREADABLE_ID, Some(&self.session.name()));
                 // Values that were not read while another master was in control are read now.
                 self.looks_at_all |= self.is_stale;

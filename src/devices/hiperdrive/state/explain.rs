@@ -31,8 +31,8 @@ use crate::app::explain::{link_error_text, literal_text};
 use crate::devices::hiperdrive::jobs::{JobError, JobStep};
 use crate::devices::hiperdrive::procedures::Error;
 
-/// Returns the messages for a job that ended early. Each consists of at least one sentence and may be placed on its own
-/// line.
+/// Returns the messages for a job that ended early. Each consists of at least one sentence and can be shown on a
+/// separate line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device_error_text(error)],
@@ -44,7 +44,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection failed, or `None` if further requests are possible over it.
+/// Returns the reason why the connection failed, or `None` if further requests are possible.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link_error_text(error)),

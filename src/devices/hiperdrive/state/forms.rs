@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::state::explain as words;
 /// Parses the distance of a step. `sign` is −1 for backward.
 ///
 /// # Errors
-/// Returns the reason if the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn parse_distance(unit: &HiperdriveDevice, text: &str, measure: PositionUnit, sign: i32) -> Result<i32, Text> {
     let steps = parse_position(unit, text, measure)?;
     if steps == 0 {
@@ -24,7 +24,7 @@ pub fn parse_distance(unit: &HiperdriveDevice, text: &str, measure: PositionUnit
 /// Parses a position within the limits of the selected drive.
 ///
 /// # Errors
-/// Returns the reason if the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn target(unit: &HiperdriveDevice, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     let steps = parse_position(unit, text, measure)?;
     let place = |steps| unit.position_text(unit.drive(), steps);
@@ -41,7 +41,7 @@ pub fn target(unit: &HiperdriveDevice, text: &str, measure: PositionUnit) -> Res
 /// Parses a position without checking the limits, as needed for entering limits and for setting the position.
 ///
 /// # Errors
-/// Returns the reason if the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn parse_position(unit: &HiperdriveDevice, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     if text.trim().is_empty() {
         return Err(TEXTS.text("hd_entry.empty"));
@@ -63,17 +63,18 @@ pub fn parse_position(unit: &HiperdriveDevice, text: &str, measure: PositionUnit
 /// Parses a percentage from 1 to 100.
 ///
 /// # Errors
-/// Returns the reason if the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn percent(text: &str) -> Result<Percent, Text> {
     let digits = text.trim().trim_end_matches('%').trim();
     let percent = digits.parse().ok().filter(|percent| *percent >= 1).and_then(Percent::new);
     percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
-/// Parses a parameter value, decimal or with `0x`. An empty entry removes the value from a profile.
+/// Parses a parameter value, which is decimal or hexadecimal with the prefix `0x`. An empty entry removes the value
+/// from a profile.
 ///
 /// # Errors
-/// Returns the reason if the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let digits = digits.replace('\u{2212}', "-");
@@ -92,7 +93,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
 /// Parses a length in millimetres, exact to the nanometre. The length must be above 0.
 ///
 /// # Errors
-/// Returns the reason if the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn parse_length(text: &str) -> Result<Length, Text> {
     let millimetres = parse_decimal(text).filter(|own| *own > 0.0 && *own <= 1e6);
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
@@ -104,7 +105,7 @@ pub fn parse_length(text: &str) -> Result<Length, Text> {
 /// Returns the scale that gives a step the required length for a spindle pitch.
 ///
 /// # Errors
-/// Returns the reason if there is no such scale.
+/// Returns an error with the reason if there is no such scale.
 pub fn scale(pitch: Length, step: Length) -> Result<PositionScale, Text> {
     PositionScale::for_spindle(pitch, step).map_err(|error| match error {
         ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_entry.length").with("entry", 0),

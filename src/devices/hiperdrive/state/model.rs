@@ -26,7 +26,7 @@ impl DeviceModel for HiperdriveDevice {
         self.began = Some(opened.began.clone());
         self.moves.begin_session(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
-        // Values read over an earlier link are void.
+        // Values read over an earlier link are no longer valid.
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
         let motion = opened.aside.motion.clone();
         self.session.attach_connection(opened, services);
@@ -34,7 +34,7 @@ impl DeviceModel for HiperdriveDevice {
         if let Some(line) = self.session.live_session() {
             services.brakes.add(Box::new(motion), line.stop_handle());
         }
-        // The identity is read first, then everything else. Nothing is set, and nothing moves.
+        // The identity is read first, and then all other values. Nothing is set, and nothing moves.
         self.submit(HiperdriveJob::Hello, services);
     }
 
@@ -87,7 +87,7 @@ impl DeviceModel for HiperdriveDevice {
         self.moves.stop();
         let pace = self.session.line.as_ref().and_then(LiveSession::polling_interval);
         self.session.stop(services);
-        // STOP applies to motion and jobs; the drives remain visible.
+        // STOP applies to motion and jobs. The drives remain visible.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
             line.poll(Some(pace));
         }

@@ -1,9 +1,9 @@
-//! Motion of the drives requested in the window: the held button, the running action, and the outcome of the last one.
-//! The dead-man control behind [`Motion`] alone decides what is sent to a drive. This module refreshes its requests and
-//! ends them at once when required.
+//! Motion of the drives as requested in the window: the held button, the running action, and the outcome of the last
+//! one. Only the dead-man control behind [`Motion`] decides what is sent to a drive. This module refreshes its requests
+//! and ends them immediately when required.
 //!
-//! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. A
-//! window that hangs refreshes nothing, and the drives stop 250 ms later.
+//! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. If
+//! the window hangs, nothing is refreshed, and the drives stop 250 ms later.
 
 mod effort;
 
@@ -38,9 +38,9 @@ pub struct DriveMotion {
     /// Limits of the drives at the last update. Unconfirmed limits outlive a session.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     looked: Moment,
-    /// Drives whose limits have changed since the last query.
+    /// Drives whose limits have changed since they were last queried.
     limits_changed: BTreeSet<DriveNumber>,
-    /// Whether the cyclic connection has been opened since the last query.
+    /// Whether the cyclic connection has been opened since this was last queried.
     taken: bool,
 }
 
@@ -85,14 +85,14 @@ impl Default for DriveMotion {
 }
 
 impl DriveMotion {
-    /// Begins a session. Unconfirmed limits remain unconfirmed. Endless runs are not allowed yet. Jogs and runs,
-    /// which last until they are stopped, are slow ([`SpeedTorque::DEFAULT_JOG`]).
+    /// Begins a session. Unconfirmed limits remain unconfirmed, and endless runs are not allowed yet. Jogs and runs
+    /// last until they are stopped, so they begin slowly ([`SpeedTorque::DEFAULT_JOG`]).
     pub(super) fn begin_session(&mut self, motion: Motion) {
         for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
         }
         (self.experts, self.endless_run, self.act) = (BTreeSet::new(), None, None);
-        // Every session begins slowly, whatever was set in the one before.
+        // Every session begins slowly, regardless of the speed in the previous one.
         self.jogs.clear();
         self.runs.clear();
         self.limits_changed.clear();
@@ -177,7 +177,7 @@ impl DriveMotion {
     }
 
     fn submit_request(&mut self, drive: DriveNumber, request: MotionRequest, kind: Kind) -> Option<u64> {
-        // The permission is for one press. The next request needs it again.
+        // The permission is valid for one press. The next request needs another permission.
         self.freed = None;
         let number = self.motion.as_ref()?.request_motion(drive, request);
         let moves = request.needs_motion() || request == MotionRequest::Pause;
@@ -227,7 +227,7 @@ impl DriveMotion {
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest_action(act.number)) {
             motion.request_motion(act.drive, MotionRequest::Stop);
         }
-        // The end of the action is still to be reported, but the action is no longer refreshed.
+        // The end of the action has yet to be reported, but the action is no longer refreshed.
         self.act = Some(ActiveAction { kind: Kind::Other, ..act });
     }
 
@@ -354,7 +354,7 @@ impl DriveMotion {
 
     pub fn motion_locks(&self, drive: DriveNumber) -> Vec<MotionLock> {
         let mut locks = self.motion_permit(drive).map(|permit| permit.locks).unwrap_or_default();
-        // Without control nothing moves. The limits are read when control is taken, and a slow reply ends no motion.
+        // Without control, nothing moves. The limits are read when control is taken, so a slow reply ends no motion.
         locks.retain(|lock| !matches!(lock, MotionLock::Outdated | MotionLock::NoAnswer) || self.view.open);
         locks
     }

@@ -17,7 +17,7 @@ pub struct Form {
     pub mask: String,
     /// Default gateway, or empty if there is none.
     pub gateway: String,
-    /// Name servers, empty where there is none.
+    /// Name servers. An empty string means that there is none.
     pub name_servers: [String; 2],
     pub domain: String,
 }
@@ -65,7 +65,7 @@ impl Form {
     /// Returns the edited settings. If a server assigns the addresses, the present addresses are kept.
     ///
     /// # Errors
-    /// Returns the reason if an entry is invalid.
+    /// Returns an error with the reason if an entry is invalid.
     pub fn settings(&self, now: &NetworkSettings) -> Result<NetworkSettings, Text> {
         if !self.are_addresses_editable() {
             return Ok(NetworkSettings { source: self.source, interface: now.interface.clone() });
@@ -117,7 +117,7 @@ pub fn address_error_text(error: &AddressError) -> Text {
 }
 
 impl PowerUpAddress {
-    /// Returns the address source for the given switches and settings. Unreadable switches count as 0, because some
+    /// Returns the address source for the given switches and settings. Unreadable switches are taken as 0, because some
     /// devices have no switches.
     pub fn from_settings(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
@@ -172,7 +172,7 @@ pub fn consequence_texts(
     let after = PowerUpAddress::from_settings(switch, wanted);
     let mut texts = Vec::new();
     let decides = switch.filter(|own| *own != AddressSwitch::Object);
-    // At 97 the stored addresses apply, whatever their source is.
+    // At 97, the stored addresses apply regardless of their source.
     let is_lost = decides.is_some_and(|own| own != AddressSwitch::Stored || now.source != wanted.source);
     if let Some(own) = decides.filter(|_| is_lost) {
         texts.push((Severity::Warning, TEXTS.text("hd_net.switch_decides").with("digits", own.number())));
@@ -281,7 +281,7 @@ mod tests {
         ] {
             assert_eq!(form(address, mask, gateway), Err(id), "{address} {mask} {gateway}");
         }
-        // A server assigns the address: an invalid entry does not matter.
+        // A server assigns the address, so an invalid entry does not matter.
         let dhcp = Form { address: "nonsense".to_owned(), ..Form::from_settings(&now) };
         assert_eq!(dhcp.settings(&now), Ok(now.clone()));
         let named = Form { source: AddressSource::Stored, domain: "two words".to_owned(), ..Form::from_settings(&now) };

@@ -1,5 +1,6 @@
-//! A drive outside its limits: how far outside it is, the direction back in, and the direction further out. The user
-//! can enable the outward direction for one press, because a wrong reference may leave no other way.
+//! Position of a drive that is outside its limits: how far outside it is, which direction leads back in, and which
+//! leads further out. The user can enable the outward direction for one press, because a wrong reference may leave no
+//! other way back.
 
 use super::unit::HiperdriveDevice;
 use crate::app::services::Services;
@@ -47,7 +48,7 @@ impl HiperdriveDevice {
     /// Checks whether a drive may be jogged in this direction now.
     ///
     /// # Errors
-    /// Returns the reason if the drive may not be jogged.
+    /// Returns an error with the reason if the drive may not be jogged.
     pub fn check_can_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_outward_jog_enabled(drive, direction);
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward })
@@ -75,7 +76,7 @@ impl HiperdriveDevice {
     /// Returns the change that assigns a position in scaled steps to the present location of a drive and saves it.
     ///
     /// # Errors
-    /// Returns the reason if the drive would not accept a position outside the limits.
+    /// Returns an error with the reason if the drive would not accept a position outside the limits.
     pub fn reference_change(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));

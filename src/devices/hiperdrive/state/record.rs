@@ -114,8 +114,8 @@ impl Watchable for RecordedValue {
         matches!(self, RecordedValue::Target(_) | RecordedValue::Temperature(_))
     }
 
-    /// Returns whether the recording can continue under another meaning. The pitch changes only how steps are
-    /// displayed. Under another scale, a step is a different distance.
+    /// Returns whether the recording can continue if positions are converted differently. A change of the pitch only
+    /// affects how steps are displayed. With another scale, a step is a different distance.
     fn can_continue_as(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,

@@ -1,4 +1,4 @@
-//! Drafts stored in users' files are read and written unchanged.
+//! Drafts in users' files, which must be readable and must be the same after they are written back.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperdrive::jobs::Hiperdrive;

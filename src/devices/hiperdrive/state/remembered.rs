@@ -44,7 +44,7 @@ impl StoredDriveData for HiperdriveDevice {
             next.set_control_count(drive.get(), 1);
         }
         for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
-            // Limits that were marked again elsewhere are not the ones confirmed here.
+            // Limits that another window has marked again are not the ones confirmed here.
             if kept.control_count(drive) == before.kept.control_count(drive) {
                 next.set_unconfirmed(drive, false);
             }

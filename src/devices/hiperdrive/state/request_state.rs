@@ -1,4 +1,5 @@
-//! Requests that a drive accepts at present, the reasons against others, and the state of the last request.
+//! Requests that a drive accepts at present, the reasons why it does not accept others, and the state of the last
+//! request.
 
 use super::action::MotorCommand;
 use super::ruler::PositionUnit;
@@ -25,7 +26,7 @@ impl HiperdriveDevice {
     /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
-    /// Returns the reason if the connection cannot be opened.
+    /// Returns an error with the reason if the connection cannot be opened.
     pub fn check_can_take_control(&self) -> Result<(), Text> {
         match self.session.plan_obstacle() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -39,9 +40,9 @@ impl HiperdriveDevice {
     /// Checks whether the cyclic connection can be closed now.
     ///
     /// # Errors
-    /// Returns the reason if the connection cannot be closed.
+    /// Returns an error with the reason if the connection cannot be closed.
     pub fn check_can_release_control(&self) -> Result<(), Text> {
-        // Control can be released even while the device does not answer.
+        // Control can be released even if the device does not reply.
         match self.session.live_session() {
             _ if !self.moves.is_open() => Err(TEXTS.text("hd_refused.not_taken")),
             None => Err(Text::new("session.not_connected")),
@@ -53,7 +54,7 @@ impl HiperdriveDevice {
     /// Checks whether a drive may be moved now.
     ///
     /// # Errors
-    /// Returns the reason if the drive may not be moved.
+    /// Returns an error with the reason if the drive may not be moved.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
         self.check_controllable()?;
         if let Phase::Silent(why) = &self.session.phase {
@@ -72,7 +73,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Sets whether the window is operated over a remote desktop. Motion that lasts until it is stopped ends there.
+    /// Sets whether the window is operated over a remote desktop, which ends motion that lasts until it is stopped.
     pub(super) fn set_remote(&mut self, is_remote: bool) {
         self.is_remote = is_remote;
         if is_remote {
@@ -80,10 +81,10 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Checks whether a drive may be moved until the user stops it: by a jog or a run.
+    /// Checks whether a drive may make a motion that lasts until the user stops it, which is a jog or a run.
     ///
     /// # Errors
-    /// Returns the reason if the drive may not be moved in this way.
+    /// Returns an error with the reason if the drive may not be moved in this way.
     pub fn may_move_until_stopped(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         if self.is_remote { Err(TEXTS.text("hd_refused.remote")) } else { Ok(()) }
@@ -92,7 +93,7 @@ impl HiperdriveDevice {
     /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
-    /// Returns the reason if the drive may not do so.
+    /// Returns an error with the reason if the drive may not do so.
     pub fn check_can_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move_until_stopped(drive)?;
         let permitted = self.moves.motion_permit(drive).is_some_and(|permit| permit.endless);
@@ -102,7 +103,7 @@ impl HiperdriveDevice {
     /// Checks whether an endless run can be enabled, which requires factory limits and scaling.
     ///
     /// # Errors
-    /// Returns the reason if an endless run cannot be enabled.
+    /// Returns an error with the reason if an endless run cannot be enabled.
     pub fn check_can_allow_endless_run(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::is_endless_run_allowed);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -137,8 +138,8 @@ impl HiperdriveDevice {
         permit.check_request(request, asks_target).and(here).map_err(|refusal| words::refusal_text(refusal, place))
     }
 
-    /// Checks that a request may end the present motion. A stop and a jog of the same drive may. Other requests must
-    /// not end the motion of another drive, or replace a step or move before its end.
+    /// Checks that a request may end the current motion. A stop and a jog of the same drive may. Other requests may
+    /// neither end the motion of another drive nor replace a step or a move before its end.
     fn check_may_end_motion(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.moving_drive() {
             Some(mover) if mover != drive && request != MotionRequest::Stop => {
@@ -184,8 +185,8 @@ impl HiperdriveDevice {
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
-    /// Formats a position in all units. The same number of steps may be another position under another scale. Degrees
-    /// are included only if selected.
+    /// Formats a position in all units. The same number of steps may denote another position under another scale.
+    /// Degrees are included only if selected.
     pub fn position_texts(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &PositionUnit| *own != PositionUnit::Degrees || *own == self.measure;
@@ -233,7 +234,7 @@ impl HiperdriveDevice {
     }
 
     /// Returns the request that brings a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
-    /// no request does. A fault is left by acknowledging it, which leads to the lock.
+    /// no request does. A fault is left through an acknowledgement, after which the drive is in the switch-on lock.
     pub const fn leads_to(to: State) -> Option<MotorCommand> {
         match to {
             State::NotReady => Some(MotorCommand::Lead(TargetState::Off)),
@@ -257,8 +258,7 @@ impl HiperdriveDevice {
         Some(RequestState { words, is_well: words::end_severity(ended) == Severity::Note })
     }
 
-    /// Explains why control was lost, until control is taken again. Returns `None` if control was never taken or was
-    /// released.
+    /// Explains why control was lost, or returns `None` if control is present, was released or was never taken.
     pub fn loss_reason(&self) -> Option<Text> {
         let view = self.moves.snapshot();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::cyclic_loss_text(Some(lost)))
@@ -272,7 +272,7 @@ impl HiperdriveDevice {
     /// Returns the speed for a percentage in rpm, based on parameter 166.
     fn speed_rpm(&self, percent: Percent) -> Option<f64> {
         let most = self.parameter_value(self.drive(), MAXIMUM_SPEED)?;
-        // Tenths of rpm, and percent.
+        // The maximum speed is in tenths of rpm, and the setting is in percent.
         Some(most as f64 * f64::from(percent.get()) / 1000.0)
     }
 

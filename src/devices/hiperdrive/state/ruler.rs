@@ -11,10 +11,10 @@ pub struct Ruler {
     pub pitch: Option<Length>,
 }
 
-/// Error for a number that is not a valid position.
+/// The reason why a number is not a valid position.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionRangeError {
-    /// The position exceeds 32 bits. The fields are minimum and maximum.
+    /// The position exceeds 32 bits. Contains the minimum and the maximum.
     #[error("a position is between {least} and {most}")]
     Bits { least: f64, most: f64 },
     /// A position in millimetres requires a pitch.
@@ -51,12 +51,12 @@ impl Ruler {
     /// Returns the step nearest to a position.
     ///
     /// # Errors
-    /// Returns [`PositionRangeError`] if there is none.
+    /// Returns a [`PositionRangeError`] if there is no such step.
     pub fn to_steps(self, value: f64, measure: PositionUnit) -> Result<i32, PositionRangeError> {
         let unit = self.steps_per_unit(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
-        // Within the range the cast is exact.
+        // Within the range, the cast is exact.
         if (least..=most).contains(&steps) {
             Ok(steps as i32)
         } else {
@@ -73,7 +73,7 @@ impl Ruler {
 
     /// Converts the steps of a position to another scale. The result may not fit in 32 bits.
     pub fn rescale_position(self, steps: i64, to: PositionScale) -> i64 {
-        // The product of a position and two 16-bit numbers fits in 128 bits.
+        // The product of a position and two 16-bit numbers fits into 128 bits.
         let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());
         let below = i128::from(to.denominator()) * i128::from(self.scale.numerator());
         let half = if above < 0 { -below / 2 } else { below / 2 };
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(hundredths().to_steps(-0.005, PositionUnit::Millimetres), Ok(-1));
         assert_eq!(SPINDLE.to_steps(90.0, PositionUnit::Degrees), Ok(16_384));
         assert_eq!(Ruler::FACTORY.to_steps(1.0, PositionUnit::Millimetres), Err(PositionRangeError::NoPitch));
-        // 32768 turns do not fit: 2³¹ / 65536.
+        // 32,768 turns do not fit into 32 bits: 2³¹ / 65536.
         let beyond = SPINDLE.to_steps(32_768.0, PositionUnit::Turns).unwrap_err();
         assert!(
             matches!(beyond, PositionRangeError::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)

@@ -30,7 +30,7 @@ impl HiperdriveDevice {
     /// Checks whether the selected drive can be set up.
     ///
     /// # Errors
-    /// Returns the reason if the drive cannot be set up.
+    /// Returns an error with the reason if the drive cannot be set up.
     pub fn check_can_set_up(&self) -> Result<(), Text> {
         match self.session.plan_obstacle() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -46,7 +46,7 @@ impl HiperdriveDevice {
     /// Checks whether a change can be planned now.
     ///
     /// # Errors
-    /// Returns the reason if no change can be planned.
+    /// Returns an error with the reason if no change can be planned.
     pub fn check_can_plan(&self) -> Result<(), Text> {
         self.session.plan_obstacle().map_or(Ok(()), Err)
     }
@@ -118,7 +118,7 @@ impl HiperdriveDevice {
             },
             AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
-                // Until this step, the entries serve only for a preview. Afterwards, positions are measured on this
+                // Before this step, the entries are only used for a preview. After it, positions are measured on this
                 // spindle everywhere.
                 let confirms = axis.step() == AxisStep::Scale
                     && axis.setup_end().is_none()
@@ -243,7 +243,7 @@ impl HiperdriveDevice {
         if self.axes.is_empty() {
             return;
         }
-        // `None` means that the review is closed. After the review has ended, the value specifies whether it was
+        // `None` means that the review is closed. After the review has ended, the value specifies whether the plan was
         // executed.
         let write = self.open_review().map(|review| match &review.state {
             ReviewState::Done(..) => Some(Ok(())),

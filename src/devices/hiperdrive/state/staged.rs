@@ -1,9 +1,9 @@
-//! Values of an adapter or a hub (or a profile of one), and the edited ones. No data is written to a device here. A
-//! plan is made from the difference.
+//! Values of an adapter or a hub (or a profile of one), and the edited values. The difference between them is the basis
+//! of a plan. This module does not write anything to a device.
 //!
-//! Every edit creates a complete new state, to which undo can return. Edits survive a new reading: edited values stay,
-//! and all others follow the device, in earlier states as well. Values that were not read cannot be edited. Earlier
-//! edits of them wait until they are read. A profile can gain values that it did not have.
+//! Every edit creates a complete new state, to which undo can return. Edits survive a new reading. In all states of the
+//! history, edited values stay, and the other values are updated from the device. Values that were not read cannot be
+//! edited, and earlier edits of them wait until they are read. A profile can gain values that it did not have.
 
 mod edit;
 mod mark;
@@ -24,7 +24,7 @@ use crate::devices::hiperdrive::protocol::{
     DriveNumber, Family, ParameterAccess, ParameterNumber, ParameterRow, Travel,
 };
 
-/// Source of the values with which edits are compared.
+/// Source of the values with which the edited values are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
     /// The device. A value that was not read is unknown.
@@ -38,7 +38,7 @@ enum BaseSource {
 #[derive(Clone, Debug, Default)]
 pub struct StagedEdits {
     base_source: BaseSource,
-    /// Values of the device or the profile. They are present exactly if the edited values are.
+    /// Values of the device or the profile. They are present if and only if the edited values are.
     base: Option<Image>,
     wanted: Option<Image>,
     earlier: Option<Image>,
@@ -64,8 +64,8 @@ pub struct ValueDifference {
     pub to: Option<i64>,
 }
 
-/// Returns whether a parameter can be edited as a value. The stored parameters can, and so can the steps of the keys on
-/// the drive, which are not stored. Setting the position (198) is a separate change.
+/// Returns whether a parameter can be edited as a value. This applies to the stored parameters and to the steps of the
+/// keys on the drive, which are not stored. Setting the position (198) is a separate change.
 pub fn is_editable(row: &ParameterRow) -> bool {
     let is_of_keys = matches!(row.number, 170..=182);
     row.access == ParameterAccess::ReadWrite && row.number != 198 && (Image::contains_row(row) || is_of_keys)
@@ -88,7 +88,7 @@ impl StagedEdits {
     }
 
     /// Adopts the new content of the profile. If it equals the edited values, the profile was saved, and the undo
-    /// history is kept. Otherwise another program wrote it, and only the values edited here keep their edits.
+    /// history is kept. Otherwise, another program has written it, and only values that were edited here remain edited.
     pub fn adopt_saved(&mut self, image: Image) {
         if self.wanted.as_ref() == Some(&image) {
             self.base = Some(image);
@@ -173,7 +173,7 @@ impl StagedEdits {
     /// Makes an edit as a single undo step. Returns whether anything changed.
     ///
     /// # Errors
-    /// Returns the reason if the edit is not possible. Nothing is changed in that case.
+    /// Returns an error with the reason if the edit is not possible. In this case, nothing has changed.
     pub fn apply_edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.preview_edit(edit)?;
         Ok(self.apply_step(after))
@@ -182,7 +182,7 @@ impl StagedEdits {
     /// Returns the values that an edit would produce, for a preview. The edit is not made.
     ///
     /// # Errors
-    /// Returns the reason if the edit is not possible.
+    /// Returns an error with the reason if the edit is not possible.
     pub fn preview_edit(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
         edit::apply_edit((base, wanted), edit, self.base_source, &self.families)
@@ -252,7 +252,7 @@ fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel
     Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }
 }
 
-/// Moves the edits made relative to `before` to the values of `now`.
+/// Moves edits from the base `before` to the base `now`.
 fn rebase_edits(own: &mut Image, before: &Image, now: &Image) {
     let mut rebased = now.clone();
     for (number, value) in &own.values {

@@ -1,4 +1,4 @@
-//! The reading of a device. It is adopted, updated from the data of the drives, and used to detect changes by other
+//! The reading of a device: it is adopted, updated with data from the drives, and used to detect changes by other
 //! masters.
 
 use super::staged::is_editable;
@@ -63,8 +63,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Reads everything again when control is taken, or if the limits that the worker reads under control differ from
-    /// the table of parameters.
+    /// Reads all parameters again when control is taken, or if the limits that the worker reads under control differ
+    /// from the parameter table.
     pub(super) fn handle_limit_change(&mut self) {
         if self.moves.take_control_opened() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
@@ -107,7 +107,7 @@ impl HiperdriveDevice {
     /// as these are known.
     ///
     /// # Errors
-    /// Returns the reason if the limits cannot be confirmed.
+    /// Returns an error with the reason if the limits cannot be confirmed.
     pub fn check_can_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
         self.displayed_limits_to_confirm(drive).map(|_| ())
     }
@@ -119,9 +119,9 @@ impl HiperdriveDevice {
         seen.ok_or_else(|| words::lock_text(MotionLock::Unread))
     }
 
-    /// Confirms the displayed limits. Returns whether this took effect. Otherwise a message is reported.
+    /// Confirms the displayed limits and returns whether they were confirmed. Otherwise, a message is reported.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
-        // The limits are taken as shown, before another update. The user has not seen later changes.
+        // The limits are taken as shown, before another update, because the user has not seen later changes.
         let shown = self.displayed_limits_to_confirm(drive);
         self.moves.update();
         self.handle_limit_change();

@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::state::explain as explained;
 use crate::devices::hiperdrive::state::{TEXTS, words};
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder that explains frames. It remembers the requests without a reply, because a reply does not name the parameter.
+/// Decoder that explains frames. It stores the requests without a reply, because a reply does not name the parameter.
 #[derive(Default)]
 pub(super) struct FrameDecoder {
     /// Headers and messages of the latest requests, newest first.
@@ -22,7 +22,7 @@ pub(super) struct FrameDecoder {
 }
 
 impl FrameDecoder {
-    /// Maximum number of remembered requests. The host sends the next request after the reply or its time-out.
+    /// Maximum number of stored requests. The host sends the next request after the reply or its time-out.
     const MAX_REQUESTS: usize = 8;
 
     pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
@@ -64,7 +64,7 @@ impl FrameDecoder {
             (true, _, Ok(reply)) => reply_meaning(&reply, self.take_request(&frame).as_ref()),
             (true, _, Err(error)) => broken(error),
         };
-        // In front of the message are the headers of the frame and of its items.
+        // The message is preceded by the headers of the frame and of its items.
         let header = if bytes.ends_with(message) { bytes.len() - message.len() } else { 0 };
         FrameExplanation { header, ..explained }
     }
@@ -126,7 +126,7 @@ fn value_texts(number: ParameterNumber, data: &[u8]) -> Option<Result<Vec<Text>,
         Value::Number(value) => words::value_meaning(number, value),
         Value::Text(_) => None,
     };
-    // A meaning in whole units replaces a number of tenths.
+    // If the meaning is given in whole units, it replaces the number of tenths.
     if let Some(meaning) = meaning.as_ref().filter(|_| row.unit.starts_with("0.1 ")) {
         return Some(Ok(vec![meaning.clone()]));
     }

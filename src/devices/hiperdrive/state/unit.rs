@@ -192,7 +192,7 @@ impl HiperdriveDevice {
     /// Returns the last data received from a drive over the cyclic connection or by polling.
     pub fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
-        // Values read at the start are void once the connection is lost.
+        // Values read at the start are no longer valid if the connection is lost.
         let surveyed =
             || self.surveyed_values(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
         self.moves.actual_values(drive).or_else(read).or_else(surveyed)

@@ -1,5 +1,5 @@
-//! Values written to a device and not saved since, with the previous value of each parameter. A device does not reveal
-//! its saved values, and an interrupted set-up may date from the previous day.
+//! Values that were written to a device and not saved yet, each with the previous value of its parameter. A device does
+//! not reveal its saved values, and an interrupted set-up may date from the previous day.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(super) struct UnsavedChanges {
 }
 
 impl UnsavedChanges {
-    /// Records that the execution of a plan is starting. Its parameters may differ from the saved values from then on.
+    /// Records that the execution of a plan is starting. From then on, its parameters may differ from the saved values.
     pub(super) fn begin_plan(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
@@ -51,7 +51,8 @@ impl UnsavedChanges {
         }
     }
 
-    /// Compares with a complete reading. Values equal to the saved values no longer count as differences.
+    /// Compares a complete reading with the saved values. Values that equal the saved values are no longer listed as
+    /// differences.
     pub(super) fn read(&mut self, now: &BTreeMap<ParameterNumber, Value>) {
         let is_as_saved = |number: u16, before: i64| {
             ParameterNumber::new(number).is_some_and(|number| now.get(&number) == Some(&Value::Number(before)))
@@ -107,8 +108,8 @@ mod tests {
         image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
     }
 
-    /// Issue 21.6 (h): the saved values are known from those written since, also by an earlier run of the program,
-    /// until the next save.
+    /// Issue 21.6 (h): the saved values are known from the values written over them, even by an earlier run of the
+    /// program, until the next save.
     #[test]
     fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();
@@ -128,7 +129,7 @@ mod tests {
         let mut later = UnsavedChanges::default();
         later.add_earlier(own.saved_values());
         assert_eq!(later.for_drive(three), BTreeMap::from([(166, 350)]));
-        // It has lost its supply, or the values were written back.
+        // The device has lost its supply, or the values were written back.
         later.read(&values(&factory));
         assert!(later.for_drive(three).is_empty());
         let plan = plan_service(&now, Service::Save);

@@ -95,7 +95,8 @@ impl HasProfile for HiperdriveDevice {
 
     fn last_read_profile(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
-        // Values that the device rejects are in no profile. Values of the wrong length should have been in this one.
+        // Values that the device rejects are never part of a profile. Values of the wrong length should have been part
+        // of this one.
         let missing: Vec<Text> =
             survey.wrong_lengths.iter().map(|own| explained::item_text(Item(own.number))).collect();
         if !missing.is_empty() {

@@ -1,8 +1,8 @@
-//! Axis set-up as one procedure. The steps are on the left. The selected step is on the right, with its task, the axis
-//! position and the findings.
+//! Axis set-up as a single procedure. The steps are on the left. The selected step is on the right, with its task, the
+//! axis position and the findings.
 //!
-//! No clickable widget moves while a step is shown, whatever the drive reports: changing messages are below all of
-//! them. Only the user changes the step.
+//! No clickable widget moves while a step is shown, regardless of the data from the drive. Messages that change are
+//! therefore below all widgets. Only the user changes the step.
 
 mod content;
 
@@ -95,7 +95,7 @@ pub(super) fn page_ui(
     }
     let goes_on = axis.setup_end().is_none();
     if ui.available_width() < MIN_TWO_COLUMN_WIDTH {
-        // In a narrow window, the list is not beside the step. At the end, the list is the result.
+        // In a narrow window, the list is above the step. At the end, the list is the result.
         if goes_on {
             step_ui(ui, theme, &shown, actions);
         } else {
@@ -125,7 +125,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut V
     card(ui, theme, TEXTS.text("hd_axis.title"), |ui| {
         paragraph(ui, translate(theme, "hd_axis.words"));
         ui.add_space(theme.space.between);
-        // The button comes before the list, so it is visible without scrolling in a low window.
+        // The button is above the list, so that it is visible without scrolling in a low window.
         let allowed = unit.check_can_set_up();
         ui.horizontal(|ui| {
             if primary_button(ui, theme, allowed.is_ok(), icons::PLAY, &translate(theme, "hd_axis.begin")).clicked() {
@@ -259,7 +259,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     });
 }
 
-/// Draws the buttons Back, Cancel and Next. Until a step is complete, only Cancel is enabled. Cancel stops the motion.
+/// Draws the buttons Back, Cancel and Next. Next is disabled until the step is complete. Cancel stops the motion.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::check_step_settled(shown.looked_at).is_ok();
@@ -304,8 +304,8 @@ fn with_nonbreaking_spaces(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
-/// Draws content as high as a button at the right end of a line. If there is no room beside other buttons, the content
-/// is below them.
+/// Draws content of the height of a button at the right end of a line. If there is no space beside other buttons, the
+/// content is placed below them.
 fn right_aligned_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
     let width = if rest >= PRIMARY_BUTTON_WIDTH { rest } else { ui.available_width() };

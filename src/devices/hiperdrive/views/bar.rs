@@ -45,8 +45,8 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Hiperdr
     });
 }
 
-/// Draws whether this window has control of the drives, or why it lost control. Alarms come first. The height is
-/// constant, so no button moves when control is lost.
+/// Draws whether this window has control of the drives, or why it has lost control. Alarms have priority. The height is
+/// constant, so that no button moves when control is lost.
 fn control_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     let palette = theme.palette;
     let (words, ink) = match (unit.loss_reason(), outside::warning_badge(theme, unit)) {
@@ -58,7 +58,7 @@ fn control_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     message_label(ui, theme, words, ink.into());
 }
 
-/// Draws the STOP button. It can be pressed only if it has an effect.
+/// Draws the STOP button, which is disabled if it would have no effect.
 fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (palette, active) = (theme.palette, studio.can_stop_motion());
     let word = theme.translate("hd_bar.stop");
@@ -97,7 +97,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec
 fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.polled_state(drive) };
-    // All signs have the same width, so no button moves when a drive changes its state.
+    // All signs have the same width, so that no button moves when a drive changes its state.
     let (sign, colour) = match state {
         Some(State::Moving) => (icons::PLAY, palette.accent),
         Some(State::Fault) => (icons::WARNING_CIRCLE, palette.bad),

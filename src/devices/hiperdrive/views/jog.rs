@@ -66,7 +66,8 @@ pub(super) fn step_card_ui(
     });
 }
 
-/// Draws what the buttons do or why they are disabled. The height is constant, so nothing below moves.
+/// Draws a note with the effect of the buttons, or the reason why they are disabled. The height is constant, so that
+/// nothing below moves.
 fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, why_not: Option<&Text>) {
     let drive = unit.drive();
     let outside = unit.out_of_range_position(drive).filter(|own| {

@@ -17,7 +17,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
     let actual = unit.actual_values(drive);
     let ruler = unit.ruler(drive);
     let in_measure = |steps: i32, measure: PositionUnit| {
-        // More than three decimals are useless.
+        // More than three decimals would be of no use.
         let decimals = ruler.decimal_places(measure).min(3);
         ruler.from_steps(steps.into(), measure).map(|value| theme.format_number(value, decimals))
     };
@@ -28,7 +28,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
         let shown = main.unwrap_or_else(|| "–".to_owned());
         let ink = if unit.outside_limits_text(drive).is_some() { palette.bad } else { ink };
         ui.label(RichText::new(shown).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
-        // The unit and the warning are on the same line, so nothing below moves when the warning appears.
+        // The unit and the warning are on the same line, so that nothing below moves when the warning appears.
         let measure = theme.label(translate(theme, unit.measure.unit()));
         ui.label(measure);
         if let Some(badge) = warning.take_if(|own| fits_width(ui, own)) {
@@ -53,15 +53,15 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
     let rpm = theme.format_number(unit.speed_scale(drive).rpm(actual.speed), 1);
     let speed = format!("{rpm} {}", theme.translate("unit.revolutions_per_minute"));
     if ui.available_height() < LOW_PANEL_HEIGHT {
-        // In a low window the plot needs the space.
+        // In a low window, the plot needs the space.
         let words = format!("{word} · {speed}");
         ui.add(egui::Label::new(RichText::new(words).size(theme.sizes.caption).color(colour)).truncate());
         return;
     }
     row(ui, theme, &translate(theme, "hd_live.state"), RichText::new(word).color(colour));
     row(ui, theme, &translate(theme, "hd_effort.speed"), theme.monospace(speed));
-    // The row is drawn even without a target, so the buttons below stay in place when control is taken.
-    // Only a move has a target; the cyclic data contain a number also without one.
+    // The row is drawn even without a target, so that the buttons below stay in place when control is taken. Only a
+    // move has a target, although the cyclic data always contain a number.
     let target = unit.moves.target(drive).map(|target| in_measure(target, unit.measure).unwrap_or_default());
     let target = target.map(|target| format!("{target} {}", translate(theme, unit.measure.unit())));
     let target = theme.monospace(target.unwrap_or_else(|| "–".to_owned()));

@@ -110,7 +110,7 @@ impl TypedDeviceView for HiperdriveView {
         let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
         let id = egui::Id::unique(unit.session.id);
         if unit.profile().is_none() {
-            // The bar with STOP and its note stays fixed while the rest scrolls.
+            // The bar with STOP and its note stays in place while the rest scrolls.
             egui::Panel::top(id.with("hiperdrive_bar"))
                 .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
                 .show(ui, |ui| bar::bar_ui(ui, theme, studio, unit, actions));
@@ -123,13 +123,13 @@ impl TypedDeviceView for HiperdriveView {
         }
         let drive = unit.drive();
         if page == Page::Parameters {
-            // A table scrolls by itself.
+            // A table handles its own scrolling.
             let frame = egui::Frame::NONE.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
             frame.show(ui, |ui| parameters::page_ui(ui, theme, unit, &mut view.parameters, actions));
             return;
         }
         page::scrollable_page(ui, theme, (unit.session.id, page.index()), |ui| match page {
-            // Each drive has its own entries, with their own undo.
+            // Each drive has its own entries with their own undo history.
             Page::Motion => {
                 let own = &mut view.drives.entry(drive).or_default().motion;
                 ui.push_id(drive, |ui| motion::page_ui(ui, theme, unit, own, actions));

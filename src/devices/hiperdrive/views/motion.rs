@@ -19,7 +19,7 @@ use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 
 use crate::ui::{Theme, icons};
 
-/// A percentage as entered, with the value in effect when it was last drawn.
+/// A percentage as entered, together with the value that was in effect when it was last drawn.
 pub(super) type Draft = Option<(String, Percent)>;
 
 #[derive(Default)]
@@ -54,8 +54,8 @@ pub(super) fn page_ui(
         empty_placeholder(ui, theme, &translate(theme, "hd_motion.offline"), None);
         return;
     }
-    // In a low window the pads come before the state diagram, unless the diagram shows a failure. The height of the
-    // window counts, not the remaining height, so nothing moves when a notice appears.
+    // In a low window, the buttons are above the state diagram, unless the diagram shows a failure. The layout depends
+    // on the height of the window and not on the remaining height, so that nothing moves when a notice appears.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
     let low = ui.ctx().content_rect().height() < LOW_WINDOW_HEIGHT && !has_failed;
     locks_ui(ui, theme, unit, actions);
@@ -89,7 +89,7 @@ pub(super) fn page_ui(
                 });
             },
         );
-        // The card is below the pads, so nothing that can be clicked moves when it appears.
+        // The card is below the buttons, so that nothing clickable moves when it appears.
         outside::card_ui(ui, theme, unit, &mut view.outside, actions);
     });
     theme.add_gap(ui);
@@ -133,7 +133,7 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut V
 }
 
 /// Draws the state diagram and the current activity of the drive. The activity is beside the heading or, in a narrow
-/// window, below it. The height is constant, since no drive may move under a pointer that holds a drive's button.
+/// window, below it. The height is constant, so that a jog button never moves away from a pointer that holds it.
 fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     let mut acts = Vec::new();
@@ -164,7 +164,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
     actions.append(&mut acts);
 }
 
-/// Draws a fault and how to clear it, or the outcome of the last action.
+/// Draws a fault together with the way to clear it, or the outcome of the last action.
 fn status_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
@@ -224,7 +224,7 @@ fn move_to_position_ui(
                 let response =
                     button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &translate(theme, "hd_move.resume"));
                 let pressed = press_began(ui, &response);
-                // The button replaces the pause button. A hasty second click was meant for that one.
+                // This button replaces the pause button, so a quick second click was meant for the latter.
                 if response.clicked() && !register_stop_press(ui.ctx(), false, press_time(ui, pressed)) {
                     motor(actions, id, MotorCommand::Resume);
                 }
@@ -242,17 +242,18 @@ fn move_to_position_ui(
             ui.add(egui::Label::new(theme.caption(theme.format_text(&estimate))).truncate());
         }
     });
-    // A reason that blocks all motion is shown only once, below the pads.
+    // A reason that blocks all motion is shown only once, below the jog buttons.
     let target = target.err().filter(|_| !view.target.trim().is_empty());
     show_error_below(ui, theme, target.as_ref().or(entered.as_ref().err()));
     allowed
 }
 
-/// Draws speed and torque in percent, in one row if there is room. Buttons offer the speed `presets`, which start
-/// nothing. An entry takes effect at once for the next motion. A running motion keeps its own values, which are shown.
+/// Draws speed and torque in percent, in one row if there is enough space. Buttons offer the speeds in `presets` and do
+/// not start a motion. An entry takes effect immediately for the next motion. A running motion keeps its own values,
+/// which are shown.
 ///
 /// # Errors
-/// Returns the reason if an entry is not a percentage. No motion may start with it.
+/// Returns an error with the reason if an entry is not a percentage. No motion may be started with such an entry.
 pub(super) fn speed_torque_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -284,7 +285,7 @@ pub(super) fn speed_torque_ui(
         let row = ui.horizontal(|ui| {
             ui.label(theme.label(speed_word));
             let drawn = speed_ui(ui);
-            // The width is constant, so the torque entry does not move when the note changes.
+            // The width is constant, so that the torque entry does not move when the note changes.
             let height = ui.spacing().interact_size.y;
             let place = egui::Layout::left_to_right(egui::Align::Center);
             let speed = ui.allocate_ui_with_layout(vec2(NOTE_WIDTH, height), place, |ui| {
@@ -318,7 +319,7 @@ pub(super) fn speed_torque_ui(
 /// Draws the entry field of a percentage and its presets, and sets `to` to the value entered or chosen.
 ///
 /// # Errors
-/// Returns the reason if the entry is not a percentage.
+/// Returns an error with the reason if the entry is not a percentage.
 fn percent_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -327,7 +328,8 @@ fn percent_ui(
     presets: &[Percent],
     to: &mut Percent,
 ) -> Result<(), Text> {
-    // Typed text is dropped if another value has taken effect since: a preset, or the value of a new session.
+    // Typed text is dropped if another value has taken effect in the meantime, which is a preset or the value of a new
+    // session.
     let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
     let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
     let response = text_entry(ui, &mut text, PERCENT_WIDTH, word, "");
@@ -339,7 +341,7 @@ fn percent_ui(
     *draft = keeps.then_some((text, own));
     ui.label(theme.label("%"));
     if !presets.is_empty() {
-        // No preset is selected while the typed text is invalid, since each of them replaces it.
+        // No preset is shown as selected while the typed text is invalid, because each of them would replace it.
         let mut chosen = if typed.is_ok() { own } else { Percent::NONE };
         let shown = presets.iter().map(|own| (*own, format!("{} %", own.get())));
         if options(ui, &translate(theme, "hd_jog.speed"), &mut chosen, shown) {
@@ -350,8 +352,8 @@ fn percent_ui(
     typed.map(|_| ())
 }
 
-/// Draws the note next to a percentage. This is why it cannot be used, the value that a running motion started with, or
-/// `beside`.
+/// Draws the note next to a percentage: the reason why it cannot be used, the value with which a running motion
+/// started, or otherwise `beside`.
 fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
     match (typed, sent, beside) {
         (Err(why), ..) => {
@@ -375,7 +377,7 @@ pub(super) fn move_speed_torque_text(theme: &Theme, unit: &HiperdriveDevice, id:
     theme.format_text(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
-/// Draws the entry of a position or distance with its unit. The entry is marked if `problem` finds something in it.
+/// Draws the entry of a position or distance with its unit. The entry is marked if `problem` finds an error in it.
 pub(super) fn position_entry_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,5 +1,5 @@
-//! Warning about a drive outside its limits: blocked directions, the way back in, and what to do if the reference is
-//! wrong.
+//! Warning about a drive outside its limits. It shows the blocked directions, the way back in, and what to do if the
+//! reference is wrong.
 
 use egui::{RichText, Ui};
 
@@ -26,7 +26,7 @@ pub(crate) fn warning_badge(theme: &Theme, unit: &HiperdriveDevice) -> Option<Ri
     Some(RichText::new(words).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// Draws a card stating how the drive is outside its limits, what is blocked, and what can be done. Draws nothing if
+/// Draws a card that shows how the drive is outside its limits, what is blocked, and what can be done. Draws nothing if
 /// the drive is inside its limits or at the end of its range.
 pub(super) fn card_ui(
     ui: &mut Ui,
@@ -59,7 +59,7 @@ pub(super) fn card_ui(
             (None, OutsideLimits::At(LimitSide::Below)) => "hd_outside.blocked_down",
         };
         paragraph(ui, theme.caption(translate(theme, words)));
-        // The buttons stay after a press, so the widgets below them do not move under the pointer.
+        // The buttons remain after a press, so that the widgets below them do not move under the pointer.
         let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move_until_stopped(drive) };
         ui.horizontal_wrapped(|ui| {
             for way in ways {

@@ -74,7 +74,7 @@ pub(super) fn page_ui(
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.add_space(theme.space.inside);
-        // Below the table, so that its rows keep their position.
+        // The message is below the table, so that the rows keep their position.
         if let Some(problem) = view.table.problem(theme) {
             let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
             paragraph(ui, RichText::new(words).color(theme.palette.bad));
@@ -114,14 +114,14 @@ fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
             &mut view.shown,
             shown.map(|(own, id)| (own, translate(theme, id))),
         ) {
-            // Typed text takes effect before other lines are shown.
+            // Typed text takes effect before other rows are shown.
             ui.memory_mut(|memory| memory.stop_text_input());
         }
     });
 }
 
 impl DriveParametersUiState {
-    /// Returns whether the scaling page is shown. The table must have closed its editor before.
+    /// Returns whether the scaling page is shown. The table must have closed its editor before this is the case.
     fn is_scale_shown(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.edited_location().is_none() || self.table.is_refused())
     }
@@ -146,7 +146,7 @@ impl DriveParametersUiState {
         }
     }
 
-    /// Adjusts the view to changed rows. Selection and typed value stay with their parameter.
+    /// Adapts the view to changed rows. The selection and the typed value stay with their parameter.
     fn follow_rows(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {
@@ -195,7 +195,7 @@ fn table_ui(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// Returns the content of the columns of a row that a narrow window hides or cuts.
+/// Returns the contents of a row's columns that are hidden or cut in a narrow window.
 fn row_details(theme: &Theme, row: &Row) -> String {
     let named =
         |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.translate(id)));
@@ -211,13 +211,13 @@ fn parameter_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
 
-/// Returns unit and meaning of the value, or an empty text if there is no value.
+/// Returns the unit and the meaning of the value, or an empty string if there is no value.
 fn row_meaning(theme: &Theme, row: &Row) -> String {
     let words = |text: Option<&Text>| text.map(|text| theme.format_text(text)).unwrap_or_default();
     if parameter_text(row).is_empty() {
         return String::new();
     }
-    // A unit that is part of another one is multiplied.
+    // A unit with a factor, such as 0.1 V, is shown with a multiplication sign.
     let unit = match words(row.unit.as_ref()) {
         unit if unit.starts_with('0') => format!("× {unit}"),
         unit => unit,

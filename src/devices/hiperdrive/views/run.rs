@@ -1,4 +1,4 @@
-//! Runs at a speed, to the end of the range or, for experts, without end.
+//! Runs at a speed, to the end of the range or, for experts, without an end.
 
 use egui::{RichText, Ui};
 
@@ -34,7 +34,7 @@ pub(super) fn run_ui(
     let words = if expert { "hd_run.endless_words" } else { "hd_run.words" };
     paragraph(ui, theme.caption(translate(theme, words)));
     let is_possible = unit.check_can_allow_endless_run(drive).is_ok();
-    // The option can always be switched off.
+    // The option can always be disabled.
     ui.add_enabled_ui(is_possible || expert, |ui| {
         if ui.checkbox(&mut expert, translate(theme, "hd_run.expert")).changed() {
             actions.push(Action::device(id, Hiperdrive::Drive(MotorCommand::Expert(expert))));

@@ -1,11 +1,13 @@
 //! The seven states of a drive and their transitions (HIPERDRIVE reference, 3).
 //!
-//! * **Size**: the available width; five states in a row, fault and lock below them.
-//! * **Keyboard**: Tab moves through the reachable states, Space or Enter requests one.
+//! * **Size**: the available width, with five states in a row, and fault and lock below them.
+//! * **Keyboard**: Tab moves through the reachable states. Space or Enter requests one.
 //! * **Pointer**: a click on a reachable state requests it.
-//! * **Accessible**: one button per state, with its name; the present state is selected, unreachable ones are disabled.
-//! * **Painting**: the present state is filled: accent in general, good while moving, error and warning for fault and
-//!   lock; reachable states are outlined in the accent; arrows as in the figure of the manual.
+//! * **Accessible**: one button per state, with its name. The current state is selected, and unreachable ones are
+//!   disabled.
+//! * **Painting**: the current state is filled, in the accent colour in general, in the colour for good while moving,
+//!   and in those for error and warning for fault and lock. Reachable states are outlined in the accent colour. The
+//!   arrows are the same as in the figure of the manual.
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -20,7 +22,7 @@ pub(crate) struct StateMachine<'a> {
     /// States that can be reached from the current state.
     pub(crate) reachable: &'a [State],
     pub(crate) names: &'a [String; 7],
-    /// Effect of going to each state, if any.
+    /// Effect of a change to each state, if any.
     pub(crate) hints: &'a [Option<String>; 7],
 }
 

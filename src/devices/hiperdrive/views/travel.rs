@@ -1,10 +1,11 @@
 //! The travel of a drive as a bar: limits, position and target.
 //!
-//! * **Size**: the available width and constant height, so nothing below it moves when the drive leaves its limits.
-//! * **Keyboard, pointer**: none; the bar moves nothing.
+//! * **Size**: the available width and a constant height, so that nothing below moves when the drive leaves its limits.
+//! * **Keyboard, pointer**: none. The bar cannot be used to move the drive.
 //! * **Accessible**: an image whose value names position, limits and target.
 //! * **Painting**: the range in the accent colour, the position as a bar across it, the target as an outlined diamond.
-//!   Outside the limits the position is red, an arrow points back to the limit, and a line above names the way back.
+//!   If the drive is outside its limits, the position is red, an arrow points back to the limit, and the text above
+//!   describes the way back.
 
 use egui::accesskit::Role;
 use egui::{
@@ -19,7 +20,7 @@ use crate::devices::hiperdrive::views::translate;
 use crate::ui::widgets::series_colour;
 use crate::ui::{Theme, icons};
 
-/// Height of the line above the bar, in points.
+/// Height of the text above the bar, in points.
 const LINE_HEIGHT: f32 = 20.0;
 const BAR_HEIGHT: f32 = 14.0;
 const LIMITS_HEIGHT: f32 = 16.0;
@@ -128,7 +129,7 @@ fn return_instructions(outside: OutsideLimits) -> Text {
     })
 }
 
-/// Draws position and target above the bar, or how the drive returns inside its limits.
+/// Draws position and target above the bar, or the way back inside the limits.
 fn line_ui(
     painter: &Painter,
     theme: &Theme,
@@ -151,7 +152,7 @@ fn line_ui(
     let strong = theme.bold_font(theme.sizes.section);
     let whole = painter.layout_no_wrap(words.clone(), strong, ink);
     let room = line.width() - painter.layout_no_wrap(position.to_owned(), font.clone(), ink).size().x - 16.0;
-    // In a narrow window, a long text is drawn smaller instead of being cut.
+    // In a narrow window, a long text is drawn in a smaller size so that it is not cut.
     let galley = if whole.size().x <= room {
         whole
     } else {

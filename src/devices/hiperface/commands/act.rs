@@ -78,7 +78,7 @@ fn change_code(number: &str, new: &str) -> Result<Change> {
                 .and_then(AccessCodeNumber::new)
                 .ok_or_else(|| out_of_range("access code", number, 0, 3))
         })?;
-    // The message does not repeat the text, because the text may be an access code.
+    // The message does not repeat the entry, because it may be an access code.
     let new =
         parse_code(new).ok_or_else(|| Failure::Usage("the new code must be two hexadecimal digits".to_owned()))?;
     Ok(Change::ChangeCode { number, new })
@@ -164,7 +164,7 @@ fn check_device(common: &CommonArgs, output: &Output, restart: bool) -> Result {
         CheckFinding::Line(quality) => Some(quality),
         _ => None,
     });
-    // A good line is not listed as a step. Scripts find its figures in `line_quality`.
+    // A good line is not listed as a step. Scripts find its values in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
         lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
     check::show_check(output, &words::check_lines(&shown), quality)

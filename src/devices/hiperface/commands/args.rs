@@ -35,7 +35,7 @@ pub(super) enum HiperfaceAction {
     SetPosition,
     /// POSITION: set the position of a kit encoder and align its code tracks
     Synchronise,
-    // This is an attribute because rustdoc would read the brackets as links.
+    // This is an attribute, because rustdoc would read the brackets as links.
     #[value(help = "NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1]: create a data field")]
     CreateField,
     /// NUMBER SIZE: change the size of the last field

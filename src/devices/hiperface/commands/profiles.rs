@@ -140,7 +140,7 @@ fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
     }
 }
 
-/// Returns the command-line decisions on data fields whose bytes have no known meaning.
+/// Returns the decisions given on the command line about data fields whose bytes have no known meaning.
 fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
@@ -156,8 +156,8 @@ fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     Ok(answers)
 }
 
-/// Reports the data fields with bytes of unknown meaning. Fails if the command line gives no decision for one of them.
-/// A dry run leaves such a field unchanged instead.
+/// Reports the data fields with bytes of unknown meaning. Returns an error if the command line gives no decision for
+/// one of them. A dry run leaves such a field unchanged instead.
 fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
     let words = |own: &UnknownMeaningField| words::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;

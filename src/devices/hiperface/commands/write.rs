@@ -103,7 +103,7 @@ fn parse_item_value(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// Executes the plan, after asking for consent if required. An empty plan does not send anything.
+/// Executes the plan after asking for consent if required. An empty plan sends nothing.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
@@ -152,7 +152,7 @@ pub(super) fn operations_json(plan: &HiperfacePlan) -> Vec<Json> {
                     let byte = |status: DataFieldStatus| format!("{:02X}", status.byte());
                     (from.map(byte), Some(byte(*to)))
                 }
-                // An access code is never shown.
+                // An access code is never displayed.
                 Op::ChangeCode { .. } => (None, None),
                 op => {
                     let (old, new) = old_and_new_text(op);

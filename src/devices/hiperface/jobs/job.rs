@@ -23,7 +23,7 @@ pub const WEAR_LIMIT: u64 = 1_000_000;
 
 #[derive(Debug)]
 pub enum HiperfaceJob {
-    /// Reads everything that is displayed after connecting.
+    /// Reads all values that are displayed after connecting.
     Survey,
     Identify,
     /// Reads the complete status queue.
@@ -44,7 +44,7 @@ pub enum HiperfaceJob {
     Find(FindOptions),
     /// Sends command 67h and then changes the line settings of the host to match.
     ConfigureForNow(LineSettings),
-    /// Uses an access code for later requests, without sending anything.
+    /// Uses an access code for later requests. Nothing is sent.
     UseCode {
         number: AccessCodeNumber,
         /// Access code, which is never displayed.
@@ -92,7 +92,7 @@ pub enum Change {
         exact: bool,
         /// Whether to align the code tracks as well (63h).
         synchronise: bool,
-        /// Whether the user states that the encoder is a kit. This is needed if its type does not show it.
+        /// Whether the user states that the encoder is a kit encoder. This is only needed if its type does not show it.
         kit: bool,
     },
     /// Adds steps to the position at standstill, modulo the measuring range. This undoes setting a position, even if
@@ -110,9 +110,9 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited bytes. Those not yet written remain edits.
+    /// A write of edited bytes. Bytes that were not written remain as edits.
     Bytes,
-    /// A single operation, which is done either completely or not at all.
+    /// A single operation, which is executed either completely or not at all.
     Single,
 }
 
@@ -143,9 +143,9 @@ pub struct Prepared {
     pub identity: Identity,
     /// Number of persistent writes to the encoder recorded on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
-    /// Number of items that already have the right value.
+    /// Number of items that already have the intended value.
     pub unchanged: u64,
-    /// Items left unchanged because they cannot be read, or because the profile or the encoder lacks them.
+    /// Items left unchanged because they cannot be read, or because they are missing in the profile or the encoder.
     pub missing: Vec<FieldRange>,
     /// Mounting values that differ but are left unchanged.
     pub mounting_left: Vec<FieldRange>,
@@ -153,8 +153,8 @@ pub struct Prepared {
     pub mounting_written: Vec<FieldRange>,
     /// Data fields whose bytes of unknown meaning differ from those of another encoder.
     pub unknown_fields: Vec<UnknownMeaningField>,
-    /// Data fields that the undone write created and that remain in place. They have changed since, or are not the last
-    /// fields.
+    /// Data fields created by the undone write that are not deleted, because they have changed since then or are not
+    /// the last fields.
     pub created_left: Vec<u8>,
     pub other_type: Option<TypeMismatch>,
     /// Requested position, if the plan sets another one to preserve the phase.
@@ -205,7 +205,7 @@ pub struct SavedProfile {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
-    /// Number of status codes that may have been lost. 50h removes a code from the encoder even if its reply is lost or
+    /// Number of status codes that may have been lost. 50h removes a code from the encoder even if the reply is lost or
     /// damaged.
     CodesUnheard(u32),
     /// An encoder that replied during a search.
@@ -258,7 +258,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// Returns whether the encoder did not report a position for a temporary reason.
+    /// Returns whether the encoder temporarily did not report a position.
     pub fn is_without_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.is_without_position())
     }

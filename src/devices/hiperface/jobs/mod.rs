@@ -40,7 +40,7 @@ pub struct Hiperface {
     /// Geometry from the last identification in this session, used to interpret samples.
     geometry: Option<Geometry>,
     status: RecentStatusCodes,
-    /// Line error counts that have already been reported.
+    /// Counts of line errors that have already been reported.
     told_troubles: [u64; 4],
 }
 
@@ -75,7 +75,7 @@ impl Hiperface {
         status::record_codes(&context.store, &device, codes);
     }
 
-    /// Stores the status codes of samples. A persistent code occurs in many samples but is not stored each time.
+    /// Stores the status codes of samples. A persistent code occurs in many samples, but is not stored each time.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_unlogged_codes();
         if !codes.is_empty() && self.status.mark_and_check_new(&codes, context.clock.now()) {
@@ -185,7 +185,7 @@ impl Device for Hiperface {
             return Some(unheard);
         }
         let line = &self.station.line;
-        // Errors on a failing line are reported with the failure.
+        // Errors on a failing line are reported together with the failure.
         if line.has_errors() || line.quality.counts() == self.told_troubles {
             return None;
         }
@@ -276,7 +276,7 @@ fn read_item(master: &mut Master<'_>, item: Item) -> Result<Value, JobError> {
     if let (Item::Field(FieldRange { field, .. }) | Item::Status(field), Err(error)) = (item, &value)
         && error.is_rejection(StatusCode::NO_SUCH_FIELD)
     {
-        // The list of existing fields is more useful than the encoder's rejection.
+        // The list of existing fields is more helpful than the encoder's rejection.
         let count = procedures::write::read_memory(master)?.fields;
         return Err(PlanError::NoSuchField { field, count }.into());
     }

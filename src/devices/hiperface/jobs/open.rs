@@ -15,13 +15,13 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to a HIPERFACE encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
+/// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
 pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
 /// Returns whether a drive may be a second master on the line. A drive reads the encoder only at power-up and then uses
-/// sine and cosine, so there may be one even if the line is silent.
+/// sine and cosine, so it may be present even if the line is silent.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
     matches!(url.scheme, LinkScheme::Serial | LinkScheme::Tcp)
 }
@@ -29,7 +29,7 @@ pub fn may_have_other_master(url: &LinkUrl) -> bool {
 /// Opens a link to a HIPERFACE encoder.
 ///
 /// # Errors
-/// See [`OpenError`]. Nothing has been sent.
+/// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
     let (station, config) = read(url)?;
     let types = encoder_types(&store)?;
@@ -51,7 +51,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     let mut station = Station::from_query(&url.query, reply_margin(url.scheme))?;
     let settings = simulator_settings(url, LinkParameters::KEYS, Config::KEYS)?;
     if url.scheme == LinkScheme::Sim {
-        // The virtual encoder's converter may echo; this is detected as with a real one.
+        // The converter of the virtual encoder may echo. This is detected as with a real one.
         station.line.echo = Echo::Unknown;
         let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));
         check_parameters(&url.query, url.scheme, &line.chain(Config::KEYS).copied().collect::<Vec<_>>())?;

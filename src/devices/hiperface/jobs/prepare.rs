@@ -88,7 +88,7 @@ pub(super) fn prepare_plan(
         Change::SetAddress(to) => {
             let memory = read_memory(&mut master)?;
             let from = master.station().address;
-            // With broadcast, a single encoder is connected, which may itself have this address.
+            // A broadcast requires that a single encoder is connected, which may itself have this address.
             if from != to.byte() && from != BROADCAST {
                 check_address_is_free(&mut master, to)?;
             }
@@ -162,7 +162,7 @@ fn set_position(
     let to = if exact { wanted } else { nearest_in_phase(now, wanted, range) };
     prepared.wanted_position = (to != wanted).then_some(wanted);
     let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
-    // Synchronising aligns the tracks even if the position does not change.
+    // Synchronising aligns the tracks even if the position remains the same.
     let op = (to != now || synchronise).then_some(Op::SetPosition { from: now, to, synchronise });
     Ok(plan_scalar(fields, SingleValue::Position(now), op))
 }

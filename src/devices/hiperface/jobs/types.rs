@@ -1,4 +1,4 @@
-//! The table of encoder types. The rows of the user precede the built-in ones.
+//! The table of encoder types. User-defined rows precede the built-in ones.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::{EncoderTypes, KIND, TypeTableError};
 use crate::profile::Cause;
 use crate::store::{FileError, FileErrorKind, Store, StoreError, read_text};
 
-/// Error in the user's own table of encoder types.
+/// An error in the user-defined table of encoder types.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}, {cause}", path.display())]
 pub struct TypeTableFileError {
@@ -14,11 +14,11 @@ pub struct TypeTableFileError {
     pub cause: TypeTableError,
 }
 
-/// Returns the table of encoder types. The rows of the user precede the built-in ones.
+/// Returns the table of encoder types. User-defined rows precede the built-in ones.
 ///
 /// # Errors
-/// [`TypeTableFileError`] if the user's file exists but cannot be read or parsed. [`EncoderTypes::built_in`] can be
-/// used instead.
+/// Returns a [`TypeTableFileError`] if the user's file exists but cannot be read or parsed. In this case,
+/// [`EncoderTypes::built_in`] can be used instead.
 pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     let built_in = EncoderTypes::built_in();
     let path = store.device_file(KIND);

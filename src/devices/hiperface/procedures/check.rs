@@ -63,11 +63,11 @@ pub enum CheckFinding {
     Line(LineQuality),
 }
 
-/// Runs the check. If `restart` is set, the check begins with 53h to match the state after power-on. It ends early only
-/// if the encoder no longer replies.
+/// Runs the check, which ends early only if the encoder no longer replies. If `restart` is set, it begins with 53h to
+/// obtain the state after power-on.
 ///
 /// # Errors
-/// Errors of the exchange, or cancellation.
+/// Returns an error if the exchange fails or the job is cancelled.
 pub fn check_encoder(
     master: &mut Master<'_>,
     types: &EncoderTypes,

@@ -1,4 +1,4 @@
-//! Errors of a job with an encoder, with the facts that a message needs.
+//! Errors of a job with an encoder, with the details for their messages.
 
 use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{AccessCodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
@@ -122,7 +122,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device can no longer be reached. Further attempts are then pointless.
+    /// Returns whether the device can no longer be reached, which makes further attempts useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,
@@ -131,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder did not report a position for a temporary reason.
+    /// Returns whether the encoder temporarily did not report a position.
     pub fn is_without_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }

@@ -15,7 +15,7 @@ const MIN_TRANSFER: usize = 4;
 /// Reads the status byte of a field.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection because the field does not exist.
+/// Returns an error if the field does not exist or the exchange fails.
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
     match master.request_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
@@ -26,7 +26,7 @@ pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataField
 /// Reads a complete field. If the access code is wrong, the field is returned without bytes.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection for another reason.
+/// Returns an error if the encoder rejects the request for another reason or the exchange fails.
 pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Error> {
     let status = read_field_status(master, number)?;
     let code = master.station().codes.get(status.code());
@@ -40,7 +40,7 @@ pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Err
 /// Reads all fields except the extended label. `progress` receives the number of fields read and the total.
 ///
 /// # Errors
-/// See [`read_field`].
+/// Returns an error of [`read_field`] if a field cannot be read.
 pub fn read_all_fields(
     master: &mut Master<'_>,
     count: u8,
@@ -62,10 +62,10 @@ pub struct UnreadableField {
     pub why: Error,
 }
 
-/// Reads a field. If only this field cannot be read, the inner error contains the reason.
+/// Reads a field. The inner error contains the reason if only this field cannot be read.
 ///
 /// # Errors
-/// The encoder no longer replies, or the user cancelled.
+/// Returns an error if the encoder no longer replies or the user cancels.
 pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
     let status = read_field_status(master, number);
     let status = match separate_value_error(master, status)? {
@@ -76,10 +76,10 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(separate_value_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Returns an error as the inner error, if the encoder still replies to another request.
+/// Returns an error as the inner error if the encoder still replies to another request.
 ///
 /// # Errors
-/// The encoder no longer replies, or the user cancelled.
+/// Returns an error if the encoder no longer replies or the user cancels.
 pub(super) fn separate_value_error<T>(
     master: &mut Master<'_>,
     result: Result<T, Error>,
@@ -103,7 +103,7 @@ pub(super) fn separate_value_error<T>(
 /// bits.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection.
+/// Returns an error if the exchange fails or the encoder rejects the request.
 pub fn read_range(
     master: &mut Master<'_>,
     field: u8,

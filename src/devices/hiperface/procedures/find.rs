@@ -74,11 +74,11 @@ pub enum EncoderSearchResult {
     },
 }
 
-/// Searches all baud rates, parities and addresses. If the link cannot set the baud rate, only the addresses are
-/// searched. The port settings are restored afterwards. Cancellation ends the search with the encoders found so far.
+/// Searches all baud rates, parities and addresses, or only the addresses if the link cannot set the baud rate. The
+/// port settings are restored at the end. Cancellation ends the search, and the encoders found so far are returned.
 ///
 /// # Errors
-/// Errors of the connection.
+/// Returns an error if the connection fails.
 pub fn find(
     master: &mut Master<'_>,
     options: &FindOptions,

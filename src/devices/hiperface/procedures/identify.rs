@@ -19,7 +19,7 @@ pub struct Identity {
     pub name: String,
     /// Periods and turns given by the user, by the extended label, or by the table of types.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder has no bearing, and its code tracks are aligned with 63h. `None` means unknown.
+    /// Whether the encoder has no bearing, so that its code tracks are aligned with 63h. `None` means unknown.
     pub kit: Option<bool>,
     /// Content of data field FFh, if the encoder has this field.
     pub extended_label: Option<Vec<u8>>,
@@ -31,7 +31,7 @@ impl Identity {
     }
 }
 
-/// Returns the identity recorded in a profile. It lacks the free memory.
+/// Returns the identity recorded in a profile, which does not include the free memory.
 pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
     let own = &profile.identity;
     let label = TypeLabel {
@@ -62,8 +62,8 @@ pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Id
 /// Reads type label, serial number, memory and, for type code FFh, the extended label.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection. A rejection of 56h or 4Eh is not an error, because some types do not support
-/// them.
+/// Returns an error if the exchange fails or the encoder rejects a request. A rejection of 56h or 4Eh is not an error,
+/// because some types do not support these commands.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
@@ -101,7 +101,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
 /// Reads serial number and firmware, or returns empty strings if the encoder does not support the command.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection.
+/// Returns an error if the exchange fails or the encoder rejects the request.
 pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
     Ok(match optional_value(master.request_confirmed(&Request::ReadSerial))? {
         Some(Reply::Serial(serial)) => serial,
@@ -118,7 +118,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
 /// Reads the address of the encoder that replies to a request at the session's address. The latter may be broadcast.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection.
+/// Returns an error if the exchange fails or the encoder rejects the request.
 pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
     master.request_with_time(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
@@ -126,7 +126,7 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
 /// Reads the complete data field FFh, using 4Ch for its size and then 4Ah with code 0.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection if the encoder has no extended label.
+/// Returns an error if the exchange fails or the encoder has no extended label.
 pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     let status = super::read_field_status(master, EXTENDED_LABEL_FIELD)?;
     let code = master.station().codes.get(AccessCodeNumber::ZERO);
@@ -136,13 +136,13 @@ pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
 /// Reads the complete status queue, in the encoder's order.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     master.collect_codes()?;
     Ok(master.station().take_undisplayed_codes())
 }
 
-/// Converts the rejection of an unsupported command to `None`. Any other error remains an error.
+/// Converts the rejection of an unsupported command to `None`, and returns any other error.
 fn optional_value<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

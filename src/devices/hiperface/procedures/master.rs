@@ -44,7 +44,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Runs `work` and ignores cancellation meanwhile. This is for steps that return the encoder to a safe state.
+    /// Runs `work` without reacting to cancellation. This is for steps that return the encoder to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -52,10 +52,10 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Waits for `duration`, or until cancelled.
+    /// Waits for `duration`, or until the job is cancelled.
     ///
     /// # Errors
-    /// [`Error::Cancelled`].
+    /// Returns [`Error::Cancelled`] if the job is cancelled.
     pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         Ok(self.line.wait(duration)?)
     }
@@ -63,7 +63,7 @@ impl<'a> Master<'a> {
     /// Listens without sending, and returns the bytes received.
     ///
     /// # Errors
-    /// Errors of the connection, or [`Error::Cancelled`].
+    /// Returns an error if the connection fails, or [`Error::Cancelled`] if the job is cancelled.
     pub fn read_pending(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
         Ok(self.line.receive_pending(duration)?)
     }
@@ -71,14 +71,15 @@ impl<'a> Master<'a> {
     /// Sets baud rate and parity of the host.
     ///
     /// # Errors
-    /// Errors of the connection.
+    /// Returns an error if the connection fails.
     pub fn set_format(&mut self, format: crate::units::CharacterFormat) -> Result<(), Error> {
         self.line.ctx.wire.set_format(format)?;
         self.station.format = format;
         Ok(())
     }
 
-    /// Returns whether baud rate and parity can be set on this side. Otherwise they are set at the far end of the link.
+    /// Returns whether baud rate and parity can be set on this side. Otherwise, they are set at the far end of the
+    /// link.
     pub fn can_set_format(&self) -> bool {
         self.line.ctx.wire.can_set_format()
     }
@@ -86,12 +87,12 @@ impl<'a> Master<'a> {
     /// Sends a request that does not change anything in the encoder, and repeats it after line errors.
     ///
     /// # Errors
-    /// Every attempt failed, the encoder rejects the request, or the user cancelled.
+    /// Returns an error if every attempt fails, the encoder rejects the request, or the user cancels.
     pub(super) fn request(&mut self, request: &Request) -> Result<Reply, Error> {
         self.request_with_time(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work` and requires every reply to be received twice. This is for values that will be stored.
+    /// Runs `work`, in which every reply must be received twice. This is for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -103,7 +104,7 @@ impl<'a> Master<'a> {
     /// received twice.
     ///
     /// # Errors
-    /// See [`request`](Self::request).
+    /// Returns an error of [`request`](Self::request) if the exchange fails.
     pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.request(request)?;
         for _ in 0..MAX_ATTEMPTS {
@@ -132,11 +133,11 @@ impl<'a> Master<'a> {
     }
 
     /// Sends a request that changes the encoder, and returns how often it may have been executed. If the result of an
-    /// attempt is unclear, `is_done` reads it back. The request is then repeated only if it was not executed.
+    /// attempt is unclear, `is_done` reads it back. The request is repeated only if it was not executed.
     ///
     /// # Errors
-    /// The encoder rejects the request, `is_done` could not determine the result ([`Error::Unclear`]), or the request
-    /// was not executed in five attempts.
+    /// Returns an error if the encoder rejects the request or does not execute it in five attempts. Returns
+    /// [`Error::Unclear`] if `is_done` cannot determine the result.
     pub(super) fn send_verified(
         &mut self,
         request: &Request,
@@ -151,7 +152,7 @@ impl<'a> Master<'a> {
             };
             let failure = self.prepare_retry(request, tries, trouble);
             let unclear = |cause| Error::Unclear { command: request.command(), cause: Box::new(cause) };
-            // From here on the result must be determined, even after a cancellation.
+            // From here on, the result must be determined even after a cancellation.
             match self.run_uncancellable(&mut is_done) {
                 Ok(true) => return Ok(tries),
                 Ok(false) => failure?,
@@ -163,7 +164,7 @@ impl<'a> Master<'a> {
     /// Sends a request that has no reply.
     ///
     /// # Errors
-    /// Errors of the connection, or [`Error::Cancelled`].
+    /// Returns an error if the connection fails, or [`Error::Cancelled`] if the job is cancelled.
     pub(super) fn send_broadcast(&mut self, request: &Request) -> Result<(), Error> {
         self.wait_for_line()?;
         let frame = request.emit(self.station.address);
@@ -222,10 +223,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Completes a request that changes the encoder. Unlike [`resolve_status`](Self::resolve_status), it leaves announced status codes
-    /// to the next exchange, which announces them again. A cancellation can therefore not occur between a change and
-    /// its counting. After 55h and 67h it is also necessary, because the encoder no longer replies with the old
-    /// settings.
+    /// Completes a request that changes the encoder. Unlike [`resolve_status`](Self::resolve_status), it leaves
+    /// announced status codes to the next exchange, which announces them again. A cancellation can therefore not occur
+    /// between a change and its counting. This is also necessary after 55h and 67h, because the encoder no longer
+    /// replies with the old settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.clear_error();

@@ -24,7 +24,7 @@ pub struct PositionReading {
 /// Reads the position (42h), and all status codes if the reply announces any.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection because the encoder has no position.
+/// Returns an error if the exchange fails or the encoder does not report a position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_met.len();
     let timed = master.request_with_time(&Request::ReadPosition)?;
@@ -90,7 +90,7 @@ impl WatchedReading {
 /// Reads a watched value once. A rejection is a valid result.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Result<WatchedReading, Error> {
     let met_before = master.station().codes_met.len();
     let answer = match what {
@@ -109,7 +109,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Res
 /// Reads the position like [`read_position`]. A temporary lack of a position is a valid result.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection for another reason.
+/// Returns an error if the exchange fails or the encoder rejects the request for another reason.
 pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PolledSample, Error> {
     let met_before = master.station().codes_met.len();
     match read_position(master, geometry) {
@@ -132,7 +132,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
 /// Reads an analogue channel (44h). It usually has 10 bits for 5 V, with a sign. Otherwise, see the data sheet.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection because the channel does not exist.
+/// Returns an error if the exchange fails or the channel does not exist.
 pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
     request_analogue(master, channel).map(|(_, value)| value)
 }
@@ -149,7 +149,7 @@ fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16
 /// Reads the limit of an analogue channel from the extended label, if there is one.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Option<i16>, Error> {
     if read_type_label(master)?.encoder_type != TypeLabel::EXTENDED {
         return Ok(None);
@@ -167,7 +167,7 @@ pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Optio
 /// Reads the counter (46h), 0…FFFFFFh.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection.
+/// Returns an error if the exchange fails or the encoder rejects the request.
 pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     match master.request_confirmed(&Request::ReadCounter)? {
         Reply::Counter(value) => Ok(value),
@@ -179,7 +179,7 @@ pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
 /// readings differ by at most one step.
 ///
 /// # Errors
-/// [`Error::Moving`], or errors of reading.
+/// Returns [`Error::Moving`] if the shaft moves, or another error if a reading fails.
 pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<u32, Error> {
     let first = read_position(master, geometry)?.raw;
     let (mut last, mut readings) = (first, vec![first]);

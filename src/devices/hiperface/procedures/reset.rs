@@ -8,7 +8,7 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{LineSettings, Request, StatusCode, Timing};
 use crate::units::CharacterFormat;
 
-/// Wait after the restart before the first request. It ends early in the window from 100 to 900 ms, in which the
+/// Time to wait after the restart before the first request. It ends within the window from 100 to 900 ms, in which the
 /// encoder listens with factory settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
 /// Reserve added to the manual's times for the stored settings, because clocks differ.
@@ -17,19 +17,19 @@ const TIME_RESERVE: Duration = Duration::from_millis(100);
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue. The
 /// initialisation may have added up to four codes to the queue.
 ///
-/// If the stored settings are the factory settings, requests are sent within the default window. Otherwise nothing is
-/// sent until the encoder has applied the stored settings. A request within the window would keep it at factory
-/// settings.
+/// If the stored settings are the factory settings, requests are sent within the default window. Otherwise, nothing is
+/// sent until the encoder has applied the stored settings, because a request within the window would keep the encoder
+/// at factory settings.
 ///
 /// # Errors
-/// Errors of the exchange, or no reply at the stored settings.
+/// Returns an error if the exchange fails or the encoder does not reply with the stored settings.
 pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let stored = read_type_label(master)?.settings;
     let format = stored.character_format().ok_or(Error::ReservedFormat { settings: stored })?;
     master.send_broadcast(&Request::Reset)?;
     let factory = format == CharacterFormat::FACTORY && stored.has_long_timeout();
     let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + TIME_RESERVE };
-    // The encoder restarts even if the user cancels now. The session must then know its settings.
+    // The encoder restarts even if the user cancels now, so the session must know its settings.
     master.run_uncancellable(|master| {
         master.wait(wait)?;
         master.set_format(format)?;
@@ -42,7 +42,8 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 /// settings.
 ///
 /// # Errors
-/// A rejection, or no reply at the new settings. Both sides then have the old settings, if the encoder still replies.
+/// Returns an error if the encoder rejects the settings or does not reply with the new settings. Both sides then have
+/// the old settings, provided that the encoder still replies.
 pub fn set_temporary_line_settings(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
     let format = settings.character_format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);

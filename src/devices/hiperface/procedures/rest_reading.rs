@@ -43,7 +43,7 @@ impl Signals {
 /// Reads the position, then sine and cosine, then the position again. Sine and cosine are means of four readings.
 ///
 /// # Errors
-/// [`Error::Moving`], errors of the exchange, or no position.
+/// Returns [`Error::Moving`] if the shaft moves, or another error if the exchange fails or there is no position.
 pub fn read_at_rest(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<RestPosition, Error> {
     let before = ensure_standstill(master, geometry)?;
     let signals = read_signals(master)?;

@@ -7,15 +7,15 @@ use crate::profile::UnknownValues;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// Whether a field with an unknown access code is an error.
+    /// Whether a field with an unknown access code is treated as an error.
     pub complete: bool,
 }
 
-/// Reads the complete encoder. Every value except the position is read twice, because data stored for years must not
-/// depend on a single XOR.
+/// Reads the complete encoder. Every value except the position is read twice. A single reading is only protected by an
+/// XOR checksum, which is not sufficient for data that is stored for years.
 ///
 /// # Errors
-/// Errors of the exchange. If [`complete`](SaveOptions::complete) is set, also a field that cannot be read.
+/// Returns an error if the exchange fails, or if a field cannot be read and [`complete`](SaveOptions::complete) is set.
 pub fn save(
     master: &mut Master<'_>,
     types: &EncoderTypes,

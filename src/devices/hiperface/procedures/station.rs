@@ -20,7 +20,7 @@ parameters! {
     pub struct LinkParameters: UrlError {
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => BaudValues;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::KEYWORDS;
-        /// Address used in requests: 40h…5Fh or broadcast.
+        /// Address used in requests: 40h to 5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
             "address" => CustomNotation(AllowedValues::AddressOrOnlyOne, read_address);
         pub echo: Echo = Echo::Unknown, "echo" => Echo::KEYWORDS;
@@ -55,7 +55,7 @@ impl Codes {
     }
 }
 
-/// Numbered access codes with which each session begins. If a number occurs twice, its last code counts.
+/// Numbered access codes with which each session begins. If a number occurs twice, its last code applies.
 #[derive(Clone, Debug, Default)]
 pub struct InitialAccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 
@@ -75,7 +75,7 @@ impl FromIterator<(AccessCodeNumber, AccessCode)> for InitialAccessCodes {
 
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Address used in requests: 40h…5Fh or broadcast.
+    /// Address used in requests: 40h to 5Fh or broadcast.
     pub address: u8,
     pub format: CharacterFormat,
     /// Whether the encoder's time-out is 44 bits rather than 11 bits.
@@ -116,11 +116,11 @@ impl Station {
         }
     }
 
-    /// Creates a station from the parameters of its link. Missing parameters have the factory settings, and `margin`.
+    /// Creates a station from the parameters of its link and a margin. Missing parameters have their factory settings.
     /// Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A value is invalid. The error lists the allowed values.
+    /// Returns an error with the allowed values if a value is invalid.
     pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));

@@ -1,4 +1,4 @@
-//! Reading all values that the pages of an encoder display, in one job.
+//! Reading of all values that the pages of an encoder display, in one job.
 
 use super::fields::separate_value_error;
 use super::{
@@ -24,20 +24,20 @@ pub struct Survey {
     pub position: Option<PolledSample>,
 }
 
-/// Reads the status queue first, then everything else. A feature that an encoder type does not support is not an error.
+/// Reads the status queue and then all other values. It is not an error if the encoder type does not support a feature.
 ///
 /// # Errors
-/// Errors of the exchange, or a rejection of a command that every type supports.
+/// Returns an error if the exchange fails, or if the encoder rejects a command that every type supports.
 pub fn read_all_values(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Survey, Error> {
-    // The codes stay in the station until the survey is complete, so they are reported even if it fails.
+    // The codes stay in the station until the survey is complete, so that they are reported even if it fails.
     master.collect_codes()?;
     let mut survey = read_survey(master, types, progress, ReadPolicy::AsFarAsPossible)?;
     survey.codes = master.station().take_undisplayed_codes();
-    // A code that the encoder announced before applies to this position too.
+    // A code that the encoder announced before also applies to this position.
     let spoilt = survey.codes.iter().any(|code| code.invalidates_position());
     if let Some(PolledSample::Position(reading)) = &mut survey.position {
         reading.valid &= !spoilt;
@@ -45,7 +45,7 @@ pub fn read_all_values(
     Ok(survey)
 }
 
-/// Treatment of data fields that cannot be read.
+/// How to treat data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadPolicy {
     AsFarAsPossible,
@@ -53,7 +53,7 @@ pub(super) enum ReadPolicy {
     Whole,
 }
 
-/// Reads everything except the status queue.
+/// Reads all values except the status queue.
 pub(super) fn read_survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,

@@ -1,5 +1,5 @@
-//! Execution of a plan: reads the values on which it is based again, executes each operation, and reads all changes
-//! back.
+//! Execution of a plan. The values on which it is based are read again. Each operation is then executed, and all
+//! changes are read back.
 
 pub use crate::profile::WrittenChanges;
 
@@ -22,7 +22,7 @@ use crate::profile::Write;
 
 type ConfirmedPlan<'p> = crate::profile::ConfirmedPlan<'p, Base, Op>;
 
-/// Write that ended early.
+/// A write that ended early.
 pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl Write for EncoderWriter<'_, '_> {
     type Written = WrittenChanges;
     type EndState = EndState;
 
-    /// Checks that this is the encoder for which the plan was made. It also compares the memory, because two new
+    /// Checks that this is the encoder for which the plan was made. The memory is compared as well, because two new
     /// encoders can have the same identity.
     fn confirm_base(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
@@ -157,7 +157,7 @@ fn restore_write_protection(
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
         Err(error) => return Err(error),
     };
-    // The other changes of the plan are not made: only the protection is restored.
+    // The other changes of the plan are not made. Only the protection is restored.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
     let sent = execute(master, &lock, confirmed, range)?;
     done.write_cycles += u64::from(sent);
@@ -340,7 +340,8 @@ fn mismatch_error(op: &Op, expected: String, got: String) -> Error {
 /// Checks that no encoder replies at an address, since two encoders at one address can never be separated again.
 ///
 /// # Errors
-/// [`Error::AddressTaken`] if anything is received, errors of the connection, or cancellation.
+/// Returns [`Error::AddressTaken`] if anything is received, or another error if the connection fails or the job is
+/// cancelled.
 pub fn check_address_is_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.exchange_once(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
@@ -361,7 +362,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
 /// Reads all fields that require this access code. They show whether the code was changed.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_protected_fields(
     master: &mut Master<'_>,
     number: AccessCodeNumber,

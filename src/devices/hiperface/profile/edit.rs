@@ -4,10 +4,11 @@ use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, SingleVa
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
 /// Plans to write bytes to data fields. Adjacent or overlapping edits become one operation, in which the last edit of a
-/// byte counts. Operations without a change are omitted. `fields` contains each edited field once.
+/// byte applies. Operations without a change are omitted. `fields` contains each edited field once.
 ///
 /// # Errors
-/// A field is missing, protected or unreadable, or the bytes do not fit into the field or into their range.
+/// Returns an error if a field is missing, protected or unreadable, or if the bytes do not fit into the field or into
+/// their range.
 pub fn plan_store(
     field_count: u8,
     fields: &[FieldImage],
@@ -71,7 +72,7 @@ fn store_operations<'e>(
 /// Plans to create the next data field.
 ///
 /// # Errors
-/// `number` is not the next field number, or the memory is too small.
+/// Returns an error if `number` is not the next field number or the memory is too small.
 pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     if number != memory.fields {
         return Err(PlanError::NotNext { field: number, next: memory.fields });
@@ -85,7 +86,7 @@ pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> R
 /// Plans to change the protection, the access code or, for the last field, the size of a data field.
 ///
 /// # Errors
-/// The size of a field other than the last would change, or the memory is too small.
+/// Returns an error if the size of a field other than the last would change, or if the memory is too small.
 pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     let from = field.status;
     if to.size() != from.size() {
@@ -103,7 +104,7 @@ pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus
 /// Plans to delete the last data field.
 ///
 /// # Errors
-/// The field is not the last one.
+/// Returns an error if the field is not the last one.
 pub fn plan_delete(memory: FreeMemory, field: &FieldImage) -> Result<HiperfacePlan, PlanError> {
     check_is_last_field(memory, field.number)?;
     let op = Op::Define { field: field.number, from: Some(field.status), to: field.status.as_deleted() };

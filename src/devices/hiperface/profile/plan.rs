@@ -55,7 +55,7 @@ pub enum Op {
         status: DataFieldStatus,
         /// Previous bytes. They are `None` if they are unknown or the field does not exist yet.
         old: Option<Vec<u8>>,
-        /// New bytes, 1…128.
+        /// New bytes, 1 to 128.
         new: Vec<u8>,
     },
     /// Changes an access code with command 4Fh.
@@ -142,7 +142,7 @@ impl Op {
         ChangedItem::new(self.plan_item(), old, new)
     }
 
-    /// Returns the number of changes as in a comparison, in which each byte of a data field counts.
+    /// Returns the number of changes as in a comparison, in which each byte of a data field is counted.
     pub fn change_count(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,

@@ -52,7 +52,7 @@ pub struct ProfileIdentity {
 /// Address and interface settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
-    /// Address, 40h…5Fh.
+    /// Address, 40h to 5Fh.
     pub address: u8,
     /// Stored interface settings.
     pub settings: LineSettings,

@@ -34,8 +34,8 @@ pub struct RestoreOptions {
     /// Whether a field may be deleted and created again to change its size if it is not the last field. This also
     /// affects all fields after it.
     pub recreate: bool,
-    /// Decisions on data fields that contain bytes of unknown meaning and would be written to another encoder. `true`
-    /// copies the field. A field without a decision is left out.
+    /// Decisions about data fields that contain bytes of unknown meaning and would be written to another encoder.
+    /// `true` copies the field. A field without a decision is left unchanged.
     pub copy: BTreeMap<u8, bool>,
 }
 
@@ -59,7 +59,8 @@ pub struct Restore {
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields whose bytes of unknown meaning differ from those of another encoder.
     pub unknown_fields: Vec<UnknownMeaningField>,
-    /// Data fields created by the write that remain in place. They have changed since, or are not the last fields.
+    /// Data fields created by the write that are not deleted, because they have changed since then or are not the last
+    /// fields.
     pub created_left: Vec<u8>,
 }
 
@@ -84,7 +85,7 @@ impl fmt::Display for RequiredSetup {
 /// Plans to restore a profile to an encoder.
 ///
 /// # Errors
-/// See [`PlanError`]. Nothing has been written.
+/// Returns a [`PlanError`] if the restore is not possible. In this case, nothing has been written.
 pub fn plan_restore(
     profile: &HiperfaceProfile,
     device: &DeviceState,

@@ -6,7 +6,7 @@ use std::fmt;
 /// encoder is connected or the command has no reply.
 pub const BROADCAST: u8 = 0xFF;
 
-/// Address byte of an encoder, 40h…5Fh: device number 0…31 plus 40h.
+/// Address byte of an encoder, 40h to 5Fh: device number 0 to 31 plus 40h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DeviceAddress(u8);
 
@@ -20,7 +20,7 @@ impl DeviceAddress {
     /// Highest address, 5Fh.
     pub const LAST: DeviceAddress = DeviceAddress(0x5F);
 
-    /// Creates an address from a byte 40h…5Fh, or returns `None` for any other byte.
+    /// Creates an address from a byte 40h to 5Fh, or returns `None` for any other byte.
     pub const fn new(byte: u8) -> Option<Self> {
         if byte & 0xE0 == 0x40 { Some(DeviceAddress(byte)) } else { None }
     }

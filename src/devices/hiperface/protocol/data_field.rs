@@ -8,7 +8,7 @@ pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 /// Maximum number of data bytes in a 4Ah or 4Bh command.
 pub const MAX_TRANSFER: usize = 128;
 
-/// Number of one of the encoder's four access codes, 0…3.
+/// Number of one of the encoder's four access codes, 0 to 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AccessCodeNumber(u8);
 
@@ -16,7 +16,7 @@ impl AccessCodeNumber {
     /// Access code 0, which also protects the encoder's own settings.
     pub const ZERO: AccessCodeNumber = AccessCodeNumber(0);
 
-    /// Creates an access code number 0…3, or returns `None` for a greater number.
+    /// Creates an access code number 0 to 3, or returns `None` for a greater number.
     pub const fn new(number: u8) -> Option<Self> {
         if number < 4 { Some(AccessCodeNumber(number)) } else { None }
     }
@@ -63,7 +63,7 @@ impl fmt::Debug for AccessCode {
     }
 }
 
-/// Size of a data field: 16, 32, … 128 bytes.
+/// Size of a data field: 16, 32 and so on up to 128 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FieldSize(u8);
 
@@ -79,7 +79,7 @@ impl FieldSize {
         Self::from_blocks(u8::try_from(bytes / Self::BLOCK).ok()?)
     }
 
-    /// Creates a size from a number of blocks, or returns `None` unless it is 1…8.
+    /// Creates a size from a number of blocks from 1 to 8, or returns `None` for any other number.
     pub const fn from_blocks(blocks: u8) -> Option<Self> {
         if 0 < blocks && blocks <= 8 { Some(FieldSize(blocks)) } else { None }
     }

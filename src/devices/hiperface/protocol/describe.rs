@@ -10,7 +10,7 @@ use super::{
 pub enum FrameDetail {
     /// Address and command of the frame.
     Heading {
-        /// Address, 40h…5Fh, or FFh in a broadcast.
+        /// Address, 40h to 5Fh, or FFh in a broadcast.
         address: u8,
         /// Command byte as received, including the error bit.
         command: u8,
@@ -74,7 +74,7 @@ pub enum Arguments {
 /// Describes a captured frame, starting with its heading. If `request` is given, the frame may be the reply to it.
 ///
 /// # Errors
-/// The bytes are not a frame.
+/// Returns an error if the bytes are not a frame.
 pub fn describe_frame(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameDetail>, FrameError> {
     let frame = Frame::parse(bytes)?;
     let mut facts = vec![FrameDetail::Heading { address: frame.address, command: frame.command }];

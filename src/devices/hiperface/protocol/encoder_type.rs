@@ -94,8 +94,8 @@ impl EncoderTypes {
     /// Parses an encoder type table.
     ///
     /// # Errors
-    /// [`TypeTableError::Syntax`] if the table is not valid RON or has unknown keys, and [`TypeTableError::Range`] if a
-    /// number is out of range.
+    /// Returns [`TypeTableError::Syntax`] if the table is not valid RON or has unknown keys, or
+    /// [`TypeTableError::Range`] if a number is out of range.
     pub fn parse(text: &str) -> Result<Self, TypeTableError> {
         let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {
             line: error.span.start.line,
@@ -107,7 +107,7 @@ impl EncoderTypes {
 
     /// Returns the built-in table.
     pub fn built_in() -> Self {
-        // A test checks that it can be parsed; an empty table would only make every type unknown.
+        // A test checks that the table can be parsed. An empty table would only make every type unknown.
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
     }
 

@@ -24,7 +24,7 @@ pub struct ExtendedLabel {
 /// can read a quantity, the first word of the quantity is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
-    /// Number of the limit: 0…14 in the first set, 15…29 in the second, 30…44 in the third.
+    /// Number of the limit: 0 to 14 in the first set, 15 to 29 in the second, 30 to 44 in the third.
     pub number: u8,
     /// Value in two's complement.
     pub value: i16,
@@ -37,11 +37,11 @@ pub enum LabelPart {
     Checksum,
     /// Flags in byte 01h.
     Flags,
-    /// Periods per revolution, or period length in nanometres, in bytes 02h…05h.
+    /// Periods per revolution, or period length in nanometres, in bytes 02h to 05h.
     Resolution(u32),
-    /// Number of revolutions, or coded range in periods, in bytes 06h…09h.
+    /// Number of revolutions, or coded range in periods, in bytes 06h to 09h.
     Range(u32),
-    /// Designation in bytes 0Ah…1Bh.
+    /// Designation in bytes 0Ah to 1Bh.
     Designation,
     /// Selector word of a set: bits 0 to 14 mark valid limits, and bit 15 indicates another set.
     Selector(u16),
@@ -59,7 +59,7 @@ pub enum LabelPart {
 /// Reason why a data field does not contain an extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
-    /// The content is too short for the description in bytes 00h…1Bh.
+    /// The content is too short for the description in bytes 00h to 1Bh.
     #[error("{got} bytes are too few for an extended type label of at least {}", ExtendedLabel::MIN_BYTES)]
     Short {
         /// Length of the content in bytes.
@@ -68,7 +68,7 @@ pub enum LabelError {
 }
 
 impl ExtendedLabel {
-    /// Minimum length of a label in bytes: the description in bytes 00h…1Bh, without limits.
+    /// Minimum length of a label in bytes: the description in bytes 00h to 1Bh, without limits.
     pub const MIN_BYTES: usize = 0x1C;
     /// Bit 0 of the flags, set for a linear encoder.
     pub const LINEAR: u8 = 0x01;
@@ -80,7 +80,7 @@ impl ExtendedLabel {
     /// Parses the content of field FFh. Limits beyond the end of the field are omitted.
     ///
     /// # Errors
-    /// [`LabelError::Short`] if the description is incomplete.
+    /// Returns [`LabelError::Short`] if the description is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, LabelError> {
         let (description, sets) =
             bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;
@@ -116,7 +116,7 @@ impl ExtendedLabel {
     /// Returns the parts of the label, each with its address, length in bytes, and meaning.
     ///
     /// # Errors
-    /// [`LabelError::Short`] if the description is incomplete.
+    /// Returns [`LabelError::Short`] if the description is incomplete.
     pub fn parse_parts(bytes: &[u8]) -> Result<Vec<(usize, usize, LabelPart)>, LabelError> {
         let (description, mut sets) =
             bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;

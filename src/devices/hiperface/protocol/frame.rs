@@ -8,7 +8,7 @@ pub fn checksum(bytes: &[u8]) -> u8 {
 /// Frame with a valid checksum. The command defines the meaning of the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Address byte as received: 40h…5Fh, or FFh in a broadcast.
+    /// Address byte as received: 40h to 5Fh, or FFh in a broadcast.
     pub address: u8,
     /// Command byte as received, including the error bit.
     pub command: u8,
@@ -42,7 +42,8 @@ impl<'a> Frame<'a> {
     /// Parses a slice that contains exactly one frame. On the line, silence marks the end of a frame.
     ///
     /// # Errors
-    /// [`FrameError::Short`] for fewer than three bytes, [`FrameError::Checksum`] if the checksum does not match.
+    /// Returns [`FrameError::Short`] for fewer than three bytes, or [`FrameError::Checksum`] if the checksum does not
+    /// match.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
         let [address, command, payload @ .., got] = bytes else {
             return Err(FrameError::Short { got: bytes.len() });

@@ -51,13 +51,13 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
-    /// Returns a copy with a time-out of 44/baud if `long` is set, or else 11/baud.
+    /// Returns a copy with a time-out of 44/baud if `long` is set, and of 11/baud otherwise.
     #[must_use]
     pub const fn with_long_timeout(self, long: bool) -> Self {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// Returns a copy for a bus with several encoders if `bus` is set, or else for a single encoder.
+    /// Returns a copy for a bus with several encoders if `bus` is set, and for a single encoder otherwise.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })

@@ -93,7 +93,7 @@ pub enum ReplyError {
 pub struct ReplyLength {
     /// Minimum length.
     pub min: usize,
-    /// Maximum length. No bytes follow after it.
+    /// Maximum length, after which no more bytes follow.
     pub max: usize,
 }
 
@@ -123,11 +123,11 @@ impl Request {
         }
     }
 
-    /// Parses the reply to this request. `address` is the address in the request, 40h…5Fh or broadcast.
+    /// Parses the reply to this request. `address` is the address in the request, 40h to 5Fh or broadcast.
     ///
     /// # Errors
-    /// The frame is damaged, or its sender, command, length or arguments do not match the request. No value from such a
-    /// reply may be displayed.
+    /// Returns an error if the frame is damaged, or if its sender, command, length or arguments do not match the
+    /// request. No value from such a reply may be displayed.
     pub fn parse_reply(&self, address: u8, bytes: &[u8]) -> Result<Answer, ReplyError> {
         let frame = Frame::parse(bytes)?;
         self.check_sender(address, frame.address)?;

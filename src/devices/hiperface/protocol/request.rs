@@ -41,7 +41,7 @@ pub enum Request {
         field: u8,
         /// Index of the first byte within the field.
         address: u8,
-        /// Number of bytes, 1…128.
+        /// Number of bytes, 1 to 128.
         count: u8,
         /// Access code of the field. The encoder ignores it if CE is 0.
         code: AccessCode,
@@ -54,7 +54,7 @@ pub enum Request {
         address: u8,
         /// Access code of the field.
         code: AccessCode,
-        /// Bytes to write, 1…128.
+        /// Bytes to write, 1 to 128.
         data: Vec<u8>,
     },
     /// Reads the status byte of a data field (4Ch).
@@ -175,7 +175,7 @@ impl Request {
         }
     }
 
-    /// Returns the frame to send. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
+    /// Returns the frame to send. `address` is 40h to 5Fh or [`BROADCAST`](super::BROADCAST).
     pub fn emit(&self, address: u8) -> MaskableFrame {
         let (payload, codes) = self.payload();
         let frame = Frame { address, command: self.command().byte(), payload: &payload };
@@ -190,8 +190,8 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// The checks have the order of an encoder (`U`): first the command, then the number of arguments, then their
-    /// ranges.
+    /// Returns a [`RequestError`] for the first check that fails. As in an encoder (`U`), the command is checked first,
+    /// then the number of arguments, then their ranges.
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)
@@ -310,7 +310,7 @@ impl Request {
     }
 }
 
-/// Bytes of a request, of which those that reveal an access code are marked.
+/// Bytes of a request in which those that reveal an access code are marked.
 #[derive(Clone, PartialEq, Eq)]
 pub struct MaskableFrame {
     bytes: Vec<u8>,

@@ -114,8 +114,8 @@ impl StatusCode {
         matches!(self.0, 0x08 | 0x1C..=0x1E)
     }
 
-    /// Returns whether a position read together with this code is unreliable. This is the case for 01h…06h and 1Fh…23h.
-    /// Codes 09h…12h concern a frame or a data field and never invalidate a position.
+    /// Returns whether a position read together with this code is unreliable. This is the case for 01h to 06h and 1Fh
+    /// to 23h. Codes 09h to 12h concern a frame or a data field and never invalidate a position.
     pub fn invalidates_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }

@@ -22,7 +22,8 @@ impl Timing {
     /// Maximum time during which the encoder does not receive while it applies the stored settings.
     pub const SWITCH: Duration = Duration::from_millis(200);
 
-    /// Creates the timing for a character format. The time-out is 44 bits if `long_timeout` is set, or else 11 bits.
+    /// Creates the timing for a character format. The time-out is 44 bits if `long_timeout` is set, and 11 bits
+    /// otherwise.
     pub fn new(format: CharacterFormat, long_timeout: bool) -> Self {
         let bits = if long_timeout { 44 } else { 11 };
         Timing { character: format.character_time(), timeout: format.baud.duration_of_bits(bits) }

@@ -44,8 +44,8 @@ impl SerialLabel {
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
     /// Parses the payload, in which the firmware version is between the first nine and the last eight bytes. Returns
-    /// `None` unless there are [17](Self::MIN_PAYLOAD)…[37](Self::MAX_PAYLOAD) bytes. Bytes that are not printable
-    /// ASCII are written as `\xNN`.
+    /// `None` unless there are from [17](Self::MIN_PAYLOAD) to [37](Self::MAX_PAYLOAD) bytes. Bytes that are not
+    /// printable ASCII are written as `\xNN`.
     pub fn parse(payload: &[u8]) -> Option<Self> {
         if payload.len() > Self::MAX_PAYLOAD {
             return None;

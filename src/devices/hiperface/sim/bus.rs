@@ -127,7 +127,7 @@ impl Bus {
             };
             let clean = !collides && format == travelling.format;
             let byte = if clean { byte } else { garbage_byte(&mut self.wires.rng) };
-            // Without a parity bit a flipped bit is not detected.
+            // Without a parity bit, a flipped bit is not detected.
             let intact = clean && (!flipped || format.parity == Parity::None);
             encoder.handle_input(ReceivedCharacter { start, end, byte, intact });
         }

@@ -34,11 +34,12 @@ parameters! {
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key is repeated, its last value counts. Numbers are decimal or
-    /// `0x…`. Several encoders have consecutive addresses and serial numbers, starting with those of the first.
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal or
+    /// hexadecimal with the prefix `0x`. Several encoders have consecutive addresses and serial numbers, starting with
+    /// those of the first.
     ///
     /// # Errors
-    /// A key or a value is invalid. The error names the key and the allowed values.
+    /// Returns an error with the key and the allowed values if a key or a value is invalid.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let config: Config = setting::read(VirtualDevice::Encoder, pairs)?;
         config.check_combination()?;
@@ -49,7 +50,8 @@ impl Config {
         DeviceAddress::new(self.address.byte().saturating_add(index)).unwrap_or(self.address)
     }
 
-    /// Returns the serial number of an encoder. Its final digits count up with `index` to keep encoders apart.
+    /// Returns the serial number of an encoder. Its final digits increase with `index`, so that the encoders can be
+    /// distinguished.
     pub(super) fn serial_number_of(&self, index: u8) -> String {
         let first = self.serial_number.as_deref().unwrap_or(self.model.serial_number);
         let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -70,7 +72,7 @@ impl Config {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Returns whether the requested type has no bearing. If the type is unknown, the model decides.
+    /// Returns whether the requested type has no bearing. If the type is unknown, this is taken from the model.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }

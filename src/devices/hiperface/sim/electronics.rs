@@ -122,7 +122,7 @@ impl EncoderElectronics {
     /// Executes a request at time `at`, and returns the data of its reply. 53h has no effect and no data here.
     ///
     /// # Errors
-    /// The status code with which the encoder rejects the request. Nothing has changed.
+    /// Returns the status code with which the encoder rejects the request. In this case, nothing has changed.
     pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
         let data = self.execute_request(at, request)?;
         let command = request.command();
@@ -214,7 +214,7 @@ impl EncoderElectronics {
     /// Writes only the first half of the bytes of 4Bh, as during a power failure.
     ///
     /// # Errors
-    /// The errors of a complete store.
+    /// Returns the same errors as a complete store.
     pub(super) fn store_first_half(
         &mut self,
         field: u8,
@@ -263,7 +263,7 @@ fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {
         let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
-        // If the name plate does not fit, the field is left out.
+        // If the name plate does not fit, the field is omitted.
         let _ = memory
             .define_field(0, status, AccessCode::FACTORY)
             .and_then(|()| memory.store_bytes(0, 0, model.name_plate, AccessCode::FACTORY));

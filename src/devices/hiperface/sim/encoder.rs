@@ -1,14 +1,15 @@
-//! A virtual encoder on the line: when it listens, how long it works, when it replies, and with which settings. See the
-//! manual, "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of commands are in
-//! [`electronics`](super::electronics). Only the [`Bus`](super::Bus) knows other senders.
+//! A virtual encoder on the line: when it listens, how long it processes a request, when it replies, and with which
+//! settings. See the manual, "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of
+//! commands are in [`electronics`](super::electronics). Only the [`Bus`](super::Bus) knows about other senders.
 //!
 //! ```text
 //! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER
 //!                                               └── plausible command: keeps the factory settings
 //! listening ── silence ≥ time-out ──▶ executing ──▶ talking ──▶ listening
 //! ```
-//! Assumptions where the manual is silent (`U`): if bytes are lost because the encoder works or sends, the rest of
-//! their frame is lost too. Its own reply ends a frame at once. A damaged broadcast is not answered.
+//! Assumptions where the manual leaves the behaviour open (`U`): If bytes are lost because the encoder processes a
+//! request or sends, the rest of their frame is lost too. The encoder's own reply ends a frame immediately. A damaged
+//! broadcast is not answered.
 
 use std::time::Duration;
 
@@ -82,7 +83,7 @@ pub struct Encoder {
     /// Interface settings changed with 67h, until the next start.
     temporary: Option<LineSettings>,
     activity: Activity,
-    /// End of the last lost character. The rest of its frame is lost too.
+    /// End of the last lost character. The rest of its frame is also lost.
     lost: Option<Moment>,
     frames_processed: u32,
     stores_begun: u32,
@@ -158,7 +159,7 @@ impl Encoder {
         self.electronics.counter
     }
 
-    /// Sets the counter to the lowest 24 bits of `counter`. This does not count as a write.
+    /// Sets the counter to the lowest 24 bits of `counter`. This is not counted as a write.
     pub fn set_counter(&mut self, counter: u32) {
         self.electronics.counter = counter & 0x00FF_FFFF;
     }
@@ -212,7 +213,7 @@ impl Encoder {
         }
     }
 
-    /// Changes the simulated faults. The counts of frames and stores continue.
+    /// Replaces the simulated faults. The counts of frames and stores are kept.
     pub(super) fn set_faults(&mut self, faults: SimulatedFaults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;
@@ -353,7 +354,7 @@ impl Encoder {
             Timing::from_settings(settings).map_or(Duration::ZERO, |timing| timing.time_of_characters(bytes.len()));
         self.activity = Activity::Talking { until: at + talk };
         if let Ok((Request::ConfigureLineTemporarily { settings }, _)) = outcome {
-            // The new settings apply from the end of the reply. Until then nothing is received.
+            // The new settings apply from the end of the reply. Until then, nothing is received.
             self.temporary = Some(settings);
         }
         Some(Transmission { start: at, settings, bytes })

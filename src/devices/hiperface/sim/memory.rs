@@ -2,8 +2,8 @@
 //! Requests are rejected with the status codes of the reference. The order of the checks is field (12h), range (11h),
 //! access code (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
 //!
-//! Assumptions where the manual is silent (`U`): bytes that were never written are FFh. The bytes of a deleted field
-//! remain and reappear in a field created in their place. Changing a field requires its present code.
+//! Assumptions where the manual leaves the behaviour open (`U`): Bytes that were never written are FFh. The bytes of a
+//! deleted field remain and reappear in a field created in their place. Changing a field requires its current code.
 
 use std::ops::Range;
 
@@ -51,7 +51,7 @@ impl Memory {
     /// Returns the free memory (4Eh).
     pub fn free_memory(&self) -> FreeMemory {
         let blocks = (self.bytes.len() - self.used_bytes()) / FieldSize::BLOCK;
-        // Both fit: a memory has at most 255 blocks, and a field at least one.
+        // Both numbers fit, because a memory has at most 255 blocks and a field has at least one.
         let byte = |count: usize| u8::try_from(count).unwrap_or(u8::MAX);
         FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
     }
@@ -59,7 +59,7 @@ impl Memory {
     /// Returns the status of a field (4Ch).
     ///
     /// # Errors
-    /// 12h if the field does not exist.
+    /// Returns 12h if the field does not exist.
     pub fn status(&self, field: u8) -> Result<DataFieldStatus, StatusCode> {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_ref().map(|_| Self::LABEL_STATUS).ok_or(StatusCode::NO_SUCH_FIELD);
@@ -76,14 +76,14 @@ impl Memory {
     }
 
     pub fn code(&self, number: AccessCodeNumber) -> AccessCode {
-        // A number is 0…3, so the fallback is never used.
+        // A number is 0 to 3, so the fallback is never used.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
     /// Reads bytes of a field (4Ah).
     ///
     /// # Errors
-    /// 12h, 11h, or 0Fh if the field requires another access code.
+    /// Returns 12h or 11h if the bytes do not exist, or 0Fh if the field requires another access code.
     pub fn read(&self, field: u8, address: u8, count: u8, code: AccessCode) -> Result<&[u8], StatusCode> {
         let status = self.status(field)?;
         let bytes = self.field_bytes(field).ok_or(StatusCode::NO_SUCH_FIELD)?;
@@ -96,7 +96,8 @@ impl Memory {
     /// Checks whether `count` bytes could be written with 4Bh.
     ///
     /// # Errors
-    /// 12h, 11h, 0Fh if the field requires another access code, or 0Eh if it is write-protected. FFh always is.
+    /// Returns 12h or 11h if the bytes do not exist, 0Fh if the field requires another access code, or 0Eh if it is
+    /// write-protected, as FFh always is.
     pub fn check_store_request(
         &self,
         field: u8,
@@ -115,7 +116,7 @@ impl Memory {
     /// Writes bytes of a field (4Bh).
     ///
     /// # Errors
-    /// See [`check_store_request`](Self::check_store_request). No data is written.
+    /// Returns an error of [`check_store_request`](Self::check_store_request). In this case, no data is written.
     pub fn store_bytes(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
         self.check_store_request(field, address, data.len(), code)?;
         let start = self.field_range(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
@@ -127,8 +128,8 @@ impl Memory {
     /// Creates the next field, or changes or deletes an existing one (4Dh).
     ///
     /// # Errors
-    /// 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, or 10h if the memory is too
-    /// small. 10h also rejects deleting a field other than the last, or changing its size.
+    /// Returns 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, or 10h if the memory is
+    /// too small. 10h is also returned if a field other than the last would be deleted or change its size.
     pub fn define_field(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         let next = usize::from(field) == self.fields.len() && field != EXTENDED_LABEL_FIELD;
         match (next, status.exists()) {
@@ -141,7 +142,7 @@ impl Memory {
     /// Changes an access code (4Fh).
     ///
     /// # Errors
-    /// 0Fh if `old` is not the present value.
+    /// Returns 0Fh if `old` is not the current value.
     pub fn change_code(
         &mut self,
         number: AccessCodeNumber,

@@ -26,10 +26,10 @@ pub struct Model {
     pub position: u32,
     /// Temperature in degrees Celsius above which code 1Eh is reported.
     pub temperature_limit: i16,
-    /// Content of data field 0, in multiples of 16 bytes. The status of 32 bytes is C9h. Without content there is no
-    /// such field.
+    /// Content of data field 0, in multiples of 16 bytes. A field of 32 bytes has the status C9h. If the content is
+    /// empty, the encoder does not have the field.
     pub name_plate: &'static [u8],
-    /// Content of field FFh, which is padded with 00h to 64 bytes. Without content there is no extended label.
+    /// Content of field FFh, which is padded with 00h to 64 bytes. If it is empty, the encoder has no extended label.
     pub extended_label: &'static [u8],
 }
 

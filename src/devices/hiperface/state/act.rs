@@ -1,4 +1,4 @@
-//! Actions of the user on an encoder. Edits take effect at once. All other actions start a job of the session or a
+//! Actions of the user on an encoder. Edits take effect immediately. All other actions start a job of the session or a
 //! task.
 
 use std::time::Duration;
@@ -89,7 +89,7 @@ impl Encoder {
     pub(super) fn edit_bytes(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
         let allowed = match (&self.session.phase, self.field(field)) {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
-            // A profile can always be edited. The write protection that it records applies to the encoder only.
+            // A profile can always be edited. The write protection that it records only applies to the encoder.
             (Phase::Offline, _) | (_, None) => Ok(()),
             (_, Some(image)) => self.reason_not_editable(image).map_or(Ok(()), Err),
         };

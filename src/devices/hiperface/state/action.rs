@@ -18,7 +18,6 @@ pub enum HiperfaceAction {
     /// Reads position, sine and cosine while the shaft is at rest.
     ReadRest,
     ReadCounter,
-    /// Runs the device check.
     Check {
         /// Whether the encoder is restarted first with command 53h.
         restart: bool,

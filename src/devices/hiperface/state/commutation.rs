@@ -59,7 +59,7 @@ pub struct RestReading {
     /// Position in signal periods, within the whole range of the encoder.
     pub fine_periods: f64,
     pub kind: PositionKind,
-    /// Position word of the encoder, or `None` for a typed position.
+    /// Position word of the encoder, or `None` if the position was typed.
     pub raw: Option<u32>,
 }
 
@@ -122,8 +122,8 @@ impl Commutation {
         }
     }
 
-    /// Handles a failed job. Returns whether the job was the requested reading, whose error is then shown with the
-    /// request.
+    /// Handles a failed job. Returns whether the job was the requested reading. In that case, its error is shown with
+    /// the request.
     pub(super) fn handle_failure(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
@@ -172,7 +172,7 @@ impl PendingReading {
     }
 }
 
-/// Combines the absolute position and the phase. Fails if the residual exceeds 14/32 of a period.
+/// Combines the absolute position and the phase. Returns an error if the residual exceeds 14/32 of a period.
 fn fine_reading(
     raw: u32,
     phase: Phase,

@@ -86,7 +86,7 @@ impl FormModel for LinkForm {
             LinkScheme::Sim => form.kind = LinkKind::Virtual,
             LinkScheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             LinkScheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
-            // These links do not lead to a HIPERFACE encoder.
+            // These schemes are not used for HIPERFACE encoders.
             LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip => {}
             LinkScheme::Tcp => {
                 form.kind = LinkKind::Tcp;

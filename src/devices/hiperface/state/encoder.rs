@@ -116,8 +116,8 @@ impl Encoder {
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
-        // Without a serial number, it may be any encoder of this type. It counts as the same encoder if its memory is
-        // unchanged.
+        // Without a serial number, this may be any encoder of the type. It is considered the same encoder if its memory
+        // is unchanged.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
         if self.is_different_device(&identity) || (self.identity.is_some() && unproven) {
             self.handle_device_replacement(&identity.serial.serial_number, services);
@@ -183,7 +183,7 @@ impl Encoder {
         services.notify(severity, vec![text.with("number", number)], Some(&self.session.name()));
     }
 
-    /// Returns whether this is another encoder than before, judged by its type and serial number.
+    /// Returns whether the type or the serial number shows that this is a different encoder.
     pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))

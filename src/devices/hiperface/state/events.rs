@@ -273,7 +273,7 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. The rejection of an analogue channel counts as a result of the reading.
+    /// Handles a failed job. The rejection of an analogue channel is treated as a result of the reading.
     fn handle_failed_job(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);

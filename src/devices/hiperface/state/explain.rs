@@ -67,7 +67,7 @@ pub fn interruption_text(interrupted: &InterruptedWrite, backup: &Path, planned:
         let fields: Vec<String> = interrupted.end_state.unlocked.iter().map(ToString::to_string).collect();
         texts.push(TEXTS.text("write.left_unlocked").with("fields", fields.join(", ")));
     }
-    // An operation with an unknown result counts as a write cycle.
+    // An operation with an unknown result is counted as a write cycle.
     let id = match kind {
         _ if done.write_cycles == 0 => "write.untouched",
         ChangeKind::Restore => "write.backup",

@@ -7,7 +7,7 @@ use crate::devices::hiperface::state::TEXTS;
 
 /// Maximum number of digits before and after the decimal point.
 const DIGITS: usize = 12;
-/// Number of decimals of a distance or an angle that is at least displayed.
+/// Minimum number of decimals displayed for a distance or an angle.
 const DECIMALS: u32 = 3;
 const NANOMETRES: u128 = 1_000_000;
 
@@ -22,7 +22,7 @@ pub enum PositionUnit {
     Millimetres,
 }
 
-/// A position as typed. The number of turns is used in [`PositionUnit::TurnsAndDegrees`] alone.
+/// A position as typed. The number of turns is only used for [`PositionUnit::TurnsAndDegrees`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PositionEntry {
     pub unit: PositionUnit,
@@ -76,11 +76,11 @@ impl PositionEntry {
         }
     }
 
-    /// Returns the position in steps. Steps are decimal, or hexadecimal with `0x`. An angle or a distance between two
-    /// steps is the nearer one of them.
+    /// Returns the position in steps. Steps are decimal, or hexadecimal with the prefix `0x`. An angle or a distance is
+    /// rounded to the nearest step.
     ///
     /// # Errors
-    /// Returns an error if the entry is not a position of the encoder. The message contains the range.
+    /// Returns an error with the range if the entry is not a position of the encoder.
     pub fn steps(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         let last =
             geometry.and_then(Geometry::position_count).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
@@ -89,7 +89,7 @@ impl PositionEntry {
         u32::try_from(steps).ok().filter(|steps| u64::from(*steps) <= last).ok_or_else(refused)
     }
 
-    /// Returns the entry in another unit. An entry that is no position stays as typed.
+    /// Returns the entry in another unit. An entry that is not a position remains as typed.
     #[must_use]
     pub fn converted(&self, unit: PositionUnit, geometry: Option<Geometry>) -> Self {
         match self.steps(geometry) {
@@ -176,8 +176,8 @@ fn nearest(text: &str, (above, below): (u128, u128)) -> Option<u128> {
     Some(number.checked_mul(above)?.checked_add(below / 2)? / below.max(1))
 }
 
-/// Formats `steps` times the fraction with at least `least` decimals, and with so many that a step can be told from the
-/// next one.
+/// Formats `steps` times the fraction. The result has at least `least` decimals, and enough to distinguish consecutive
+/// steps.
 fn ratio(steps: u128, (above, below): (u128, u128), least: u32) -> String {
     let below = below.max(1);
     let decimals = (least..DIGITS as u32).find(|own| above * 10_u128.pow(*own) > below).unwrap_or(DIGITS as u32);

@@ -1,4 +1,4 @@
-//! Checks that stored drafts are read and written unchanged.
+//! Checks that stored drafts can be read, and are the same after they are written back.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperface::jobs::Hiperface;

@@ -104,7 +104,7 @@ impl Reviewable for Hiperface {
             let code = match op {
                 Op::Store { status, .. } => Some(status.code()),
                 Op::Define { from, to, .. } => Some(from.unwrap_or(*to).code()),
-                // The telegrams of these commands contain access code 0.
+                // The frames of these commands contain access code 0.
                 Op::SetPosition { .. } | Op::SetAddress { .. } | Op::Configure { .. } | Op::ClearCounter { .. } => {
                     Some(AccessCodeNumber::ZERO)
                 }

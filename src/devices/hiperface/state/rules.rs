@@ -1,5 +1,5 @@
-//! Rules of the encoder for data fields, checked before an action is offered. The check makes the same plan as the
-//! write, from the memory as last read.
+//! Rules of the encoder for data fields, which are checked before an action is offered. The check makes the same plan
+//! as the write, from the memory as last read.
 
 use super::StagedEdits;
 use crate::app::Text;

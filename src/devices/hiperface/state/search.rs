@@ -110,7 +110,7 @@ impl Search {
     pub(crate) fn stop(&mut self) {
         match &mut self.line {
             Some(line) => line.stop(),
-            // The link is still being opened. This may never end.
+            // The link is still being opened, which may never end.
             None => self.end = Some(TEXTS.text("find.cut_short").with("count", 0)),
         }
     }

@@ -1,5 +1,5 @@
-//! Data fields of the encoder with the edited bytes. No data is written to the encoder here. The plan of a write is
-//! made from the differences.
+//! Data fields of the encoder with the edited bytes. The plan of a write is made from the differences. This module does
+//! not write anything to the encoder.
 //!
 //! Edits survive a new reading. An edited byte keeps its edited value, and all other bytes take the value from the
 //! encoder. If a field cannot be read because its access code is unknown, its edits are kept until the field is
@@ -15,8 +15,8 @@ impl EditBase for Vec<FieldImage> {
     type Location = (u8, usize);
     type Value = u8;
 
-    /// Returns whether a byte differs from the encoder's byte. In a field that could not be read, every byte counts as
-    /// different.
+    /// Returns whether a byte differs from the encoder's byte. In a field that could not be read, every byte is treated
+    /// as different.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -106,7 +106,7 @@ impl StagedEdits {
     /// Edits consecutive bytes of a field as one undoable step.
     ///
     /// # Errors
-    /// Returns an error without any change if the field does not exist, is locked or is too short.
+    /// Returns an error without changing anything if the field does not exist, is locked or is too short.
     pub fn edit_bytes(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), ByteEditError> {
         let image = self.field(field).ok_or(ByteEditError::NoField { field })?;
         let size = image.bytes.as_ref().ok_or(ByteEditError::Locked { field })?.len();
@@ -125,7 +125,7 @@ impl StagedEdits {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Adopts the edits of a draft. Edits of missing bytes and edits without effect are left out.
+    /// Adopts the edits of a draft. Edits of missing bytes and edits without effect are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.edit_values(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }

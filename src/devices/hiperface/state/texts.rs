@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Messages of HIPERFACE encoders. Names that it does not define refer to common messages.
+/// The catalogue of HIPERFACE messages. The common catalogue provides all other IDs.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/hiperface.ron"));

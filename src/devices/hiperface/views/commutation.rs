@@ -32,7 +32,7 @@ const MIN_TWO_COLUMN_WIDTH: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
-    // The report is below the shorter of two columns, or at the end of a single one.
+    // The report is below the shorter of two columns, or at the end of a single column.
     let wide = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     split(
         ui,
@@ -103,7 +103,7 @@ fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     two_numbers_ui(ui, theme, ("commutation.current", current, ""), ("commutation.time", time, ""));
 }
 
-/// Draws two numbers in one row if there is room. Each has the ID of its name, its text and its hint.
+/// Draws two numbers in one row if there is enough space. Each has the ID of its name, its text and its hint.
 fn two_numbers_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -168,7 +168,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
             let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
             limit.on_hover_text(translate(theme, "commutation.limit_hint"));
         }
-        // The card of the offset names an entry that is missing or invalid.
+        // The card of the offset names the entry that is missing or invalid.
     });
 }
 
@@ -221,7 +221,8 @@ fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
     });
 }
 
-/// Draws a message in a space of constant height. The layout does not move when the message appears or disappears.
+/// Draws a message in a space of constant height, so that the layout does not move when the message appears or
+/// disappears.
 pub(super) fn fixed_height_message_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
     let room = egui::vec2(ui.available_width(), MESSAGE_LINES * theme.sizes.body * 1.4);
     ui.allocate_ui(room, |ui| {
@@ -273,7 +274,7 @@ fn slot_ui(
     }
 }
 
-/// Draws the position of a slot and its source. The height is one line, also without a reading.
+/// Draws the position of a slot and its source. The height is one line even without a reading.
 fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: VectorSlot) {
     let Some(reading) = encoder.commutation.reading_of(slot) else {
         ui.label(theme.monospace("–").color(theme.palette.muted));

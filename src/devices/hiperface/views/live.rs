@@ -35,7 +35,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
     if ui.available_height() < LOW_PANEL_HEIGHT {
-        // In a window of small height, the plot needs the space.
+        // In a low window, the plot needs the space.
         let mut words = format!("{:08X}h", reading.raw);
         if let Some((turns, steps)) = place {
             words = format!(

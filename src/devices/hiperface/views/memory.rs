@@ -188,7 +188,7 @@ fn field_ui(
         });
     } else {
         egui::ScrollArea::vertical().id_salt("field").auto_shrink(false).show(ui, |ui| {
-            // Space for the focus ring.
+            // Leave room for the focus ring.
             ui.add_space(theme.space.inside);
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             if let [mark, ..] = marks.as_slice() {

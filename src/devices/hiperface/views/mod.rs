@@ -87,7 +87,7 @@ impl TypedDeviceView for HiperfaceView {
         actions: &mut Vec<Action>,
     ) {
         if page == Page::Memory {
-            // The editor scrolls, and its buttons stay in place.
+            // The editor handles its own scrolling, so that its buttons stay in place.
             egui::Frame::NONE
                 .inner_margin(page::page_margin(ui, theme))
                 .show(ui, |ui| memory::page_ui(ui, theme, (studio, device), encoder, &mut view.memory, actions));

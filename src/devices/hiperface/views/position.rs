@@ -1,4 +1,5 @@
-//! The card that sets the position: the new position in a unit of choice, its meaning in the others, and the undo.
+//! The card that sets the position: the new position in a selectable unit, its meaning in the other units, and the
+//! undo.
 
 use egui::Ui;
 
@@ -39,7 +40,7 @@ pub(super) fn card_ui(
         paragraph(ui, theme.label(translate(theme, "position_card.words")));
         let place = |steps: Option<u32>| {
             let words = steps.map(|steps| theme.format_text(&position_text(steps, geometry)));
-            // Steps and angle are on lines of their own, also while there is no value: nothing below moves.
+            // Steps and angle are on separate lines even if there is no value, so that nothing below moves.
             theme.monospace(words.unwrap_or_else(|| "– · ".to_owned()).replace(" · ", "\n"))
         };
         row(ui, theme, &translate(theme, "position_card.now"), place(encoder.record.last().map(|own| own.raw)));
@@ -71,7 +72,7 @@ pub(super) fn card_ui(
     });
 }
 
-/// Draws the entry of the new position with its unit. A position that was typed is converted to the chosen unit.
+/// Draws the entry of the new position with its unit. If the unit is changed, the typed position is converted.
 fn entry_ui(ui: &mut Ui, theme: &Theme, geometry: Option<Geometry>, own: &mut PositionEntry) {
     let units = PositionUnit::available(geometry);
     if !units.contains(&own.unit) {
@@ -100,7 +101,7 @@ fn entry_ui(ui: &mut Ui, theme: &Theme, geometry: Option<Geometry>, own: &mut Po
     });
 }
 
-/// Draws the last change of the position and its undo. The encoder cannot report the difference.
+/// Draws the last change of the position with a button to undo it. The encoder cannot report the change.
 fn undo_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, geometry: Option<Geometry>, actions: &mut Vec<Action>) {
     let Some((from, to)) = encoder.position_set else { return };
     let steps = i64::from(from) - i64::from(to);

@@ -41,9 +41,9 @@ mod tests {
     use crate::devices::hiperface::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted
-    /// in pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most
-    /// 8, no 130 Ω, terminated at the one farthest from the master).
+    /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7 to 12 V, typically 8 V, overall screen,
+    /// twisted in pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version:
+    /// at most 8, no 130 Ω, terminated at the one farthest from the master).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

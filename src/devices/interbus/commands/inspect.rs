@@ -1,4 +1,4 @@
-//! The commands `identify`, `status` and `read`, which only read.
+//! The read-only commands `identify`, `status` and `read`.
 
 use serde_json::{Value as Json, json};
 

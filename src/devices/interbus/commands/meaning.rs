@@ -48,7 +48,7 @@ pub(super) fn k1_word_meaning(word: SingleWord) -> WordMeaning {
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
-/// Returns the meanings of an OUT word. The error explains why the word must not be sent.
+/// Returns the meanings of an OUT word, or an error with the reason if the word must not be sent.
 pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::all_meanings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {

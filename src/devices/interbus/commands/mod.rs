@@ -102,7 +102,7 @@ impl DeviceCommands for InterbusCommands {
     }
 }
 
-/// Parses the name of an item. A program or cam that does not exist is reported as out of range.
+/// Parses the name of an item. If its program or cam does not exist, the error states the valid range.
 fn parse_item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
@@ -121,8 +121,8 @@ enum DisturbanceLevel {
 }
 
 impl DisturbanceLevel {
-    /// Announces the effect before a command begins. If live outputs switch, the user has to confirm on a terminal.
-    /// This is not required after a write was approved, for a virtual encoder or without a terminal.
+    /// Announces the effect before a command begins. If live outputs switch, the user has to confirm on a terminal. No
+    /// confirmation is required after a write was approved, for a virtual encoder, or without a terminal.
     fn confirm_start(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
         self.print_effect(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);

@@ -39,7 +39,7 @@ fn reduces_steps(op: &Op) -> bool {
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
-/// Executes a plan after consent, if consent is required. An empty plan does not send anything.
+/// Executes a plan after asking for consent if required. An empty plan sends nothing.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,

@@ -61,8 +61,8 @@ impl ProfileCommands for InterbusCommands {
         Ok(Body::new(profile))
     }
 
-    /// Returns a message if two profiles belong to different encoders. A profile without a serial number belongs to no
-    /// encoder.
+    /// Returns a message if two profiles belong to different encoders. A profile without a serial number does not
+    /// belong to any encoder.
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)

@@ -14,7 +14,7 @@ use crate::worker::Session;
 
 pub(super) type Runner = runner::Runner<Interbus>;
 
-// Only the window shows the steps of the handshake. A recording contains their bytes.
+// The steps of the handshake are only shown in the window. A recording contains their bytes.
 impl CliDevice for Interbus {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;

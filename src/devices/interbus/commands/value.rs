@@ -5,8 +5,8 @@ use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Direction, Item, ItemValue};
 use crate::devices::interbus::protocol::{Cam, Parameter, Value};
 
-/// Parses the value of an item. Values that the item can never have are rejected with its limits. The plan later
-/// rejects values that only this encoder cannot have.
+/// Parses the value of an item. Values that the item can never have are rejected with its limits. Values that only this
+/// encoder cannot have are rejected later by the plan.
 pub(super) fn value(item: Item, text: &str) -> Result<ItemValue> {
     Ok(match item {
         Item::Steps | Item::Revolutions | Item::Preset | Item::ZeroShift => {

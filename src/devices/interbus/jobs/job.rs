@@ -13,14 +13,14 @@ use crate::devices::interbus::protocol::{
 };
 use crate::store::{DeviceKey, EntryKind};
 
-/// Number of stores from which the user is warned of wear. The EEPROM is designed for about 200 and at most 500. See
-/// reference 3.
+/// Number of stores at which the user is first warned of wear. The EEPROM is designed for about 200 and at most 500
+/// stores. See reference 3.
 pub const WEAR_WARNING: u64 = 150;
 /// Number of stores above which the user has to confirm a second time.
 pub const WEAR_CONFIRMATION: u64 = NOMINAL_STORES as u64;
 /// Maximum number of stores that the manufacturer guarantees.
 pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
-/// Number of stores from which the EEPROM counts as worn.
+/// Number of stores from which the EEPROM is considered worn.
 pub const WEAR_LIMIT: u64 = 450;
 
 /// Returns the limit of the stores at which a plan may still start without being forced. A plan with a cost of 0 causes
@@ -31,10 +31,10 @@ pub const fn wear_limit(cost: u64) -> u64 {
 
 /// A job of a session with an INTERBUS encoder. All jobs except [`Hello`](Self::Hello) and [`Position`](Self::Position)
 /// briefly replace the position and make the cam outputs invalid. Reading a cam program selects it. After the job, the
-/// encoder returns to its previous mode unless the job selects another one.
+/// encoder returns to its previous mode unless the job selects another mode.
 #[derive(Debug)]
 pub enum InterbusJob {
-    /// Reads the IN word when a window has just connected. Nothing is sent to the encoder.
+    /// Reads the IN word after a window has connected. Nothing is sent to the encoder.
     Hello,
     /// Reads all values that are available without selecting a cam program.
     Survey,
@@ -54,11 +54,11 @@ pub enum InterbusJob {
     Save {
         programs: bool,
     },
-    /// Plans a change. No data is written.
+    /// Plans a change. Nothing is written.
     Prepare(Change),
     Commit(Box<Commit>),
     /// Ends an earlier parameterisation, error or read-out. Values that were set but not stored are now stored, which
-    /// counts as one store.
+    /// uses one store cycle.
     LeadBack,
 }
 
@@ -68,7 +68,7 @@ pub enum Change {
         profile: Box<InterbusProfile>,
         options: RestoreOptions,
     },
-    /// Writes the values of the image. Items that the image lacks are neither read nor changed.
+    /// Writes the values of the image. Items that are missing in the image are neither read nor changed.
     Write(Box<Image>),
     Item(Item, ItemValue),
     /// Stores the preset and sets the position at the present shaft angle to it. This requires a standstill.
@@ -83,7 +83,7 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited values. Values that were not written yet remain as edits.
+    /// A write of edited values. Values that were not written remain as edits.
     Edits,
     Preset,
     Default,
@@ -123,12 +123,12 @@ pub struct Prepared {
     pub cycles_seen: Option<u64>,
     /// Number of items that already have the planned value.
     pub unchanged: u64,
-    /// Items that the profile contains but the encoder lacks.
+    /// Items of the profile that the encoder does not have.
     pub missing: Vec<String>,
     /// Mounting values that differ from the profile and are left unchanged.
     pub mounting_left: Vec<Item>,
     pub other_type: Option<TypeMismatch>,
-    /// Mounting values of another device that are written nevertheless. They must be set up again.
+    /// Mounting values of another device that are written anyway. They must be set up again.
     pub mounting_written: Vec<Item>,
 }
 
@@ -137,7 +137,7 @@ pub struct Prepared {
 pub enum WearAfterPlan {
     /// Number of stores after the plan. The user should be informed that stores are limited.
     Known(u64),
-    /// Number of stores after the plan. It exceeds the specification of the manufacturer, so the user has to confirm.
+    /// Number of stores after the plan. It exceeds the manufacturer's specification, so the user has to confirm.
     Ask(u64),
     /// Number of stores after the plan. The plan is rejected unless it is forced.
     Worn(u64),
@@ -270,7 +270,7 @@ mod tests {
         };
         let cases = [
             (Some(0), 1, None),
-            // Issue 22.4.
+            // See issue 22.4.
             (None, 1, Some(WearAfterPlan::Unknown)),
             (None, 0, None),
             (Some(148), 1, None),

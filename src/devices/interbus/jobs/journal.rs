@@ -1,5 +1,4 @@
-//! Records that outlast a job. They are the mode in which an encoder was found, and the store cycles that reading may
-//! have cost.
+//! Records that outlast a job: the mode in which an encoder was found, and the store cycles that reading may have used.
 
 use std::collections::BTreeMap;
 

@@ -26,7 +26,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 /// recording.
 ///
 /// # Errors
-/// Returns an [`OpenError`] if the link cannot be opened. Nothing has been sent in this case.
+/// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError> {
     let (station, config) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
@@ -56,7 +56,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Masks the number of a request. It differs in each request, so a recording could otherwise not answer.
+/// Masks the number of a request. It differs in each request, so that a request would otherwise not match a recording.
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::with_masked(&bytes, &[0, 1]), ..entry }

@@ -1,5 +1,5 @@
 //! Device check of the gateway, the IN word and the encoder, with a verdict for each item. Nothing is set, since each
-//! echo would cost a store cycle. The handshake is therefore only tested with read-outs.
+//! setting would use a store cycle. Therefore, the handshake is only tested with read-outs.
 
 use std::time::Duration;
 
@@ -36,9 +36,9 @@ pub enum CheckFinding {
         /// Longest reply time in milliseconds.
         slowest_ms: u64,
     },
-    /// Words are meaningful in the configured order.
+    /// Words are valid in the configured order.
     OrderFits,
-    /// Words are meaningful only with their halves exchanged.
+    /// Words are only valid with their halves exchanged.
     OrderSwapped {
         input: u32,
         swapped: u32,
@@ -52,7 +52,7 @@ pub enum CheckFinding {
     SerialNumber(String),
     SoftwareVersion(u32),
     Gear {
-        /// Steps over all turns.
+        /// Number of steps over all turns.
         steps: u32,
         turns: u32,
     },
@@ -87,7 +87,8 @@ const TEMPERATURE_RANGE: std::ops::RangeInclusive<i32> = -400..=850;
 /// Runs the check. `wear` is called after the encoder has been identified.
 ///
 /// # Errors
-/// Returns an error if the gateway does not reply or the check is cancelled. Errors of the handshake are findings.
+/// Returns an error if the gateway does not reply or the check is cancelled. Errors of the handshake are reported as
+/// findings.
 pub fn check_encoder(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> MemoryWear,
@@ -119,7 +120,7 @@ pub fn check_encoder(
     Ok(lines)
 }
 
-/// Reads only the IN word several times. Also returns whether further requests are possible.
+/// Reads the IN word several times without sending anything else. Also returns whether further requests are possible.
 fn check_in_word(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
     for _ in 0..READING_COUNT {

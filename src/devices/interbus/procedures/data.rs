@@ -1,4 +1,4 @@
-//! Process data, which are the OUT word to an encoder and the IN word from it.
+//! Process data: the OUT word to an encoder and the IN word from it.
 
 use std::time::Duration;
 
@@ -13,16 +13,16 @@ pub trait ProcessData {
     /// Returns an error if the exchange fails or is cancelled.
     fn run_cycle(&mut self, out: u32) -> Result<u32, Error>;
 
-    /// Reads the IN word. The OUT word is left unchanged.
+    /// Reads the IN word. The OUT word remains unchanged.
     ///
     /// # Errors
-    /// Returns the same errors as [`run_cycle`](Self::run_cycle).
+    /// Returns an error of [`run_cycle`](Self::run_cycle).
     fn input(&mut self) -> Result<u32, Error>;
 
     /// Reads the present OUT word. Returns `None` if the gateway cannot read it.
     ///
     /// # Errors
-    /// Returns the same errors as [`run_cycle`](Self::run_cycle).
+    /// Returns an error of [`run_cycle`](Self::run_cycle).
     fn output(&mut self) -> Result<Option<u32>, Error>;
 
     fn now(&self) -> Moment;
@@ -33,6 +33,6 @@ pub trait ProcessData {
     /// Returns [`Error::Cancelled`] if the job is cancelled.
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
-    /// Enables or disables cancellation, and returns the previous setting. It is ignored if `shielded` is `true`.
+    /// Sets whether cancellation is ignored. Returns the previous setting.
     fn ignore_cancellation(&mut self, shielded: bool) -> bool;
 }

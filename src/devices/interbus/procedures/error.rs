@@ -108,7 +108,7 @@ pub enum ReplyDamage {
     Unit { requested: u8, got: u8 },
     #[error("the reply is to function {got} instead of {requested}")]
     Function { requested: u8, got: u8 },
-    /// The reply covers other registers than the request or a different number of them.
+    /// The reply covers other registers than the request, or a different number of registers.
     #[error("the reply does not contain the requested registers")]
     Registers,
 }
@@ -155,7 +155,7 @@ pub enum Error {
     Damaged {
         requested: RequestedItem,
         tries: u32,
-        /// Damage of the last reply.
+        /// The damage to the last reply.
         cause: ReplyDamage,
     },
     /// The gateway keeps sending although the line must be silent.
@@ -188,7 +188,7 @@ pub enum Error {
     /// active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning { input: u32 },
-    /// The IN word is only meaningful after an exchange of its halves.
+    /// The IN word is only valid with its halves exchanged.
     #[error("IN {input:08X} makes sense as {swapped:08X} only: the word order may be swapped")]
     WordOrder {
         /// The word as received.

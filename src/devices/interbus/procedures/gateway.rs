@@ -20,7 +20,7 @@ use crate::link::Ctx;
 use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
-/// Number of unanswered attempts after which a gateway counts as lost.
+/// Number of unanswered attempts after which a gateway is considered lost.
 const MAX_UNANSWERED: u32 = 3;
 const MAX_ATTEMPTS: u32 = 5;
 /// Pause after a rejection before the request is repeated.
@@ -119,7 +119,7 @@ impl<'a> Gateway<'a> {
     fn request_once(&mut self, requested: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
-        // The number 0 is skipped, since it is used by devices that ignore the number.
+        // The number 0 is skipped, because it is used by devices that ignore the number.
         *self.state.next = number.checked_add(1).unwrap_or(1);
         let Some((request, bytes)) = self.request(requested, number) else {
             return Ok(Err(ExchangeError::Damage(ReplyDamage::Registers)));

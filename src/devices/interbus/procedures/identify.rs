@@ -69,8 +69,8 @@ pub struct Status {
 /// Reads the identity of the encoder.
 ///
 /// # Errors
-/// Returns [`Error::Implausible`] if the direction is invalid, or an error of the handshake or the exchange. An invalid
-/// gear is not an error here, see [`Identity::gear`].
+/// Returns [`Error::Implausible`] if the direction is invalid, or another error if the handshake or the exchange fails.
+/// An invalid gear is not an error here. See [`Identity::gear`].
 pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
     master.run_guarded(|master| read_identity(master, &mut Vec::new()))
 }
@@ -78,7 +78,7 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
 /// Reads all values that are available without selecting a cam program.
 ///
 /// # Errors
-/// Returns the same errors as [`identify`].
+/// Returns an error of [`identify`].
 pub fn read_all_values(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
@@ -89,7 +89,7 @@ pub fn read_all_values(
 /// Reads the status of the encoder.
 ///
 /// # Errors
-/// Returns the same errors as [`identify`].
+/// Returns an error of [`identify`].
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     // This is the word that a machine receives, since nothing has been requested yet.
     let mut reading = master.read_in_word()?;
@@ -109,7 +109,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
 /// Reads one value of the read-out table or one register of the chip.
 ///
 /// # Errors
-/// Returns [`Error::UnknownReadOut`] if the read-out does not exist, and otherwise the same errors as [`identify`].
+/// Returns [`Error::UnknownReadOut`] if the read-out does not exist, or an error of [`identify`].
 pub fn read_single_value(master: &mut Master<'_>, read_out: ReadOutNumber) -> Result<Value, Error> {
     master.run_guarded(|master| master.read_out(read_out))
 }
@@ -117,7 +117,7 @@ pub fn read_single_value(master: &mut Master<'_>, read_out: ReadOutNumber) -> Re
 /// Reads cam programs and the window shift. Selecting a program for reading also switches the outputs of the encoder.
 ///
 /// # Errors
-/// Returns [`Error::NoMode`] if a program cannot be selected, or an error of the handshake or the exchange.
+/// Returns [`Error::NoMode`] if a program cannot be selected, or another error if the handshake or the exchange fails.
 pub fn read_programs(
     master: &mut Master<'_>,
     wanted: &[ProgramNumber],
@@ -129,8 +129,8 @@ pub fn read_programs(
 /// Switches the encoder to a mode. It stays in this mode after the job.
 ///
 /// # Errors
-/// Returns [`Error::NoMode`] or [`Error::NotSelectable`] if the encoder does not enter the mode. Other errors come from
-/// the handshake or the exchange.
+/// Returns [`Error::NoMode`] or [`Error::NotSelectable`] if the encoder does not enter the mode, or another error if
+/// the handshake or the exchange fails.
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
     master.run_guarded(|master| {
         master.switch_to_mode(mode)?;

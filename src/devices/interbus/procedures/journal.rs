@@ -1,5 +1,5 @@
-//! Facts that outlast a job. They are the mode from which an encoder was switched, and the store cycles that the switch
-//! may have cost.
+//! Facts that outlast a job: the mode from which an encoder was switched, and the store cycles that the switch may have
+//! used.
 
 use crate::devices::interbus::protocol::StartupMode;
 
@@ -20,7 +20,7 @@ pub trait Journal {
     /// Returns the mode switch from which an encoder was not returned, or `None` if there is no record.
     fn recorded_mode_switch(&self, serial_number: &str) -> Option<ModeSwitch>;
 
-    /// Records that the encoder is about to enter the last mode of the excursion.
+    /// Records that the encoder is about to enter the last mode in `excursion`.
     fn save_mode_switch(&mut self, serial_number: &str, excursion: &ModeSwitch);
 
     /// Records that the encoder is back in the mode before the switch.

@@ -1,5 +1,5 @@
 //! Host side of the handshake (reference 4). Each word is sent until it takes effect. A word that would have another
-//! meaning in the present mode of the encoder is rejected.
+//! meaning in the current mode of the encoder is never sent.
 
 mod acknowledge;
 mod modes;
@@ -33,7 +33,7 @@ pub struct Master<'a> {
     tell: Option<StepListener<'a>>,
     /// Mode of the encoder, or `None` if it was not read in this job.
     is: Option<StartupMode>,
-    /// Whether a mode switch still must be confirmed by the encoder.
+    /// Whether the encoder still has to confirm a mode switch.
     unsure: bool,
     /// Whether the encoder was switched to other modes in this job.
     switched: bool,
@@ -141,7 +141,7 @@ impl<'a> Master<'a> {
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
-    /// Runs `work` and ignores cancellation until it is done. The work returns the encoder to a safe state.
+    /// Runs `work` without reacting to cancellation, so that the encoder can be returned to a safe state.
     pub(super) fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.data.ignore_cancellation(true);
         let result = work(self);
@@ -153,11 +153,11 @@ impl<'a> Master<'a> {
         self.data.wait(duration)
     }
 
-    /// Requests a value and waits until it is stable. The previous value must have disappeared before, since it could
-    /// not be distinguished from the new one. Late echoes of earlier words are ignored.
+    /// Requests a value and waits until it is stable. The previous value must have disappeared first, since the new one
+    /// could not be distinguished from it. Late echoes of earlier words are ignored.
     ///
     /// # Errors
-    /// Returns [`Error::UnknownReadOut`] if the value does not exist, and otherwise the same errors as
+    /// Returns [`Error::UnknownReadOut`] if the value does not exist, or an error of
     /// [`send_setting`](Self::send_setting).
     pub(super) fn request_value(&mut self, command: Command) -> Result<Value, Error> {
         self.wait_until_value_cleared()?;
@@ -178,7 +178,7 @@ impl<'a> Master<'a> {
     /// Reads a value from the encoder.
     ///
     /// # Errors
-    /// Returns the same errors as [`request_value`](Self::request_value).
+    /// Returns an error of [`request_value`](Self::request_value).
     pub(super) fn read_out(&mut self, read_out: ReadOutNumber) -> Result<Value, Error> {
         let value = self.request_value(Command::ReadOut(read_out))?;
         if read_out == ReadOutNumber::SERIAL_NUMBER {
@@ -190,8 +190,8 @@ impl<'a> Master<'a> {
     /// Sends 80000000h until the encoder is running.
     ///
     /// # Errors
-    /// Returns [`Error::Refused`] if the encoder keeps sending an error, or [`Error::TimeOut`] if it does not run.
-    /// Other errors come from the exchange.
+    /// Returns [`Error::Refused`] if the encoder keeps sending an error, [`Error::TimeOut`] if it does not run, or
+    /// another error if the exchange fails.
     pub(super) fn run(&mut self) -> Result<(), Error> {
         self.return_to_running(Command::Run, self.patience)?;
         self.parameterising = false;
@@ -201,7 +201,7 @@ impl<'a> Master<'a> {
     /// Sends 00000000h until the encoder is running.
     ///
     /// # Errors
-    /// Returns the same errors as [`run`](Self::run).
+    /// Returns an error of [`run`](Self::run).
     pub(super) fn return_to_operation(&mut self) -> Result<(), Error> {
         self.return_to_running(Command::Normal, self.patience)
     }
@@ -215,11 +215,11 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Sends 40000000h until the position equals the preset, then 00000000h. Each programmed preset allows one use. The
-    /// word is sent for a minimum time, because the old position may already equal the preset.
+    /// Sends 40000000h until the position equals the preset, then 00000000h. A preset can be used once each time it is
+    /// programmed. The word is sent for a minimum time, because the old position may already equal the preset.
     ///
     /// # Errors
-    /// Returns [`Error::TimeOut`] if the position does not become the preset, and otherwise the same errors as
+    /// Returns [`Error::TimeOut`] if the position does not become the preset, or an error of
     /// [`send_setting`](Self::send_setting).
     pub(super) fn trigger_preset(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.return_to_operation()?;
@@ -278,15 +278,14 @@ impl<'a> Master<'a> {
                 self.out = before;
                 return Err(error);
             }
-            // The word may have been sent even if writing it failed, since the gateway reports a missing reply in this
-            // way.
+            // The word may have been sent even if the write failed, because this is also the result of a missing reply.
             ended => {
                 self.lost = ended.is_err();
                 ended?
             }
         };
         let (out, input, reply) = (command.emit(), self.input, WordReply::from_words(command, self.input));
-        // A moving shaft changes the position in every cycle, which is not reported repeatedly.
+        // The position of a moving shaft changes in every cycle. These changes are not reported.
         if self.reported != Some((out, reply))
             && let Some(tell) = &mut self.tell
         {
@@ -296,7 +295,7 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// Returns the IN word with exchanged halves if no other explanation fits the word as received.
+    /// Returns the IN word with exchanged halves, if this is the only explanation for the word as received.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -307,7 +306,7 @@ impl<'a> Master<'a> {
         Ok(swapped_word_if_unexplained(input))
     }
 
-    /// Returns the most likely reason why the awaited word did not arrive.
+    /// Returns the most likely reason why the expected word did not arrive.
     fn timeout_error(&mut self, command: Command, awaited: ExpectedWord, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.run_uncancellable(|master| master.data.output()) {
@@ -330,7 +329,7 @@ impl<'a> Master<'a> {
         Ok(command.ensure_legal(self.effective_mode())?)
     }
 
-    /// Returns the mode in which the encoder will interpret the next word. A read-out does not count, since it is ended
+    /// Returns the mode in which the encoder will interpret the next word. A read-out is ignored, since it is ended
     /// before another word is sent.
     fn effective_mode(&self) -> EncoderMode {
         match self.is {
@@ -346,7 +345,8 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether the gateway did not write the word. After any other exception, the word may have been written.
+/// Returns whether the gateway has definitely not written the word. After any other exception, the word may have been
+/// written.
 fn is_write_refused(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.is_temporary())
 }

@@ -1,5 +1,5 @@
 //! Procedures of an INTERBUS encoder (POSITAL OCD-IB, K3). A Modbus/TCP gateway transmits its process data. Except for
-//! the position, all values are transferred by a handshake in these data. Reading or setting a value interrupts the
+//! the position, all values are transferred with a handshake in these data. Reading or setting a value interrupts the
 //! position and makes the cam outputs invalid. Selecting another program switches the outputs. "Reference" is the
 //! project's reference "interbus".
 //!

@@ -3,14 +3,14 @@
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An IN word with the session's knowledge of the encoder.
+/// An IN word, with the facts about the encoder that are known in the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
     pub at: Moment,
     /// IN word as received.
     pub word: u32,
-    /// Mode of the encoder, or `None` if it was not read yet. Without a mode, the word of a running encoder counts as a
-    /// position.
+    /// Mode of the encoder, or `None` if it was not read yet. Without a mode, the word of a running encoder is
+    /// interpreted as a position.
     pub mode: Option<StartupMode>,
     /// Gear of the encoder, or `None` if it was not read yet.
     pub gear: Option<Gear>,
@@ -98,7 +98,7 @@ impl WordReading {
     }
 }
 
-/// Returns the word with exchanged halves if only this is a valid position. The word as received must have stray bits.
+/// Returns the word with exchanged halves, if this is a valid position and the word as received has stray bits.
 pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -136,7 +136,7 @@ mod tests {
         // Position 1000 = 3E8h under the window at shift 0, cams 0 and 2 on.
         let word = reading(0x0003_E805, cams, (3600, 1), 0);
         assert_eq!((word.position(), word.cams().map(|own| own.outputs)), (Some(1000), Some(5)));
-        // More bits than the window has, or shifted out of it.
+        // The position has more bits than the window, or is shifted out of it.
         assert_eq!(reading(0x0003_E805, cams, (1 << 18, 4096), 0).position(), None);
         assert_eq!(reading(0x0003_E805, cams, (3600, 1), 2).position(), None);
         for word in [0xC200_00FF, 0xA000_0FA0, 0x8000_0000] {

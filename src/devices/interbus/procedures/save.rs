@@ -1,4 +1,4 @@
-//! Reading of values that are saved, displayed as an item or required for a plan.
+//! Reading of values that are saved, displayed as an item, or required for a plan.
 
 use super::identify::{direction_from_read_out, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
@@ -33,7 +33,7 @@ impl Survey {
     }
 }
 
-/// Reads all values that can be restored. Cam programs are only read on request, since each of them switches the
+/// Reads all values that can be restored. Cam programs are only read on request, since reading a program switches the
 /// outputs of the encoder.
 ///
 /// # Errors
@@ -62,8 +62,8 @@ pub enum SaveStep {
 /// Reads the parameters and the given programs for a plan. The encoder must have been identified in the same job.
 ///
 /// # Errors
-/// Returns [`Error::Implausible`] if the steps and turns do not form a gear, or an error of the handshake or the
-/// exchange.
+/// Returns [`Error::Implausible`] if the steps and turns do not form a gear, or another error if the handshake or the
+/// exchange fails.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,

@@ -23,7 +23,7 @@ parameters! {
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
         /// Pause before each reading of the IN word, which is about the cycle time of a gateway.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
-        /// Time limit for a reply of the gateway. The margin of the line is added to it.
+        /// Time limit for a reply from the gateway, not including the margin of the line.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
     }
 }

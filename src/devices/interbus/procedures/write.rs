@@ -235,8 +235,8 @@ fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
 /// afterwards.
 ///
 /// # Errors
-/// Returns [`Error::Moving`] if the shaft moves, [`Error::NotRunning`] if there is no position, or an error of the
-/// handshake or the exchange.
+/// Returns [`Error::Moving`] if the shaft moves, [`Error::NotRunning`] if there is no position, or another error if the
+/// handshake or the exchange fails.
 fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     master.switch_to_mode(StartupMode::K3)?;
     master.return_to_operation()?;
@@ -258,8 +258,8 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns whether two positions may belong to a shaft at standstill. They may differ by one step. If a turn has many
-/// steps, they may differ by a thousandth of a turn.
+/// Returns whether two positions may belong to a shaft at standstill. They may differ by one step or, if a turn has
+/// many steps, by a thousandth of a turn.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.total_steps() / gear.turns() / 1000).max(1));
     shortest_distance(position, other, gear) <= most

@@ -6,12 +6,12 @@ use super::{
 };
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
 
-/// Plans the changes that give an encoder the wanted values. Only differences are written, and values that the wanted
-/// image lacks are left unchanged. `device` must contain all values of the wanted image.
+/// Plans the changes that give an encoder the wanted values. Only differences are written. Values that are missing in
+/// the wanted image are left unchanged. `device` must contain all values of the wanted image.
 ///
 /// Parameters are written first, in a single parameterisation. Their order keeps each value valid when it is sent, and
 /// the cams are within the new range afterwards. The window shift is set together with the first changed program. If no
-/// program changes, it is set with the first program that was read, which costs a store cycle.
+/// program changes, it is set with the first program that was read, which uses a store cycle.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if the plan would violate a rule of the encoder.
@@ -55,8 +55,8 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Plans to set the position at the present shaft angle. The preset is always programmed before it is fired, since each
-/// programming allows only one use. See reference 4.
+/// Plans to set the position at the current shaft angle. The preset is always programmed before it is fired, since it
+/// can be used only once each time it is programmed. See reference 4.
 ///
 /// # Errors
 /// Returns an error if the value exceeds the measuring range.
@@ -79,7 +79,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
         return Ok(Vec::new());
     }
     let gear = wanted.gear()?;
-    // This is the order of the manual. Only limits of the values change it.
+    // This is the order of the manual. It is only changed where the limits of the values require it.
     let mut order = vec![Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::ZeroShift];
     let now_has_room = Gear::new(wanted.steps, device.revolutions).is_ok();
     if !now_has_room {

@@ -34,7 +34,7 @@ pub enum PlanError {
     /// A parameter is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A mounting value does not fit the values to be written. The restore leaves the mounting value unchanged.
+    /// A mounting value does not fit the values to be written, and the restore does not change mounting values.
     #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
     MountingLeft {
         /// Item with the mounting value.

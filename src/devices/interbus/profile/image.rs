@@ -1,4 +1,4 @@
-//! The content of a K3 encoder's EEPROM, as far as it can be read.
+//! The content of a K3 encoder's EEPROM, to the extent that it can be read.
 
 use std::fmt;
 use std::str::FromStr;

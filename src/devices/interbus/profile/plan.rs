@@ -21,7 +21,7 @@ pub struct Base {
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
-/// An operation, from entering a mode to leaving it. Every operation except firing the preset costs one store cycle of
+/// An operation, from entering a mode to leaving it. Every operation except firing the preset uses one store cycle of
 /// the EEPROM.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
@@ -48,7 +48,7 @@ pub struct ParameterChange {
     pub parameter: Parameter,
     /// Present value.
     pub from: u32,
-    /// New value. It equals the present value if a preset is only programmed again in order to be fired.
+    /// New value. It equals the current value if a preset must be programmed again before it can be fired.
     pub to: u32,
 }
 

@@ -1,5 +1,5 @@
 //! Planning of a restore. Only differences are written, in as few store cycles as possible. Values that depend on the
-//! mounting of another encoder are left out. A preset is stored but never fired.
+//! mounting of another encoder are omitted. A preset is stored but never fired.
 
 pub use crate::profile::RestoreOptions;
 
@@ -77,7 +77,7 @@ pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Resu
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the types of a profile and an encoder if they differ. The result is `None` if they are equal or one is
+/// Returns the types of a profile and an encoder if they differ. Returns `None` if they are equal or one of them is
 /// unknown.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<TypeMismatch> {
     let (profile, device) = profile.flags.zip(device.flags)?;
@@ -88,7 +88,7 @@ pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option
 /// Checks that an encoder matches the profile, unless the options allow a mismatch.
 ///
 /// # Errors
-/// Returns the same errors as [`check_device`].
+/// Returns an error of [`check_device`] if the encoder does not match.
 pub fn check_allowed(
     profile: &InterbusProfile,
     device: &ProfileIdentity,

@@ -49,7 +49,7 @@ pub struct ScaleError;
 
 /// Maximum number of decimals that are displayed.
 const MAX_DECIMALS: usize = 6;
-/// Tolerance within which two computed numbers count as equal.
+/// Tolerance within which two computed numbers are considered equal.
 const EQUALITY_TOLERANCE: f64 = 1e-9;
 /// Upper limit for the steps in a unit and for the units in a range.
 const MAX_SCALE_VALUE: f64 = 1e12;

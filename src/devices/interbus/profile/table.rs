@@ -1,6 +1,6 @@
-//! Cam tables, as used in spreadsheets and on machine drawings. They are read from a file or from pasted text, and
-//! written. A row is a pulse with its program, cam or name, start and stop. Its positions are in steps, degrees or
-//! millimetres of the machine.
+//! Cam tables, as used in spreadsheets and on machine drawings. They are read from a file or from pasted text, and can
+//! be written. Each row defines a pulse with its program, cam or name, start and stop. Its positions are in steps, or
+//! in degrees or millimetres of the machine.
 //!
 //! Invalid entries are reported with their line and column, and all others are read. Each edge is rounded to encoder
 //! steps. Its rounding error is recorded.
@@ -71,7 +71,7 @@ pub struct TableEdge {
     pub off: f64,
 }
 
-/// A problem that prevented a table entry from being read.
+/// A problem that prevents a table entry from being read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {kind}")]
 pub struct TableProblem {
@@ -207,7 +207,7 @@ impl std::fmt::Display for Column {
 }
 
 impl TableOptions {
-    /// Reads a table. The result also reports the entries that were left out.
+    /// Reads a table. The result also reports the entries that were omitted.
     pub fn read(&self, text: &str) -> CamTable {
         read::read(self, text)
     }

@@ -101,7 +101,7 @@ impl Program {
     /// Number of cams in a program.
     pub const CAMS: usize = 8;
 
-    /// Returns whether a cam is active, which is its bit in the mask.
+    /// Returns whether a cam is active, which means that its bit in the mask is set.
     pub const fn is_on(&self, cam: CamNumber) -> bool {
         self.mask >> cam.0 & 1 == 1
     }

@@ -69,7 +69,7 @@ impl CamOutput {
     /// Parses a cam output word.
     ///
     /// # Errors
-    /// Bit 31 is set.
+    /// Returns a [`CamOutputError`] if bit 31 is set.
     pub const fn parse(word: u32) -> Result<Self, CamOutputError> {
         if word >> 31 != 0 {
             return Err(CamOutputError { word });

@@ -12,12 +12,13 @@ use super::value::{Code, Value};
 pub enum Command {
     /// 00000000h: normal operation.
     Normal,
-    /// 80000000h: runs the encoder. The rising edge of the bit ends parameterisation, a read-out and the setting of
+    /// 80000000h: runs the encoder. The rising edge of bit 31 ends parameterisation, a read-out and the setting of
     /// cams.
     Run,
-    /// 40000000h: applies the programmed preset to the position. Each programming allows one use.
+    /// 40000000h: applies the programmed preset to the position. A preset can be applied once each time it is
+    /// programmed.
     Preset,
-    /// 60000000h: applies the preset any number of times. Each use is followed by *run*.
+    /// 60000000h: applies the preset any number of times. Each use must be followed by *run*.
     FrabaPreset,
     /// Sets a parameter.
     Set(Parameter, Value),
@@ -48,8 +49,8 @@ pub enum Command {
     Unknown(u32),
 }
 
-/// A command that must not be sent. In its present mode, the encoder would interpret the word as a different command or
-/// as none.
+/// The error for a command that must not be sent. In its current mode, the encoder would interpret the word as a
+/// different command or as none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
 pub struct ForbiddenCommandError {
@@ -100,7 +101,7 @@ impl Command {
         }
     }
 
-    /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::Unknown`] if the manual
+    /// Returns the meanings that a word has in all modes. There are one or two, or [`Command::Unknown`] if the manual
     /// does not define the word.
     pub fn all_meanings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =

@@ -7,8 +7,8 @@ pub const STEPS_PER_TURN: u32 = 8192;
 /// Maximum number of turns that an encoder counts.
 pub const TURNS: u32 = 4096;
 
-/// A gear, which divides a number of turns of the shaft into position steps. The two numbers are set separately but
-/// used together.
+/// A gear, which divides a number of turns of the shaft into position steps. The encoder stores the two numbers
+/// separately, but uses them together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Gear {
     steps: u32,

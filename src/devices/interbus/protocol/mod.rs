@@ -1,7 +1,7 @@
 //! INTERBUS: process data words of POSITAL OCD-IB encoders (ENCOM profile 71, classes K1, K2 and K3).
 //!
-//! Source: POSITAL, manual UME-IB ("the manual"); "reference" refers to the project's reference. Facts that the manual
-//! leaves open are marked `U`; where it contradicts itself, reference 6 states the decision.
+//! Source: POSITAL, manual UME-IB ("the manual"). "Reference" refers to the project's reference. Facts that the manual
+//! leaves open are marked `U`. Where the manual contradicts itself, reference 6 states the interpretation used.
 //!
 //! ```text
 //! bit  31               30                      29            28..25                   24..0

@@ -7,7 +7,7 @@ use std::fmt;
 pub enum EncoderMode {
     /// Normal operation, in which IN contains the position.
     Position,
-    /// A parameter has been sent but not yet [`Command::Run`](super::Command::Run), so the outputs are invalid.
+    /// A parameter has been sent, but [`Command::Run`](super::Command::Run) has not, so the outputs are invalid.
     Parameterisation,
     /// A read-out has been requested, and IN contains its value.
     ReadOut,

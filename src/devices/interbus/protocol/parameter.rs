@@ -122,7 +122,7 @@ impl Parameter {
     /// Checks a value of this parameter.
     ///
     /// # Errors
-    /// Returns [`OutOfRange`] with the limits for this gear.
+    /// Returns [`OutOfRange`] with the limits for this gear if the value exceeds them.
     pub fn check_value(self, value: u32, gear: Gear) -> Result<Value, OutOfRange> {
         let range = self.valid_range(gear);
         let (low, high) = (*range.start(), *range.end());

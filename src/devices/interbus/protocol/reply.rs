@@ -92,8 +92,8 @@ impl Reply {
     }
 
     /// Returns the echo of a command, which is its word with bits 31 and 30 set. The data are as sent, which is an
-    /// assumption for cams (`U`). Compare the complete word, since an older reply may have the same code. See reference
-    /// 4.
+    /// assumption for cams (`U`). Always compare complete words, since an older reply may have the same code. See
+    /// reference 4.
     pub fn echo_of(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }

@@ -57,10 +57,10 @@ parameters! {
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
         pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
-        /// Share of requests that are rejected with exception 0Bh.
+        /// Fraction of requests that are rejected with exception 0Bh.
         pub(super) exceptions: f64 = 0.0, "exception" => DecimalNumbers(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Shares of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced by random bytes
+        /// Fractions of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced by random bytes
         /// (`garbage`).
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
@@ -69,8 +69,8 @@ parameters! {
 const VALUE: WholeNumbers<u32> = WholeNumbers(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
-    /// Parses percent-decoded keys and values. The last value of a repeated key applies. Numbers are decimal or start
-    /// with `0x`.
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal or
+    /// hexadecimal with the prefix `0x`.
     ///
     /// # Errors
     /// Returns an error with the key and the allowed values if a setting is invalid.

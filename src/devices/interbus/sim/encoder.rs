@@ -1,4 +1,5 @@
-//! The encoder without its line. It determines the effect of an OUT word and the resulting IN word (reference 2 to 5).
+//! The encoder without its line. This module determines the effect of an OUT word and the resulting IN word (reference
+//! 2 to 5).
 //!
 //! ```text
 //! running ── parameter, cam word ──▶ setting ── run ──▶ store, running
@@ -6,8 +7,8 @@
 //!   └── 2080000ph ──▶ cam program; of a changed one before it a store
 //! ```
 //! Assumptions (`U`):
-//! - Every parameterisation and every program with a write uses a store cycle, even if the value was equal.
-//! - A parameter in a mode that does not allow it is unknown (84000000h).
+//! - Every parameterisation and every program with a write uses a store cycle, even if no value has changed.
+//! - A parameter in a mode that does not allow it is reported as unknown (84000000h).
 //! - Any other word without a meaning in the mode has no effect.
 //! - The mode, the zero point and a fired preset survive a loss of power without a store.
 //! - The speed is a signed number of 25 bits.
@@ -77,8 +78,8 @@ enum InWordContent {
     Word(u32),
 }
 
-/// Previous IN word after a change of the OUT word. It is returned for a number of cycles. Each reading counts as a
-/// cycle, and cycles also elapse with time.
+/// Previous IN word after a change of the OUT word. It is returned for a number of cycles. A cycle elapses with each
+/// reading and with time.
 #[derive(Clone, Copy, Debug, Default)]
 struct PreviousInWord {
     word: u32,
@@ -199,7 +200,7 @@ impl Encoder {
         self.identity.temperature = tenths;
     }
 
-    /// Replaces the faults of the EEPROM. The number of stores is kept.
+    /// Replaces the simulated faults of the EEPROM. The count of stores is kept.
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.eeprom.set_store_failure(faults.failing_store());
     }
@@ -286,8 +287,8 @@ impl Encoder {
         }
     }
 
-    /// Handles a word without a meaning in the present mode. If it resembles a parameter, an edge, a shift or a
-    /// read-out, it gets the corresponding error.
+    /// Handles a word without a meaning in the current mode. If it resembles a parameter, an edge, a shift or a
+    /// read-out, the corresponding error is returned.
     fn handle_illegal_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {

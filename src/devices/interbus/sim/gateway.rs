@@ -1,6 +1,6 @@
 //! The gateway with the Modbus/TCP connections of its clients and the encoders behind it. Several clients may be
-//! connected at once. An encoder obeys the last command of any client. It is an assumption that a reply takes two
-//! milliseconds and that requests for another unit or an encoder without power return exception 0Bh.
+//! connected at once. An encoder executes the last command of any client. It is assumed that a reply takes two
+//! milliseconds, and that requests for another unit or for an encoder without power return exception 0Bh.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -66,8 +66,8 @@ impl Gateway {
         work(&mut self.lock().encoders.first)
     }
 
-    /// Replaces the faults of the gateway, which simulates a repair or a new defect. The numbers of requests and stores
-    /// are kept.
+    /// Replaces the simulated faults of the gateway, as a repair or a new defect would. The counts of requests and
+    /// stores are kept.
     pub fn set_faults(&self, faults: &SimulatedFaults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();
@@ -104,7 +104,7 @@ impl Shared {
         if silent {
             return None;
         }
-        // `f64()` is below 1, so a share of 1 always matches and 0 never does.
+        // `f64()` is below 1, so a fraction of 1 always matches and 0 never does.
         let reply = if self.rng.f64() < self.exceptions {
             frame::exception_reply(request, Exception::NoAnswer)
         } else {

@@ -148,7 +148,7 @@ impl Eeprom {
         self.die_in_store = number;
     }
 
-    /// Stores the settings. If a store fails, the settings that it would have written return to the factory settings
+    /// Stores the settings. If a store fails, the settings that it would have written are reset to the factory settings
     /// (`U`).
     pub(super) fn store(&mut self, memory: &Memory, what: StoredSettings) -> StoreOutcome {
         self.stores = self.stores.saturating_add(1);
@@ -179,5 +179,5 @@ pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut C
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }
 
-/// Number of shaft positions that an encoder can distinguish, which is all disc steps of all turns.
+/// Number of shaft positions that an encoder can distinguish, which is the number of disc steps over all turns.
 pub(super) const DISC_POSITIONS: u32 = STEPS_PER_TURN * TURNS;

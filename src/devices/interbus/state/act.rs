@@ -73,7 +73,7 @@ impl Encoder {
         self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Reads the next unread part of a virtual encoder. Returns `false` if everything has been read.
+    /// Reads the next unread part of a virtual encoder. Returns `false` if there is none.
     pub(super) fn read_next_unread_part(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

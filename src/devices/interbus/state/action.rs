@@ -17,7 +17,7 @@ pub enum InterbusAction {
     /// Selects the data that the encoder sends: position, speed or the outputs of a program.
     Select(StartupMode),
     Check,
-    /// Applies an edit. It is not written to the encoder.
+    /// Applies an edit without writing it to the encoder.
     Edit(Box<Edit>),
     Plan(Box<Change>),
     /// Returns the encoder to its earlier mode, even if another program has changed it.
@@ -27,7 +27,7 @@ pub enum InterbusAction {
     OpenTable(PathBuf),
     /// Reads the cams of a pasted table.
     PasteTable(ProgramNumber, String),
-    /// Adds the table to the edits if `true`, or discards it if `false`.
+    /// Adds the table to the edits if `true`, and discards it otherwise.
     TakeTable(bool),
     /// Asks where to save the cams as a table. Its numbers have a decimal comma or a decimal point.
     AskSaveTable {

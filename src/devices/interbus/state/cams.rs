@@ -1,5 +1,5 @@
 //! The cams of a program as a chart, with one lane for each cam. The lanes extend over the measuring range or around a
-//! ring. The chart also computes the result of a drag, which is not applied here.
+//! ring. The chart also calculates the result of a drag, but does not apply it.
 //!
 //! A position is drawn with a width. A cam from 10 to 19 extends from 10 to 20, so adjoining cams have no gap between
 //! them.

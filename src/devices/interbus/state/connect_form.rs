@@ -1,4 +1,4 @@
-//! Connection form of an INTERBUS encoder and conversion to a link. Nothing is opened here.
+//! Connection form of an INTERBUS encoder, and the link that it produces. This module opens no connection.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -19,8 +19,8 @@ pub enum InterbusLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. An empty entry selects the default. Entries of other kinds of connections are kept
-/// but are not part of the link.
+/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are kept, but
+/// are not included in the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,

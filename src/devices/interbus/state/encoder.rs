@@ -139,8 +139,8 @@ impl Encoder {
         url.query.read("order", &WordOrder::KEYWORDS).ok().flatten().unwrap_or_default()
     }
 
-    /// Returns whether the machine stands still according to the user. A virtual encoder has no machine, so it needs no
-    /// confirmation.
+    /// Returns whether the machine stands still according to the user. A virtual encoder has no machine and therefore
+    /// needs no confirmation.
     pub fn is_stopped(&self) -> bool {
         self.stopped || self.session.is_virtual()
     }

@@ -22,7 +22,7 @@ pub fn parse_number(text: &str) -> Result<u32, Text> {
 /// parameters.
 ///
 /// # Errors
-/// Returns a message if the entry is not a number.
+/// Returns an error with a message if the entry is not a number.
 pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
     let value = parse_number(text)?;
     Ok(match parameter {
@@ -39,7 +39,7 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
 /// Parses the entry of a preset. An empty entry selects the stored preset.
 ///
 /// # Errors
-/// Returns a message if the entry is not a number or is beyond the measuring range.
+/// Returns an error with a message if the entry is not a number or is beyond the measuring range.
 pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     if text.trim().is_empty() {
         return Ok(now.preset);
@@ -50,7 +50,7 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
 /// Parses the number of steps by which a program is shifted. Negative numbers shift it to earlier positions.
 ///
 /// # Errors
-/// Returns a message if the entry is not a number.
+/// Returns an error with a message if the entry is not a number.
 pub fn offset(text: &str) -> Result<i64, Text> {
     let entry = text.trim().replace('\u{2212}', "-");
     entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
@@ -67,7 +67,7 @@ pub fn format_position(step: u32, scale: &Scale, range: u32) -> String {
 /// Parses a position in the unit of the scale and returns the nearest step.
 ///
 /// # Errors
-/// Returns a message if the entry is not a number or is beyond the measuring range.
+/// Returns an error with a message if the entry is not a number or is beyond the measuring range.
 pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
@@ -103,7 +103,7 @@ pub fn steps_per_unit(scale: &Scale) -> Option<f64> {
 /// Parses the number of steps per turn or per millimetre and returns the scale.
 ///
 /// # Errors
-/// Returns a message if the entry is not a number above 0.
+/// Returns an error with a message if the entry is not a number above 0.
 pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
     let refused = || TEXTS.text("ib_entry.scale").with("entry", text.trim());
     let steps = decimal(text).ok_or_else(refused)?;
@@ -113,7 +113,7 @@ pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
 /// Returns the scale with its zero moved to the encoder position that was entered.
 ///
 /// # Errors
-/// Returns a message if the entry is not a position within the measuring range.
+/// Returns an error with a message if the entry is not a position within the measuring range.
 pub fn scale_with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
     let zero = parse_number(text)?;
     let last = range.saturating_sub(1);
@@ -158,7 +158,7 @@ mod tests {
         let edit = |parameter: Parameter, text: &str| super::parameter(parameter, text, &now());
         assert_eq!(edit(Parameter::Turns, "4096"), Ok(Edit::Revolutions(4096)));
         assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));
-        // Reference 3: a preset is below the steps; steps are at most 8192 per turn.
+        // According to reference 3, a preset is below the number of steps, of which there are at most 8192 per turn.
         let refused = edit(Parameter::Preset, "4096").unwrap_err().to_string_in(crate::app::Language::English);
         assert_eq!(refused, "Preset value: 4096 is outside the range 0 to 4095.");
         assert!(edit(Parameter::Steps, "8193").is_err() && edit(Parameter::Steps, "8192").is_ok());

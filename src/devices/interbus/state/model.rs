@@ -57,7 +57,8 @@ impl DeviceModel for Encoder {
 
     fn read_device(&mut self, services: &mut Services) {
         if self.try_submit(InterbusJob::Survey, services) {
-            // Reading a program of a real encoder may cost a store, so the cams page reads it on request.
+            // Reading a program of a real encoder may use a store cycle, so the cams page reads programs only on
+            // request.
             self.read_after = if self.session.is_virtual() { self.known_programs() } else { Vec::new() };
         }
     }
@@ -68,8 +69,8 @@ impl DeviceModel for Encoder {
     }
 
     fn ask_where_to_save(&mut self, services: &mut Services) {
-        // This is checked before the user enters a file name, since saving selects cam programs. Known values need no
-        // reading.
+        // This is checked before the user enters a file name, because saving selects cam programs. Known values are not
+        // read again.
         if self.needs_standstill_confirmation() && !self.is_stopped() && !self.saves_last_reading() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {

@@ -68,7 +68,7 @@ pub struct DecodedWord {
 }
 
 impl Reading {
-    /// Decodes words that blanks or commas separate. They may have the prefix `0x` or the suffix `h`.
+    /// Decodes words separated by blanks or commas. They may have the prefix `0x` or the suffix `h`.
     pub fn decode_words(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
         words.map(|word| self.decode_word(word)).collect()

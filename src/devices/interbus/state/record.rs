@@ -39,7 +39,7 @@ impl Record {
         }
     }
 
-    /// Sets the latest reading without recording it, since it may not contain a position.
+    /// Sets the latest reading without recording it, because it may not contain a position.
     pub(super) fn set_latest_reading(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }
@@ -62,7 +62,7 @@ impl Record {
             }
             _ => self.track.set_watched(&[]),
         }
-        // A position counts as missing only if the mode transmits it completely.
+        // A position is only treated as missing if the mode transmits it completely.
         let is_sent = reading.mode != Some(StartupMode::Velocity);
         let position = reading.position();
         if is_sent && (position.is_some() || !reading.is_valid()) {

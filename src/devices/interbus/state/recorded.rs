@@ -1,4 +1,4 @@
-//! Test that drafts in files of users are read and written without a change.
+//! Tests that drafts in users' files can be read, and are the same after they are written back.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::interbus::jobs::Interbus;

@@ -80,8 +80,8 @@ impl Reviewable for Interbus {
     }
 
     fn reaches_wear_limit(prepared: &Prepared) -> bool {
-        // Above the manufacturer's limit, the user has to confirm again. This also applies to a plan that is rejected
-        // unless forced.
+        // Above the manufacturer's limit, the user has to confirm again. This also applies to a plan that is only
+        // executed if it is forced.
         matches!(
             prepared.wear_to_report(),
             Some(WearAfterPlan::Ask(_) | WearAfterPlan::Worn(_) | WearAfterPlan::Unknown)

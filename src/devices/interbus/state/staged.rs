@@ -1,10 +1,10 @@
-//! Edited values of a K3 encoder or a profile, and the values on which they are based. No data is written to an encoder
-//! here. A plan is made from the differences.
+//! Edited values of a K3 encoder or a profile, and the values on which they are based. A plan is made from the
+//! differences. This module does not write anything to an encoder.
 //!
-//! Every edit creates a complete new state, to which undo can return. Edits are kept if the encoder is read again. All
-//! other values then follow the encoder, also in the states of undo. A cam program cannot be edited before it has been
-//! read, since the cost of a change is unknown. Earlier edits of it wait until it is read. A profile can gain values
-//! that it did not contain.
+//! Every edit creates a complete new state, to which undo can return. Edits are kept if the encoder is read again. In
+//! all states of the history, the other values are updated from the encoder. A cam program cannot be edited before it
+//! has been read, since the cost of a change is unknown, and earlier edits of it wait until it is read. A profile can
+//! gain values that it did not contain.
 //!
 //! Positions are in steps, from 0 to the measuring range minus one.
 
@@ -83,7 +83,7 @@ impl EditedValues {
 }
 
 impl StagedEdits {
-    /// Creates the edits of a profile. Values that the profile lacks can be added.
+    /// Creates the edits of a profile. Values that are missing in the profile can be added.
     pub fn for_profile(image: Image, names: CamNames) -> Self {
         let base = EditedValues { image, names };
         StagedEdits {
@@ -94,8 +94,8 @@ impl StagedEdits {
         }
     }
 
-    /// Sets the content of a saved profile as the base. If it equals the edited values, the states of undo are kept.
-    /// Otherwise another program has changed the profile, and only the edits are kept.
+    /// Sets the content of a saved profile as the base. If it equals the edited values, the undo history is kept.
+    /// Otherwise, another program has changed the profile, and only the edits are kept.
     pub fn adopt_saved(&mut self, image: Image, names: CamNames) {
         let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
@@ -110,7 +110,7 @@ impl StagedEdits {
     }
 
     /// Sets the values read from the encoder as the base. Values that were not read are kept, and so are edits and the
-    /// states of undo.
+    /// undo history.
     pub fn refresh(&mut self, read: Image) {
         let known = self.base.take();
         let (names, image) = match &known {
@@ -154,7 +154,7 @@ impl StagedEdits {
         self.take_draft(waiting);
     }
 
-    /// Discards all values and edits, since another encoder is used.
+    /// Discards all values and edits before another encoder is used.
     pub fn clear(&mut self) {
         *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
@@ -182,7 +182,7 @@ impl StagedEdits {
     /// Applies an edit as a single undo step. Returns whether it has changed a value.
     ///
     /// # Errors
-    /// Returns the reason if the edit is not possible. Nothing is changed in this case.
+    /// Returns an error with the reason if the edit is not possible. In this case, nothing has changed.
     pub fn apply_edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.preview_edit(edit)?;
         Ok(self.apply_step(after))
@@ -191,7 +191,7 @@ impl StagedEdits {
     /// Returns the values after an edit, which is not applied. They are displayed during a drag.
     ///
     /// # Errors
-    /// Returns the reason if the edit is not possible.
+    /// Returns an error with the reason if the edit is not possible.
     pub fn preview_edit(&self, edit: &Edit) -> Result<EditedValues, EditError> {
         let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
         edit::apply_edit(wanted, edit, self.base_source)

@@ -51,8 +51,8 @@ impl Encoder {
         }
     }
 
-    /// Adds the imported table to the edits, or discards it. A table with problems is not added, since the cam of an
-    /// omitted line would be switched off.
+    /// Adds the imported table to the edits, or discards it. A table with problems is never added, because the cam of
+    /// an omitted line would be switched off.
     pub(super) fn finish_import(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

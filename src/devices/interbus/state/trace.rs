@@ -73,7 +73,7 @@ impl FrameDecoder {
         }
     }
 
-    /// Parses an OUT word in the known mode. If it is illegal there, a mode that allows it is assumed.
+    /// Parses an OUT word in the known mode, or in a mode that allows the word if the known one does not.
     fn command(&self, word: u32) -> Command {
         let readings = || Command::all_meanings(word).into_iter().next();
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))

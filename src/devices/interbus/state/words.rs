@@ -98,7 +98,7 @@ pub fn range_text(steps: u32, turns: u32) -> Text {
 pub fn read_value(what: ReadOutNumber, value: Value) -> Text {
     match (what.to_u16(), Direction::from_code(value.get())) {
         (0x3, Some(own)) => direction_text(own),
-        // These values are counted numbers or identifiers, so their bits need no explanation.
+        // These values are counts or identifiers, so their bits need no explanation.
         (0x0..=0x7, _) => literal_text(value.get()),
         _ => read_out_value(what.value(value)),
     }

@@ -15,9 +15,9 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    /// Returns the edited values. Only edited programs are included, since planning reads and thereby selects each of
-    /// them. If the measuring range becomes shorter, all known programs are included, since their cams must be within
-    /// the new range.
+    /// Returns the edited values. Only edited programs are included, since the plan has to read each program and
+    /// reading selects it. If the measuring range becomes shorter, all known programs are included, since their cams
+    /// must be within the new range.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.edited_values()?.image, self.staged.device()?);
         let mut edited = Image::from_parameters(wanted.parameters);

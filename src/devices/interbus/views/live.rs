@@ -32,13 +32,13 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             remark_ui(ui, theme, "live.warning", palette.warn);
         }
     });
-    // Unknown values have their rows already, so that the buttons below stay where they are.
+    // Rows of unknown values are drawn as well, so that the buttons below stay in place.
     let unknown = || "–".to_owned();
     let word = last.map_or_else(unknown, |reading| format!("0x{:08X}", reading.word));
     let place = last.and_then(WordReading::turn_position);
     let is_position = last.is_none_or(|reading| reading.rpm().is_none() && reading.cams().is_none());
     if ui.available_height() < LOW_PANEL_HEIGHT {
-        // A low window leaves only one line for the words, since the plot needs the space.
+        // In a low window, there is only one line for the words, because the plot needs the space.
         let place = place.map(|own| {
             format!("{} {} · {}° · ", theme.translate("live.turns"), own.turns, theme.format_number(own.degrees, 2))
         });
@@ -66,7 +66,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(theme.caption(theme.format_text(&text)));
         let beside = if ui.available_width() < INDICATORS_WIDTH { 4 } else { 8 };
         ui.scope(|ui| {
-            // The indicators are not interactive, so they may be lower than a button.
+            // The indicators are not interactive, so they can be less high than a button.
             ui.spacing_mut().interact_size.y = INDICATOR_SIZE;
             for first in (0..8).step_by(beside) {
                 ui.horizontal(|ui| {

@@ -1,5 +1,5 @@
-//! Problems of the edited values below every page. They do not move anything clickable there. An edit on one page may
-//! cause problems on another, such as cams beyond a shorter measuring range.
+//! Problems of the edited values, shown below every page so that they do not move anything clickable. An edit on one
+//! page may cause problems on another, such as cams beyond a shorter measuring range.
 
 use egui::{RichText, Ui};
 

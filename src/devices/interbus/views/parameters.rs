@@ -215,7 +215,7 @@ fn handshake_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(TEXT_WIDTH).stick_to_bottom(true);
         list.auto_shrink([false, true]).show(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(theme.space.groups, theme.space.inside);
-            // The meanings share the width that the words leave.
+            // The meanings take up the width that the words leave free.
             let room = ui.available_width() - ui.spacing().scroll.allocated_width() - 3.0 * theme.space.groups;
             let meaning = (room / 2.0 - WORD).max(WORD / 2.0);
             let cell = |ui: &mut Ui, width: f32, words: RichText| {

@@ -1,4 +1,4 @@
-//! Confirmation of the standstill, which is required before the encoder of a machine may be disturbed.
+//! Confirmation of the standstill, which is required before an encoder in a machine may be disturbed.
 
 use egui::{RichText, Ui};
 

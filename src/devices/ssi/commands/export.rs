@@ -1,4 +1,4 @@
-//! `ssi export`: exports a layout for other programs, or as a profile.
+//! The command `ssi export`, which exports a layout for other programs or as a profile.
 
 use std::time::Duration;
 

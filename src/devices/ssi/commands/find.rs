@@ -1,4 +1,5 @@
-//! `ssi find`: lists the layouts that fit recorded frames, with the best first, and states what would distinguish them.
+//! The command `ssi find`, which lists the layouts that fit recorded frames, with the best first, and states what would
+//! distinguish them.
 
 use serde_json::{Value as Json, json};
 
@@ -12,7 +13,7 @@ use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain as words;
 
-/// Maximum number of bits in a frame. It is assumed for hexadecimal frames if the number is not given.
+/// Maximum number of bits in a frame. It is also assumed for hexadecimal frames without a given number of bits.
 const MAX_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) -> Result {

@@ -1,4 +1,4 @@
-//! `ssi decode` and `ssi encode`: decoding and encoding of frames.
+//! The commands `ssi decode` and `ssi encode`, which decode and encode frames.
 
 use serde_json::{Map, Value as Json, json};
 

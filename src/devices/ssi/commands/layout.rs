@@ -25,7 +25,7 @@ pub(crate) struct SelectedLayout {
     pub(crate) title: String,
 }
 
-/// Returns the layout given by `--layout`. Settings that the manual does not mention are printed as remarks.
+/// Returns the layout given by `--layout`. Remarks are printed for settings that the manual does not mention.
 pub(crate) fn select_layout(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) -> Result<SelectedLayout> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
@@ -54,8 +54,9 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     Ok(families)
 }
 
-/// Returns whether the specification names a file. It does if it has a path or an extension, or if the file exists and
-/// no family has this name. Text after the first comma is ignored, because settings may contain `/` in fractions.
+/// Returns whether the specification names a file. This is the case if it has a path or an extension, or if the file
+/// exists and no family has this name. Text after the first comma is ignored, because settings may contain `/` in
+/// fractions.
 fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
@@ -85,7 +86,7 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Selecte
         (None, None) => {}
     }
     let times = family.map(|family| family.times);
-    // The title does not contain the folder, because exports are passed on to other people.
+    // The title does not contain the folder, because exports may be passed on to other people.
     let file = path.file_name().map_or_else(|| spec.to_owned(), |name| name.to_string_lossy().into_owned());
     let title = if profile.name.is_empty() { file } else { profile.name.clone() };
     Ok(SelectedLayout { title, profile, layout, times })

@@ -128,7 +128,7 @@ fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn
         }
         None => AttachableEncoder::DEFAULT_ADAPTER,
     };
-    // The encoder replaces the one with the factory settings, which is configured with the same keys.
+    // The encoder replaces the one with the factory settings, which has the same keys.
     let others = attachable_kinds().iter().copied().filter(|device| device.setting_names() != encoder.setting_names());
     let devices: Vec<&dyn AttachableKind> = [&encoder as &dyn AttachableKind].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;

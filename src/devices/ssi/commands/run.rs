@@ -34,8 +34,8 @@ impl CliDevice for Ssi {
 
 /// Opens the link and configures it for the layout.
 ///
-/// Clock and pause are taken from the link, or else from the profile. Violated timing limits of the encoder are printed
-/// as remarks.
+/// Clock and pause are taken from the link, and otherwise from the profile. Violated timing limits of the encoder are
+/// printed as remarks.
 pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &SelectedLayout) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());

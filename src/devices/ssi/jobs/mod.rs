@@ -59,7 +59,7 @@ impl JobInterruption for Error {
     }
 }
 
-/// Maximum interval at which words are streamed. At longer intervals they are requested one by one.
+/// Maximum interval at which words are streamed. At longer intervals, they are requested one by one.
 const STREAMING_INTERVAL: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {

@@ -15,7 +15,7 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to an SSI encoder, without opening the link.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
+/// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
 pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
@@ -24,12 +24,12 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 /// encoder, and `replay:` for a recording.
 ///
 /// # Errors
-/// See [`OpenError`]. Nothing has been sent in that case.
+/// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let (station, adapter) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
-    // The serial format matters only for an adapter behind a converter. It is the same for all adapters.
+    // The serial format is only relevant for an adapter behind a converter. It is the same for all adapters.
     let wire = open_byte_stream(url, FORMAT, &clock, || {
         motor = Some(adapter.motor());
         Ok(connect_simulated(adapter, &clock))

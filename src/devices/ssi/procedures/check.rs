@@ -67,7 +67,7 @@ pub enum CheckFinding {
 /// Reads a series of words and checks them.
 ///
 /// # Errors
-/// Returns the error of the adapter if no words arrive.
+/// Returns an error of the adapter if no words arrive.
 pub fn check_encoder(
     master: &mut Master<'_>,
     layout: &Layout,
@@ -181,7 +181,7 @@ fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
         Some(position) if spread <= MAX_JITTER_STEPS => {
             (Verdict::Good, CheckFinding::Stands { position: *position, steps: spread })
         }
-        // No shaft turns by more than a quarter of all positions from one word to the next.
+        // No shaft turns by more than a quarter of the range from one word to the next.
         Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, CheckFinding::Turns { most }),
         Some(_) => (Verdict::Good, CheckFinding::Turns { most }),
     };

@@ -36,8 +36,8 @@ impl<'a> Master<'a> {
     /// Steps that are already done are skipped.
     ///
     /// # Errors
-    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a rejection by the adapter, or
-    /// an error of the connection.
+    /// Returns [`AdapterError::Version`], [`AdapterError::NoSsi`] or [`AdapterError::NoSupply`] if the adapter is not
+    /// suitable, or another error if it rejects a request or the connection fails.
     pub fn identify(&mut self) -> Result<Identity, Error> {
         self.stop_word_stream()?;
         self.with_retries(|master| master.adapter_host().read_identity())?;
@@ -53,7 +53,7 @@ impl<'a> Master<'a> {
     /// Changes the settings for reading words.
     ///
     /// # Errors
-    /// As for [`identify`](Self::identify). The previous settings then stay in effect.
+    /// Returns an error of [`identify`](Self::identify). In this case, the previous settings stay in effect.
     pub fn apply_settings(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
@@ -65,10 +65,11 @@ impl<'a> Master<'a> {
     /// Reads a single word.
     ///
     /// # Errors
-    /// As for [`identify`](Self::identify).
+    /// Returns an error of [`identify`](Self::identify).
     pub fn read_word(&mut self) -> Result<Words, Error> {
         match self.read_configured_word() {
-            // The adapter was reset and has lost its settings. The word is requested once more with new settings.
+            // The adapter was reset and has lost its settings. The word is requested once more after the adapter has
+            // been configured again.
             Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
                 if operation == Request::SsiRead.operation() =>
             {
@@ -81,7 +82,7 @@ impl<'a> Master<'a> {
     /// Reads the next word of a series of single requests.
     ///
     /// # Errors
-    /// As for [`identify`](Self::identify).
+    /// Returns an error of [`identify`](Self::identify).
     pub fn next_word(&mut self) -> Result<Words, Error> {
         let word = self.read_word()?;
         Ok(Words { first: self.station.count(), ..word })
@@ -93,8 +94,8 @@ impl<'a> Master<'a> {
     /// interval is used.
     ///
     /// # Errors
-    /// As for [`identify`](Self::identify) when the stream is started. Later, errors of the adapter end the stream, whereas
-    /// it continues after a cancellation.
+    /// Returns an error of [`identify`](Self::identify) if the stream cannot be started. Later, an error of the adapter
+    /// ends the stream, but the stream continues after a cancellation.
     pub fn next_words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = StreamKind::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {
@@ -122,7 +123,7 @@ impl<'a> Master<'a> {
     /// Ends the running stream, even after a cancellation. Single requests are counted from 0 again.
     ///
     /// # Errors
-    /// Errors of the adapter. The stream is then ended before the next request.
+    /// Returns an error if the adapter fails. In this case, the stream is ended before the next request.
     pub fn stop_word_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.asked = 0;
@@ -146,7 +147,7 @@ impl<'a> Master<'a> {
     /// Switches off the supply of the encoder at the end of a session, unless it is configured to stay on.
     ///
     /// # Errors
-    /// Errors of the adapter.
+    /// Returns an error if the adapter fails.
     pub fn switch_off_after_session(&mut self) -> Result<(), Error> {
         if !self.station.adapter.must_switch_supply_off() {
             return Ok(());
@@ -251,7 +252,7 @@ impl<'a> Master<'a> {
         error
     }
 
-    /// Handles a failed stream, and ends it on the side of the adapter if possible.
+    /// Handles a failed stream, and ends it in the adapter if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if error != Error::Cancelled && self.stop_word_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

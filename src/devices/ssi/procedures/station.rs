@@ -30,7 +30,7 @@ parameters! {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClockSettings {
-    /// Number of bits per word, 1…64.
+    /// Number of bits per word, 1 to 64.
     pub clocks: u8,
     /// Requested clock frequency in hertz. The adapter uses the nearest frequency that it supports.
     pub clock_hz: u32,
@@ -39,8 +39,8 @@ pub struct ClockSettings {
 }
 
 impl Default for ClockSettings {
-    /// Returns settings for words of 25 clocks. The clock is slow enough for 50 m of cable, and every family is ready
-    /// again after the pause. See SICK SSI description 2.7.
+    /// Returns settings for words of 25 clocks. The clock is slow enough for 50 m of cable, and the pause is long
+    /// enough for every family. See SICK SSI description 2.7.
     fn default() -> Self {
         let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
         ClockSettings { clocks: 25, clock_hz, pause_us }
@@ -84,7 +84,7 @@ pub struct Supply {
 impl Supply {
     /// Time from power-up until words are valid. The manual does not specify it (`U`).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Supply voltages of SSI encoders in millivolts, from 5 V less 10 % up to 30 V. See SICK SSI description, TTK70.
+    /// Supply voltages of SSI encoders in millivolts, from 5 V minus 10 % to 30 V. See SICK SSI description, TTK70.
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
 
     /// Returns the supply voltage with its limits. The encoder is unknown, so the upper limit is 10 % above the

@@ -10,7 +10,7 @@ use crate::units::Moment;
 /// Series of words at equal intervals, or a single requested word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
-    /// Number of the first word since the settings last changed. Missing words are counted as well.
+    /// Number of the first word since the settings last changed. Missing words are included in the count.
     pub first: u64,
     /// Time at which the first word was read.
     pub at: Moment,
@@ -18,10 +18,10 @@ pub struct Words {
     pub period_ns: i64,
     /// Number of missing words before the first one.
     pub lost: u64,
-    /// Number of bits per word, 1…64.
+    /// Number of bits per word, 1 to 64.
     pub clocks: u8,
-    /// Received words, at least one. Each is right-justified, so the bit received first is the highest of `clocks`
-    /// bits.
+    /// Received words, of which there is at least one. Each is right-justified, so the bit received first is the
+    /// highest of `clocks` bits.
     pub words: Vec<u64>,
     /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,

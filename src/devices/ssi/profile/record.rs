@@ -58,7 +58,7 @@ impl Default for ReadingSettings {
 }
 
 impl SsiProfile {
-    /// Creates a profile for a frame of no family, with default counting.
+    /// Creates a profile for a frame without a family, with default counting.
     pub fn new(descriptor: FrameDescriptor) -> Self {
         SsiProfile {
             name: String::new(),

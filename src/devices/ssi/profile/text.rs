@@ -1,5 +1,5 @@
-//! The text format of an SSI profile, which users read and edit. Default values are omitted. Errors name the entry, and
-//! an impossible frame is rejected with the reason.
+//! The text format of an SSI profile, which users can read and edit. Default values are omitted. Each error names the
+//! entry that caused it, and an impossible frame is rejected with the reason.
 
 use std::collections::VecDeque;
 use std::str::FromStr;

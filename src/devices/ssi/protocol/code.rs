@@ -10,8 +10,8 @@ pub enum Code {
     Binary,
     /// Gray: one bit changes between adjacent positions.
     Gray,
-    /// Gray excess, the middle part of a complete Gray code. A single bit changes at the end of the range as well, even
-    /// if the number of steps is not a power of two. The number of steps must be even.
+    /// Gray excess, which is the middle part of a complete Gray code. Only one bit changes at the end of the range as
+    /// well, even if the number of steps is not a power of two. The number of steps must be even.
     GrayExcess,
     /// BCD: four bits per decimal digit.
     Bcd,
@@ -63,7 +63,7 @@ impl PositionCode {
     /// Creates the code for the positions 0 to `last`.
     ///
     /// # Errors
-    /// [`CodeError`] if the code cannot represent this number of positions.
+    /// Returns a [`CodeError`] if the code cannot represent this number of positions.
     pub fn new(code: Code, last: u64) -> Result<Self, CodeError> {
         let binary_bits = bit_width(last);
         let (bits, offset) = match code {
@@ -84,7 +84,7 @@ impl PositionCode {
         self.code
     }
 
-    /// Returns the width of a code word, 1…64 bits.
+    /// Returns the width of a code word, 1 to 64 bits.
     pub const fn bits(&self) -> u8 {
         self.bits
     }

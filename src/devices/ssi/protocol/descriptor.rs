@@ -8,7 +8,7 @@ use super::range::Range;
 /// Description of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameDescriptor {
-    /// Number of bits that the host clocks in, 1…64.
+    /// Number of bits that the host clocks in, 1 to 64.
     pub clocks: u8,
     /// Range of positions.
     pub range: Range,
@@ -16,8 +16,8 @@ pub struct FrameDescriptor {
     pub code: Code,
     /// Bits that a Gray code covers.
     pub coded: GrayCoverage,
-    /// Number of clocks at the start of the frame that contain the position and the zeros around it. Shifting right
-    /// moves the bits of these clocks.
+    /// Number of clocks at the start of the frame that contain the position and the zeros around it. A shift to the
+    /// right only moves the bits of these clocks.
     pub area: u8,
     /// Number of zeros before the position.
     pub lead: u8,
@@ -43,9 +43,10 @@ pub struct FrameDescriptor {
 pub enum GrayCoverage {
     /// The position bits only, without zeros and error bits.
     Position,
-    /// The whole area including zeros. The manual can also be read in this way. See reference section 2, `U`.
+    /// The whole area including zeros, which is another possible interpretation of the manual. See reference section 2,
+    /// `U`.
     Area,
-    /// The whole area and the error bits after it, for sensors that count error bits among the data.
+    /// The whole area and the error bits after it, for sensors that treat error bits as data.
     AreaAndErrors,
 }
 

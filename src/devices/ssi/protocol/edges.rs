@@ -18,7 +18,7 @@ pub struct LineLevels {
 /// Frames extracted from a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtractedFrames {
-    /// Number of bits per frame, 1…64.
+    /// Number of bits per frame, 1 to 64.
     pub clocks: u8,
     /// Right-justified frames in recording order.
     pub frames: Vec<u64>,
@@ -52,7 +52,7 @@ pub enum BurstError {
 const MIN_MONOFLOP: f64 = 15e-6;
 /// Minimum pause between bursts in half periods, for a slow clock.
 const MIN_PAUSE_HALF_PERIODS: f64 = 3.0;
-/// Sampling point of the last bit as a fraction of a half period. The line falls after the full half period.
+/// Sampling point of the last bit as a fraction of a half period. The data line falls after the full half period.
 const SAMPLING_POINT: f64 = 0.9;
 
 /// A clock edge with its row in the recording.
@@ -67,7 +67,7 @@ struct Edge {
 /// the idle level.
 ///
 /// # Errors
-/// [`BurstError`] if the recording contains no frames.
+/// Returns a [`BurstError`] if the recording contains no frames.
 pub fn extract_frames(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
     let edges = find_edges(levels);
     let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();
@@ -146,7 +146,7 @@ mod tests {
             put(at, false, data);
             at += half;
             put(at, true, data);
-            // A delay of the line: less than half a period.
+            // The delay of the line is less than half a period.
             data = bit == '1';
             put(at + 0.3 * half, true, data);
             at += half;
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn bursts_that_are_not_whole_are_left_out_and_counted() {
         let mut levels = recording(&[GRAY, GRAY, "1010", GRAY], 1.25, 30.0);
-        // It begins and ends in the middle of a burst.
+        // The recording begins and ends in the middle of a burst.
         levels.drain(..20);
         levels.truncate(levels.len() - 9);
         let found = extract_frames(&levels).unwrap();

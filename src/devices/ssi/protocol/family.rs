@@ -129,7 +129,7 @@ pub enum Alignment {
 pub enum ErrorPlace {
     /// Error bits are not sent, or the host does not clock them in.
     None,
-    /// Error bits have the same clocks at any resolution.
+    /// Error bits are always on the same clocks, regardless of the resolution.
     Fix,
     /// Error bits directly follow the last position bit.
     Following,

@@ -1,9 +1,9 @@
 //! Search for the layout of recorded frames.
 //!
-//! The search tries every way to read the frames as numbers. A turning shaft moves evenly, while a misread frame causes
-//! a jump. Layouts are ranked by how common they are, and by the information that the frames still contain once the
-//! layout is known. Layouts that the frames cannot distinguish form a class. The result states the motion that would
-//! distinguish them.
+//! The search tries every way to interpret the frames as numbers. A turning shaft moves evenly, whereas a wrong
+//! interpretation causes jumps. Layouts are ranked by how common they are, and by the amount of information in the
+//! frames that they do not explain. Layouts that the frames cannot distinguish form a class, and the result states the
+//! motion that would distinguish them.
 
 mod any_other;
 mod code_ends;
@@ -34,14 +34,15 @@ const MAX_FRAMES: usize = 4_000;
 /// Minimum number of different frames. With fewer frames, the shaft is assumed to stand still.
 const MIN_DIFFERENT_FRAMES: usize = 32;
 const CLASSES: usize = 6;
-/// Penalty in bits for each setting that makes a class less usual. It applies to the recording as a whole.
+/// Penalty in bits for each setting that makes a class less common. It applies once for the whole recording.
 const WEIGHT_BITS: f64 = 8.0;
-/// Maximum weight of a member of a class above that of the most probable member. Less probable members are left out.
+/// Maximum difference between the weight of a class member and that of the most probable member. Less probable members
+/// are omitted.
 const MAX_EXTRA_WEIGHT: f64 = 8.0;
-/// Minimum number of frames per thousand in which two readings must have the same motion to be regarded as the same.
+/// Minimum number of frames per thousand for which two readings must have the same motion to be considered the same.
 const SAME_PERMILLE: usize = 995;
-/// Maximum information in bits above that of the best reading, for all frames. Families are not searched for readings
-/// with more information.
+/// Maximum information in bits, for all frames, by which a reading may exceed the best reading. Readings with more
+/// information are not searched for families.
 const NEAR_BITS: f64 = 300.0;
 
 /// Result of a search for layouts.
@@ -90,7 +91,7 @@ pub struct Class {
 /// A layout that fits the recorded frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutProposal {
-    /// Family key and settings, or `None` for a frame of no family. Swapped data wires are not a setting and appear
+    /// Family key and settings, or `None` for a frame without a family. Swapped data wires are not a setting and appear
     /// only in the layout.
     pub family: Option<(String, Settings)>,
     /// The frame.
@@ -113,7 +114,7 @@ impl LayoutProposal {
 /// The evidence for a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassEvidence {
-    /// Score from 0 to 1 for how well the layout explains the frames and how usual it is.
+    /// Score from 0 to 1, which depends on how well the layout explains the frames and how common it is.
     pub score: f64,
     /// Number of frames that are consistent with their neighbours.
     pub explained: usize,
@@ -213,12 +214,12 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     }
     for group in &mut groups {
         // If the step size varies, a lowest bit that never changes is not part of the position. It is a parity bit, or
-        // a zero that the code covers.
+        // a zero that is covered by the code.
         if verdict::has_varied_steps(&group.read) && group.members.iter().any(|member| !member.trial.never_odd) {
             group.members.retain(|member| !member.trial.never_odd);
         }
         group.members.sort_by(|a, b| a.weight.total_cmp(&b.weight));
-        // Different settings can describe the same frame, also within a family.
+        // Different settings can describe the same frame, even within a family.
         let mut known = HashSet::new();
         group.members.retain(|member| {
             let family = member.family.as_ref().map(|(key, _)| key.clone());
@@ -256,7 +257,7 @@ fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     }
     // Where one motion jumps, the other one must jump as well.
     let even = |motion: &Motion| (0..motion.steps.len()).filter(|at| motion.is_even(*at)).count();
-    // A disturbed bit may affect only one of the readings.
+    // A disturbed bit may affect only one of the two readings.
     let disturbed = one.jumps.min(other.jumps) / 2;
     let most = even(one).max(even(other));
     (all + disturbed) * 1000 >= SAME_PERMILLE * most && forwards.max(backwards) * 1000 >= SAME_PERMILLE * all

@@ -39,16 +39,16 @@ const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR",
 impl FrameDescriptor {
     /// Parses a frame given as one word, or returns `None` if the word begins with another keyword.
     ///
-    /// By default, the code is binary, other values are 0, and there are as many clocks as position bits.
+    /// By default, the code is binary, the number of clocks is the number of position bits, and all other values are 0.
     ///
     /// # Errors
-    /// [`SpecError`] with the valid values.
+    /// Returns a [`SpecError`] with the valid values if the word is invalid.
     pub fn parse(text: &str) -> Option<Result<Self, SpecError>> {
         let mut words = text.split(',').map(str::trim);
         words.next().is_some_and(|key| key.eq_ignore_ascii_case(KEY)).then(|| parse(words))
     }
 
-    /// Returns the frame as one word. Patterns, and the names and meanings of error bits, are left out.
+    /// Returns the frame as one word. Patterns, and the names and meanings of error bits, are omitted.
     pub fn spec_text(&self) -> String {
         let own = Self::binary(0, 0);
         let mut words = vec![format!("clocks={}", self.clocks)];
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(layout.decode(0x0D9_3EEC).position, 0x123 << 14 | 0x2A5B);
         let inverted = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,inverted=1,area=26")).unwrap();
         assert_eq!(inverted.decode(!0x0D9_3EEC & 0x7FF_FFFF).position, 0x123 << 14 | 0x2A5B);
-        // A start bit, 4 bits, odd parity; and the same again after a zero.
+        // A start bit, 4 bits and odd parity, repeated after a zero.
         let twice = Layout::new(frame("frame,clocks=13,lead=1,st=4,ones=1,parity=odd@6,repeat=6+1,area=5")).unwrap();
         let reading = twice.decode(0b1_1001_0011_0010);
         assert_eq!(reading.position, 0b1001, "1 1001 1, 0, and again");

@@ -24,7 +24,7 @@ pub enum FrameTextError {
 /// and 1), or a right-justified number (`0x…`). Blanks and underscores between bits are ignored.
 ///
 /// # Errors
-/// [`FrameTextError`] with the valid formats.
+/// Returns a [`FrameTextError`] with the valid formats if the text is not a frame.
 pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     let text = text.trim();
     let form = || FrameTextError::Form(text.to_owned());

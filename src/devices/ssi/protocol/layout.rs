@@ -57,7 +57,7 @@ pub struct FrameReading {
     pub flags: Flags,
 }
 
-/// Properties of a frame in addition to its position: error bits, patterns and inconsistencies.
+/// Properties of a frame other than its position: error bits, patterns and inconsistencies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Flags(pub(super) u32);
 
@@ -132,7 +132,7 @@ impl Layout {
     /// Creates the layout of a frame.
     ///
     /// # Errors
-    /// [`LayoutError`] if the frame is impossible.
+    /// Returns a [`LayoutError`] if the frame is impossible.
     pub fn new(descriptor: FrameDescriptor) -> Result<Self, LayoutError> {
         check::build_layout(descriptor)
     }
@@ -147,7 +147,7 @@ impl Layout {
         &self.coding
     }
 
-    /// Returns the number of bits in a burst, 1…64.
+    /// Returns the number of bits in a burst, 1 to 64.
     pub const fn clock_count(&self) -> u8 {
         self.descriptor.clocks
     }

@@ -1,4 +1,4 @@
-//! SSI: frames of any layout, the encoder families of the manual, and their timing limits.
+//! SSI: frames of any layout, the encoder families in the manual, and their timing limits.
 //!
 //! "The manual" is SICK, *SSI Schnittstellenbeschreibung*, and "reference" is the project's reference. The bit diagrams
 //! of the manual are not available. The layouts follow its text, which numbers the clocks from 1.

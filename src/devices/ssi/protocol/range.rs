@@ -11,9 +11,9 @@ use crate::expected::AllowedValues;
 pub enum Range {
     /// Separate bits for whole turns and for steps within a turn. Singleturn encoders have no multiturn bits.
     Bits {
-        /// Width of the multiturn field, 0…32 bits.
+        /// Width of the multiturn field, 0 to 32 bits.
         multiturn: u8,
-        /// Width of the singleturn field, 0…32 bits.
+        /// Width of the singleturn field, 0 to 32 bits.
         singleturn: u8,
     },
     /// Arbitrary numbers of steps per turn and of turns.
@@ -32,7 +32,7 @@ pub enum Range {
     },
     /// A linear encoder.
     Length {
-        /// Width of the position, 1…64 bits.
+        /// Width of the position, 1 to 64 bits.
         bits: u8,
         /// Step length in nanometres.
         step_nanometres: u32,
@@ -89,7 +89,7 @@ pub enum Location {
         turns: u64,
         /// Steps within the turn.
         steps: u64,
-        /// Angle within the turn in degrees, 0…360.
+        /// Angle within the turn in degrees, 0 to 360.
         degrees: f64,
     },
     /// A location on a scale.
@@ -103,7 +103,7 @@ impl Range {
     /// Returns the last position.
     ///
     /// # Errors
-    /// [`RangeError`] if the range is impossible.
+    /// Returns a [`RangeError`] if the range is impossible.
     pub fn last_position(&self) -> Result<u64, RangeError> {
         match *self {
             Range::Bits { multiturn, singleturn } => {
@@ -190,7 +190,7 @@ impl Range {
     /// Returns the position of a shaft that has turned by `raw` steps from its zero point.
     ///
     /// The shaft has `per_turn` steps per turn, at least 1. Positions wrap after the last one. For a length, `raw` is
-    /// the number of its steps. See reference section 5, "position = floor(…)".
+    /// the number of steps along it. See reference section 5, "position = floor(…)".
     pub fn position_from_shaft(&self, raw: u64, per_turn: u64) -> u64 {
         self.count_from_zero(raw, per_turn, Direction::Clockwise)
     }
@@ -203,7 +203,7 @@ impl Range {
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
-    /// Returns the position counted from the zero point of the shaft. All positions have the same width in both
+    /// Returns the position counted from the zero point of the shaft. All positions are equally wide in both
     /// directions.
     fn count_from_zero(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
@@ -237,7 +237,7 @@ impl Range {
     /// Returns the number of bits required for positions in binary.
     ///
     /// # Errors
-    /// [`RangeError`] if the range is impossible.
+    /// Returns a [`RangeError`] if the range is impossible.
     pub fn bits(&self) -> Result<u8, RangeError> {
         self.last_position().map(bit_width)
     }

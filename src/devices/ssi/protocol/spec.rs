@@ -48,7 +48,7 @@ impl<'t> Setting<'t> {
     /// Parses `name=value` pairs, ignoring empty items.
     ///
     /// # Errors
-    /// [`SpecError::Form`], [`SpecError::Twice`].
+    /// Returns [`SpecError::Form`] or [`SpecError::Twice`] if the pairs are invalid.
     pub(super) fn parse_all(
         words: impl Iterator<Item = &'t str>,
         names: &'static [&'static str],

@@ -17,8 +17,8 @@ pub struct FindingCounts {
 pub struct CountedFinding {
     /// The finding.
     pub finding: FrameFinding,
-    /// Number of occurrences. A finding about a single transfer counts in each frame; other findings count each time
-    /// they begin.
+    /// Number of occurrences. A finding about a single transfer is counted in each frame. Other findings are counted
+    /// each time they begin.
     pub count: u64,
     /// Time of the first frame with the finding.
     pub first: SampleTime,
@@ -77,7 +77,7 @@ impl FindingCounts {
         &self.noted
     }
 
-    /// Ends all present findings, because names in the layout have changed. They are counted again with the next frame.
+    /// Ends all current findings because names in the layout have changed. They are counted again with the next frame.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
@@ -112,8 +112,8 @@ mod tests {
         SampleTime::from_nanoseconds(milliseconds * 1_000_000)
     }
 
-    /// Returns the name, the count, the times of the first and last frame in milliseconds, and whether the finding
-    /// lasts.
+    /// Returns the name, the count, the times of the first and last frame in milliseconds, and whether the newest frame
+    /// has the finding.
     fn rows(tally: &FindingCounts) -> Vec<(String, u64, i64, i64, bool)> {
         let name = |finding: &FrameFinding| match finding {
             FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
@@ -154,7 +154,7 @@ mod tests {
             tally.count_findings(&kh53, kh53.decode(frame), at(number));
         }
         assert_eq!(rows(&tally), [("overspeed or gap".to_owned(), 2, 1, 4, true)]);
-        // ATM60 with 8 of 12 bits of turns in tree format: the zeros before them are ones.
+        // ATM60 with 8 of 12 turn bits in tree format. The zeros before them are received as ones.
         let tree = layout("atm60,mt=8,st=8");
         let mut tally = FindingCounts::default();
         tally.count_findings(&tree, tree.decode(0x14A_780 | 1 << 24), at(0));

@@ -45,7 +45,7 @@ pub struct AsynchronousTimes {
     pub pause_varies: Option<f64>,
 }
 
-/// Times of synchronous operation, in which the clock of the host makes the encoder take a position.
+/// Times of synchronous operation, in which the host's clock makes the encoder take a position.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SynchronousTimes {
@@ -114,7 +114,7 @@ pub struct Timing {
     pub cycle: Duration,
     /// Minimum and maximum monoflop time tm.
     pub monoflop: (Duration, Duration),
-    /// Pause that must be exceeded between bursts.
+    /// Minimum pause between bursts, which must be exceeded.
     pub least_pause: Duration,
     /// Number of bursts per second at the shortest pause.
     pub most_reads_hz: f64,
@@ -141,12 +141,12 @@ pub enum Warning {
     },
     /// The cable is longer than any listed in the manual.
     CableLong,
-    /// A clock level lasts longer than tm. The encoder then regards the burst as complete.
+    /// A clock level lasts longer than tm, so the encoder considers the burst complete.
     ClockSlow {
         /// Minimum clock frequency in hertz.
         least_hz: f64,
     },
-    /// The pause is shorter than the encoder needs. The encoder then sends the old position or is not ready.
+    /// The pause is shorter than the encoder requires, so the encoder sends the old position or is not ready.
     PauseShort {
         /// Minimum pause.
         least: Duration,
@@ -167,16 +167,16 @@ pub enum Warning {
     SynchronousUnknown,
 }
 
-/// Upper limits of cable lengths in metres, with the maximum clock frequencies in hertz. See the manual, 2.7.
+/// Cable lengths in metres, each with the maximum clock frequency in hertz up to this length. See the manual, 2.7.
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
-    /// General SSI times for an encoder of no family. The interval between positions is unknown. See SICK SSI
+    /// General SSI times for an encoder without a family. The interval between positions is unknown. See SICK SSI
     /// description 2.2 and reference section 1.
     pub const GENERAL: Self =
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
-    /// Calculates the times for reading an encoder of no family.
+    /// Calculates the times for reading an encoder without a family.
     pub fn for_any_encoder(reads: &ReadConditions) -> Timing {
         let mut timing = Self::GENERAL.calculate_timing(reads);
         for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {

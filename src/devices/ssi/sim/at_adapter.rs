@@ -12,7 +12,7 @@ pub const DEFAULT_ENCODER: &str = "atm60,code=gray";
 
 parameters! {
     pub struct Settings: ConfigError {
-        /// Family and settings of the encoder. If the host clocks fewer bits, it receives a part of the frame; if it
+        /// Family and settings of the encoder. If the host clocks fewer bits, it receives a part of the frame. If it
         /// clocks more bits, zeros follow the frame.
         encoder: Option<Encoder> = None,
             "ssi" => OptionalValue(CustomNotation(AllowedValues::Family, Encoder::parse)),

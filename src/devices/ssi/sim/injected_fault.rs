@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::devices::ssi::protocol::{Flags, Layout, Word};
 use crate::units::Moment;
 
-/// An error bit or a word that reports a fault, with its timing.
+/// An error bit, or a word that reports a fault, with its timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct InjectedFault {
     shows: FaultIndication,
@@ -54,8 +54,8 @@ impl InjectedFault {
 
     /// Returns whether a transfer shows the fault, given the time of the previous transfer.
     ///
-    /// An intermittent fault is present in the second half of its period. If transfers clear the fault, it is shown if
-    /// it was present since the previous transfer.
+    /// An intermittent fault is present in the second half of its period. If transfers clear the fault, it is shown
+    /// once in each period after the initial one, by the first transfer.
     pub(super) fn occurs(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, FaultIndication::Bit { cleared: true, .. });

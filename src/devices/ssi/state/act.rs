@@ -1,5 +1,5 @@
-//! Actions of the user on an encoder or a layout. A change of the layout takes effect at once; everything else is a job
-//! of the session or a task.
+//! Actions of the user on an encoder or a layout. A change of the layout takes effect immediately. Everything else is a
+//! job of the session or a task.
 
 use std::path::PathBuf;
 
@@ -104,7 +104,7 @@ impl Encoder {
 
     fn start_trial(&mut self, with: TrialInput) {
         let layout = self.designer.layout();
-        // The trial starts with the word read last, if that word is displayed.
+        // If the word read last is displayed, the trial starts with it.
         if self.is_showing_live()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {

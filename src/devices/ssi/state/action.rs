@@ -17,10 +17,10 @@ pub enum SsiAction {
     AddErrorBit,
     RemoveErrorBit(usize),
     Try(TrialInput),
-    /// Sets the number of clocks per word for a search, or returns to that of the layout with `None`.
+    /// Sets the number of clocks per word for a search. `None` selects the number in the layout.
     SetClocks(Option<u8>),
     Find,
-    /// Asks for a file with frames, whose layout is then searched for.
+    /// Asks for a file with frames, and searches for their layout.
     AskFrames,
     FindIn(PathBuf),
     ForgetSearch,

@@ -23,12 +23,12 @@ pub enum SsiLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. Entries of another type of connection are kept, but they are not part of the link.
-/// An empty entry stands for the default.
+/// Entries of the connection form. Entries of other connection types are kept, but are not included in the link. An
+/// empty entry selects the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
     pub kind: SsiLinkKind,
-    /// Whether the adapter is connected over a network, rather than to a serial port of this computer.
+    /// Whether the adapter is connected over a network and not to a serial port of this computer.
     pub network: bool,
     pub port: String,
     pub host: String,
@@ -44,7 +44,7 @@ pub struct SsiForm {
 impl FormModel for SsiForm {
     type Finder = NoFinder<Self>;
 
-    // The clock of the virtual encoder is slow enough to see the bits.
+    // The clock of the virtual encoder is slow enough for the user to see the bits.
     fn default_link() -> LinkUrl {
         let mut url = LinkUrl::simulated();
         url.query.set("rpm", "6");
@@ -182,7 +182,7 @@ mod tests {
         let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
         (form.kind, form.port) = (SsiLinkKind::Adapter, "COM3".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
-        // Parameters of an entered link without an entry in its form.
+        // The link has parameters for which the form has no entry.
         let mut form = SsiForm::from_url(&"bridge:COM3?rpm=60".parse().unwrap());
         form.kind = SsiLinkKind::Virtual;
         form.typed.set("rpm", "6");

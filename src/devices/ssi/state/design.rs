@@ -1,5 +1,5 @@
-//! Design of a layout. Every change can be undone. An impossible change is rejected with a message, so the frame is
-//! always valid.
+//! Design of a layout. Every change can be undone. An impossible change is rejected with a message, so that the frame
+//! is always valid.
 
 mod reshape;
 
@@ -24,7 +24,7 @@ const DEFAULT_FAMILY: &str = "ahm36";
 pub struct Design {
     pub profile: SsiProfile,
     pub layout: Layout,
-    /// Settings with which the family sends exactly this frame. `None` if the layout has no family, or if its family
+    /// Settings with which the family sends exactly this frame, or `None` if the layout has no family or its family
     /// cannot send the frame.
     pub settings: Option<Settings>,
     /// Remarks about accepted settings that the manual of the family does not mention.
@@ -35,12 +35,12 @@ pub struct Design {
 pub enum Edit {
     /// Switches to the factory layout of the family with this key.
     Family(String),
-    /// Detaches the frame from its family. Every part of it can then be edited.
+    /// Detaches the frame from its family, so that every part of the frame can be edited.
     Free,
     /// Changes the family settings.
     Settings(Box<Settings>),
     Frame(Box<FrameDescriptor>),
-    /// Changes the positions or the code. The frame becomes longer or shorter accordingly.
+    /// Changes the positions or the code. The frame becomes longer or shorter as required.
     Position(Range, Code),
     Direction(Direction),
     /// Sets the position at the zero point of the shaft.
@@ -62,10 +62,10 @@ pub struct LayoutDesigner {
 
 impl Design {
     /// Creates the design of a layout with its family. If several settings result in the frame, the `requested` ones
-    /// are preferred, or else the fewest.
+    /// are preferred, and otherwise the fewest.
     ///
     /// # Errors
-    /// Returns the reason why the layout is impossible.
+    /// Returns an error with the reason if the layout is impossible.
     fn from_profile(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout_error_text(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.find_by_key(key));
@@ -91,8 +91,8 @@ impl Default for Design {
 }
 
 impl LayoutDesigner {
-    /// Creates a designer for a saved layout. An impossible layout is replaced by the default; it cannot come from a
-    /// file.
+    /// Creates a designer for a saved layout. An impossible layout, which no file can contain, is replaced by the
+    /// default.
     fn from_profile(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::from_profile(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
@@ -113,8 +113,8 @@ impl LayoutDesigner {
         LayoutDesigner::from_profile(profile, families)
     }
 
-    /// Returns the reading settings after a change of the link. Parameters that differ between the links come from the
-    /// new link. Other settings are kept.
+    /// Returns the reading settings after a change of the link. Parameters that differ between the links are taken from
+    /// the new link. Other settings are kept.
     pub(super) fn reading_after_link_change(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         reading_for_link(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
@@ -148,8 +148,8 @@ impl LayoutDesigner {
         self.family().map(|family| &family.times)
     }
 
-    /// Returns whether error and parity bits move with the end of the position. The family settings determine this, or
-    /// else the frame.
+    /// Returns whether error and parity bits move with the end of the position. The family settings determine this if
+    /// there are any, and the frame otherwise.
     pub fn error_bits_follow(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {

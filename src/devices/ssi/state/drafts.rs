@@ -1,5 +1,5 @@
-//! Drafts of layout changes, which survive a crash. They are stored entry by entry, so changes that others make to the
-//! file are preserved.
+//! Drafts of layout changes, which survive a crash. They are stored entry by entry, so that changes that others make to
+//! the file are preserved.
 
 use super::design::Edit;
 use super::encoder::Encoder;
@@ -34,7 +34,7 @@ impl HasDraft for Encoder {
 
     /// Returns `None` for a layout that does not belong to a link.
     ///
-    /// SSI encoders do not report their identity, so a layout belongs to the link on which it was used. The link
+    /// SSI encoders do not report their identity, so a layout belongs to the link over which it was used. The link
     /// describes a virtual encoder completely.
     fn type_and_serial(&self) -> Option<(String, String)> {
         let Source::Link(url) = &self.session.source else { return None };
@@ -65,7 +65,7 @@ impl HasDraft for Encoder {
         match whole {
             Some(profile) => self.apply_edit(Edit::Whole(Box::new(profile))),
             None if edits.is_empty() => {}
-            // The edits do not result in a possible frame with the present file.
+            // With the current file, the edits do not result in a possible frame.
             None => self.designer.show_rejection(TEXTS.text("ssi.draft_unfit")),
         }
     }
@@ -85,7 +85,7 @@ impl HasDraft for Encoder {
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<SsiProfile>() else { return };
         let before = self.designer.layout().clone();
-        // Undo steps are kept if the file has not changed. Otherwise the edits stay edits.
+        // Undo steps are kept if the file has not changed. Otherwise, only the edits are kept.
         if self.designer.design().profile == *profile {
             self.designer.mark_saved(profile.clone());
         } else {

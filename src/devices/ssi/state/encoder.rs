@@ -59,8 +59,8 @@ impl Encoder {
         self.designer.design()
     }
 
-    /// Returns the displayed frame. This is the word read last, if it is to be displayed and exists, or else the trial
-    /// frame.
+    /// Returns the displayed frame. This is the word read last if there is one and it is to be displayed, and the trial
+    /// frame otherwise.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decode(self.designer.layout()))
@@ -131,8 +131,8 @@ impl Encoder {
         self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
     }
 
-    /// Returns the link to a virtual encoder that sends this layout. Returns `None` if the present one already does, or
-    /// if the layout belongs to no family and so cannot be part of a link.
+    /// Returns the link to a virtual encoder that sends this layout. Returns `None` if the current virtual encoder
+    /// already does, or if the layout belongs to no family and therefore cannot be part of a link.
     pub fn link_for_layout(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
@@ -157,7 +157,7 @@ impl Encoder {
 }
 
 impl LayoutDesigner {
-    /// Returns the timing limits of the family, or else the general limits of SSI.
+    /// Returns the timing limits of the family, or the general limits of SSI if there is no family.
     pub fn applicable_times(&self) -> Times {
         self.times().copied().unwrap_or(Times::GENERAL)
     }
@@ -171,7 +171,7 @@ impl LayoutDesigner {
         self.design().profile.read_conditions()
     }
 
-    /// Returns the user-defined name of the layout, or else the name of the family.
+    /// Returns the user-defined name of the layout, or the name of the family if there is none.
     pub fn title(&self) -> String {
         let profile = &self.design().profile;
         if !profile.name.is_empty() {

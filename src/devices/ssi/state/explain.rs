@@ -25,7 +25,7 @@ pub use refused::{
     too_wide_text,
 };
 
-/// Returns texts that explain why a job ended early. Each may be shown on its own line.
+/// Returns texts that explain why a job ended early. Each can be shown on a separate line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link_error_text(error),
@@ -34,7 +34,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }]
 }
 
-/// Returns the reason for the loss of the connection, or `None` if the error does not end it.
+/// Returns the reason for the loss of the connection, or `None` if the error does not end the connection.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error {
         JobError::Link(error) => Some(link_error_text(error)),
@@ -96,7 +96,7 @@ pub fn timing_warning_text(warning: &Warning) -> Text {
     }
 }
 
-/// Returns a description of a frame in one line, with its clocks, positions, code and error bits.
+/// Returns a one-line description of a frame with its clocks, positions, code and error bits.
 pub fn layout_summary(layout: &Layout) -> Text {
     let descriptor = layout.descriptor();
     let range = match descriptor.range {
@@ -114,7 +114,7 @@ pub fn layout_summary(layout: &Layout) -> Text {
             TEXTS.text("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
         }
     };
-    // A name that ends with the clock number does not need it again.
+    // If a name ends with the clock number, the number is not repeated.
     let named = |name: &str, clock: u8| match name.ends_with(&clock.to_string()) {
         true => name.to_owned(),
         false => format!("{name} {clock}"),
@@ -173,7 +173,7 @@ pub fn open_question_text(open: OpenQuestion) -> Text {
     }
 }
 
-/// Returns whether the first layout found is certain and, if not, why.
+/// Returns whether the first layout found is certain and, if it is not, the reason.
 pub fn uncertainty_text(doubt: Option<SearchUncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",

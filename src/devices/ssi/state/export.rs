@@ -81,7 +81,7 @@ impl LayoutDesigner {
     /// Returns the layout in the given format. Explanations are in the given language, and program code is in English.
     ///
     /// # Errors
-    /// Returns a message that names the property of the layout that the format cannot represent.
+    /// Returns an error with the property of the layout that the format cannot represent.
     pub fn export(&self, format: ExportFormat, language: Language) -> Result<String, Text> {
         if let Some(picture) = self.layout_picture(format, language) {
             return Ok(picture.to_svg());

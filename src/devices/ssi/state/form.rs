@@ -110,13 +110,13 @@ impl Group {
         }
     }
 
-    /// Returns whether error bits can be added. This requires a frame of no family.
+    /// Returns whether error bits can be added. This requires a frame without a family.
     pub fn accepts_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 
-    /// Returns whether the group can be folded in a low window. The position, which is used most, and the error bits
-    /// always stay open.
+    /// Returns whether the group can be folded in a low window. The position, which is used most often, and the error
+    /// bits always remain open.
     pub fn is_foldable(&self) -> bool {
         matches!(self.title, "ssi_form.frame" | "ssi_form.counting")
     }
@@ -184,7 +184,7 @@ impl LayoutDesigner {
     /// Converts an entry to a change of the layout.
     ///
     /// # Errors
-    /// Returns the reason why the entry was rejected.
+    /// Returns an error with the reason if the entry is invalid.
     pub(super) fn parse_entry(&self, field: Field, input: &FieldInput) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
@@ -294,7 +294,7 @@ impl RangeKind {
     }
 }
 
-/// Returns the rows for the positions and the code of a frame. The range can be one of `kinds`.
+/// Returns the rows for the positions and the code of a frame. The user can select one of `kinds` as the kind of range.
 fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &FrameDescriptor) -> Vec<Row> {
     let mut rows = Vec::new();
     if kinds.len() > 1 {
@@ -337,7 +337,7 @@ fn range_row(kinds: &[RangeKind], range: &Range) -> Row {
 /// Parses a whole number in any common notation, such as 3600, 3 600 or 0x0E10.
 ///
 /// # Errors
-/// Returns the reason why the entry is invalid.
+/// Returns an error with the reason if the entry is invalid.
 pub fn parse_whole(text: &str) -> Result<u64, Text> {
     let plain: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '_' | '’' | '\'')).collect();
     let number = match plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X")) {

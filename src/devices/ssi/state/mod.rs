@@ -1,5 +1,5 @@
-//! State of the SSI tab: layouts being designed, encoders behind an adapter, and the search for a layout. It does not
-//! depend on the window. Nothing is ever written to an encoder.
+//! State of the SSI tab: layouts being designed, encoders behind an adapter, and the search for a layout. It is
+//! independent of the window. Nothing is ever written to an encoder.
 
 mod act;
 mod action;

@@ -125,7 +125,7 @@ impl DeviceModel for Encoder {
     }
 
     fn can_stream(&self) -> bool {
-        // There is always an adapter.
+        // An adapter is always present.
         true
     }
 

@@ -56,7 +56,7 @@ impl WordStream {
         1e9 / self.period_ns.max(1) as f64
     }
 
-    /// Returns whether the adapter cannot provide the requested interval, because it is too short.
+    /// Returns whether the requested interval is too short for the adapter.
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
@@ -98,7 +98,7 @@ impl Record {
         }
     }
 
-    /// Compares a run with the previous one. Missing words are counted, and the line has a gap there.
+    /// Compares a run with the previous one. Missing words are counted and leave a gap in the recording.
     fn compare_with_previous(&mut self, run: &Words) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -150,7 +150,7 @@ impl Record {
     }
 
     /// Changes the layout. Stored words are decoded again, and earlier recordings are dropped. If only names differ,
-    /// the recording stays as it is.
+    /// the recording is kept.
     pub(super) fn reinterpret(&mut self, layout: &Layout) {
         if self.layout == *layout {
             return;
@@ -204,7 +204,7 @@ impl Record {
         &self.tally
     }
 
-    /// Hides the findings so far. They stay hidden if the words are decoded again.
+    /// Hides all previous findings. They remain hidden if the words are decoded again.
     pub(super) fn reset_tally(&mut self) {
         self.tally.reset();
         self.forgotten = self.last.as_ref().map(|last| last.at);

@@ -26,7 +26,7 @@ pub enum Origin {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     pub origin: Origin,
-    /// Number of bits per frame, 1…64.
+    /// Number of bits per frame, 1 to 64.
     pub clocks: u8,
     /// Right-justified frames.
     pub frames: Vec<u64>,
@@ -57,7 +57,7 @@ pub enum SearchState {
 /// Parses a number of clocks.
 ///
 /// # Errors
-/// Returns a message if the text is not a whole number, or if no frame has so many clocks.
+/// Returns an error with a message if the text is not a whole number, or if no frame has this number of clocks.
 pub fn read_clocks(text: &str) -> Result<u8, Text> {
     let number = parse_whole(text)?;
     let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
@@ -71,7 +71,8 @@ pub fn read_clocks(text: &str) -> Result<u8, Text> {
 /// # are skipped.
 ///
 /// # Errors
-/// Returns a message if the file cannot be read, or if a line is not a frame. The message names the line.
+/// Returns an error with a message if the file cannot be read or a line is not a frame. The message contains the line
+/// number.
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     let text = read_file(path).map_err(|error| file_error_text(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -81,7 +82,7 @@ pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
 /// Parses the text of a file like [`read_frames`]. `name` is the name of its origin.
 ///
 /// # Errors
-/// Returns a message with the number of the line that is not a frame.
+/// Returns an error with the line number if a line is not a frame.
 pub fn parse_frame_file(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
     let read = match capture::parse_levels(text) {
         Some(levels) => frames_from_bursts(extract_frames(&levels?).map_err(words::burst_error_text)?),

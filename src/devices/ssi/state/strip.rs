@@ -1,5 +1,5 @@
-//! A frame as a row of cells, one for each clock, with its movable parts: the boundaries between fields, and single
-//! bits. A move returns the resulting frame and does not change the layout.
+//! A frame as a row of cells, one for each clock, with its movable parts, which are the boundaries between fields and
+//! single bits. A move returns the resulting frame and does not change the layout.
 
 mod moving;
 #[cfg(test)]
@@ -64,16 +64,17 @@ pub enum Kind {
 /// position are located on a clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Handle {
-    /// Start of the position. Moving it turns zeros before the position into turn bits, or turn bits into zeros.
+    /// Start of the position. If it is moved, zeros before the position become turn bits, or turn bits become zeros.
     LeadEnd,
-    /// Boundary between turns and steps without zeros between them. Moving it turns turn bits into step bits, or step
-    /// bits into turn bits.
+    /// Boundary between turns and steps without zeros between them. If it is moved, turn bits become step bits, or step
+    /// bits become turn bits.
     Split,
     /// End of the turns, before zeros that separate turns and steps.
     TurnsEnd,
     /// Start of the steps, after zeros that separate turns and steps.
     BetweenEnd,
-    /// End of the position. Moving it turns free bits after the position into step bits, or step bits into free bits.
+    /// End of the position. If it is moved, free bits after the position become step bits, or step bits become free
+    /// bits.
     StepsEnd,
     /// End of the area that is coded or shifted together with the position.
     AreaEnd,
@@ -223,13 +224,13 @@ impl Field {
 }
 
 impl Handle {
-    /// Returns whether the handle is located on a clock rather than between two clocks.
+    /// Returns whether the handle is located on a clock and not between two clocks.
     pub const fn is_on_clock(self) -> bool {
         matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
     }
 }
 
-/// Returns whether error or parity bits directly follow the position and so move with its end.
+/// Returns whether error or parity bits directly follow the position and therefore move with its end.
 pub fn bits_follow_position(layout: &Layout) -> bool {
     !moving::bits_after_position(layout).is_empty()
 }

@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Message catalogue of SSI. Identifiers that it does not contain are looked up in the common catalogue.
+/// Message catalogue of SSI. The common catalogue provides all other IDs.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/ssi.ron"));

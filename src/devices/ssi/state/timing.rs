@@ -1,4 +1,4 @@
-//! Timing diagram of a burst to scale: the lines, the times, and breaks of the time axis where nothing happens. Times
+//! Timing diagram of a burst to scale: the lines, the times, and breaks in the time axis where nothing happens. Times
 //! are in seconds from the first falling edge. See SICK SSI description 2.2 and reference sections 1 and 5.
 
 #[cfg(test)]
@@ -77,9 +77,9 @@ pub struct Bit {
     pub to: f64,
 }
 
-/// Duration without an event that is replaced by a break, in bursts.
+/// Minimum time without an event that is replaced by a break, in bursts.
 const MIN_BREAK_BURSTS: f64 = 1.5;
-/// Duration that is drawn on either side of a break, in bursts.
+/// Time that is drawn on either side of a break, in bursts.
 const BREAK_MARGIN_BURSTS: f64 = 0.4;
 /// Number of clocks of the next burst that are drawn.
 const NEXT_BURST_CLOCKS: f64 = 2.5;
@@ -131,7 +131,7 @@ impl BurstDiagram {
         &self.pieces
     }
 
-    /// Returns the duration in seconds that is left out after a section. It is 0 after the last section.
+    /// Returns the duration in seconds that is omitted after a section. It is 0 after the last section.
     pub fn gap_after(&self, piece: usize) -> f64 {
         let ends = self.pieces.get(piece).zip(self.pieces.get(piece + 1));
         ends.map_or(0.0, |(own, next)| next.from - own.to)
@@ -170,8 +170,8 @@ impl BurstDiagram {
         (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
     }
 
-    /// Returns three times in seconds: the data line goes low after the bits, and it rises again between the second and
-    /// the third time. It rises with the next burst at the latest.
+    /// Returns three times in seconds. The data line goes low at the first time, after the bits, and goes high again
+    /// between the second and the third. It goes high with the next burst at the latest.
     pub fn low_times(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
@@ -187,7 +187,7 @@ impl BurstDiagram {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// Returns texts about a moment: its time, and the present clock with its content or the reason why the lines are
+    /// Returns texts about a moment: its time, and the current clock with its content or the reason why the lines are
     /// idle.
     pub fn texts_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
@@ -242,7 +242,7 @@ pub fn skipped_operations(seconds: f64) -> Text {
 pub fn time(seconds: f64) -> Text {
     const UNITS: [(&str, f64); 4] =
         [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];
-    // A value that rounds to 1000 is shown in the next unit.
+    // A value that would be rounded to 1000 is shown in the next unit.
     let fits = UNITS.into_iter().rfind(|(_, unit)| seconds.abs() >= unit * 0.99995);
     let (id, unit) = fits.unwrap_or(if seconds == 0.0 { ("ssi.time_us", 1e-6) } else { ("ssi.time_ns", 1e-9) });
     let value = seconds / unit;
@@ -256,7 +256,7 @@ pub fn time(seconds: f64) -> Text {
 /// Formats a frequency in a suitable unit with up to three decimals, such as 2 MHz or 10.811 kHz.
 pub fn frequency(hertz: f64) -> Text {
     const UNITS: [(&str, f64); 3] = [("ssi.hertz", 1.0), ("ssi.kilohertz", 1e3), ("ssi.megahertz", 1e6)];
-    // A value that rounds to 1000 is shown in the next unit.
+    // A value that would be rounded to 1000 is shown in the next unit.
     let fits = UNITS.into_iter().rfind(|(_, unit)| hertz.abs() >= unit * 0.999_999_5);
     let (id, unit) = fits.unwrap_or(("ssi.hertz", 1.0));
     let value = hertz / unit;
@@ -268,7 +268,7 @@ pub fn frequency(hertz: f64) -> Text {
 /// Parses a frequency such as 400000, 400 kHz or 1.5 MHz. A decimal comma is accepted as well.
 ///
 /// # Errors
-/// Returns the reason why the text is not a frequency.
+/// Returns an error with the reason if the text is not a frequency.
 pub fn read_frequency(text: &str) -> Result<u32, Text> {
     let wrong = || TEXTS.text("ssi_form.frequency").with("text", text.trim());
     let plain: String = text.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_ascii_lowercase();

@@ -87,7 +87,7 @@ impl TrialFrame {
         *self = TrialFrame { frame, problem: None };
     }
 
-    /// Switches to another layout. The position is kept if the new layout contains it.
+    /// Switches to another layout. The position is kept if it exists in the new layout.
     pub(super) fn switch_layout(&mut self, before: &Layout, now: &Layout) {
         let reading = before.decode(self.frame);
         let position = reading.position.min(now.position_code().last_position());

@@ -1,4 +1,4 @@
-//! The connection form of an SSI encoder, which is behind an adapter or virtual.
+//! The connection form for an SSI encoder, which is virtual or behind an adapter.
 
 use egui::Ui;
 

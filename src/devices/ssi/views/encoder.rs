@@ -77,7 +77,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     });
 }
 
-/// Draws the findings. They include findings in frames that were not displayed.
+/// Draws the findings, including those in frames that were not displayed.
 fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let noted = encoder.record.finding_counts().finding_counts();
     let id = encoder.session.id;

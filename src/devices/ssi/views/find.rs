@@ -1,4 +1,4 @@
-//! The search page: the layouts that fit the frames read last, or the frames in a file. Results are ranked and
+//! The search page. It shows the layouts that fit the frames read last, or the frames in a file. Results are ranked and
 //! explained. Layouts that the frames cannot distinguish form a class, with the motion that would distinguish them.
 
 use egui::{RichText, Ui};
@@ -21,7 +21,7 @@ pub(super) struct FindUiState {
     unfolded: Option<usize>,
 }
 
-/// Maximum number of classes shown. The other ones fit even worse.
+/// Maximum number of classes shown. All others fit even worse.
 const CLASSES: usize = 6;
 /// Number of members of a class that are shown before it is expanded.
 const MEMBERS: usize = 4;
@@ -213,7 +213,7 @@ fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &LayoutProp
         return;
     };
     let family = encoder.designer.families().find_by_key(key);
-    // Swapped wires are not a setting, so they are ignored in the search for the fewest settings.
+    // Swapped wires are not a setting, so they are ignored when the fewest settings are determined.
     let frame = FrameDescriptor { inverted: false, ..proposal.layout.descriptor().clone() };
     let fewest = family.and_then(|family| family.settings_for_frame(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());

@@ -33,7 +33,7 @@ pub(super) fn card_ui(
         let heading = row(&[&number, &frame, &position, &turns, &steps], digits);
         ui.label(theme.monospace(heading).color(theme.palette.muted));
         let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
-        // The rows of the table have no space around their buttons.
+        // The rows of the table provide no space around their buttons.
         let spacing = ui.spacing_mut();
         (spacing.item_spacing.y, spacing.interact_size.y, spacing.button_padding.y) = (0.0, height, 0.0);
         let seen = VISIBLE_ROWS * height;

@@ -107,7 +107,7 @@ impl TypedDeviceView for SsiView {
     }
 }
 
-/// Returns a message of the SSI catalogue, or else of the common one, in the language of the window.
+/// Returns a message from the SSI or common catalogue, in the language of the window.
 pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

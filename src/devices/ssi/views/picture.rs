@@ -8,7 +8,7 @@ use egui::{
 use crate::devices::ssi::protocol::{Picture, PictureLabel, PictureShape, PolylineSegment};
 use crate::ui::Theme;
 
-/// Minimum scale at which the numbers are legible. A picture that would be smaller can be scrolled.
+/// Minimum scale at which the numbers are legible. A picture that would be drawn smaller can be scrolled.
 const MIN_SCALE: f32 = 0.75;
 const MAX_SCALE: f32 = 1.4;
 

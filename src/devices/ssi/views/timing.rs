@@ -62,7 +62,7 @@ fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     value_row("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
     value_row("ssi_timing.most_reads", hertz(timing.most_reads_hz));
     let age = match timing.age {
-        // The position is latched at the first edge, and is complete when the burst ends.
+        // The position is latched at the first edge and is complete when the burst ends.
         None => format!("≥ {} µs", micros(timing.burst)),
         Some((least, most)) if least == most => format!("{} µs", micros(most)),
         Some((least, most)) => format!("{} … {} µs", micros(least), micros(most)),

@@ -1,5 +1,5 @@
-//! The trial frame. A position can be entered to see its bits, or bits to see their position. The word read last can be
-//! used as well.
+//! The trial frame. The user can enter a position to see its bits, or bits to see their position. The word read last
+//! can be used as well.
 
 use egui::{RichText, Ui};
 
@@ -20,12 +20,12 @@ pub(super) struct TrialUiState {
     turns: Option<(String, Option<Text>)>,
     steps: Option<(String, Option<Text>)>,
     bits: Option<String>,
-    /// Frame that was displayed when typing began. Words received meanwhile do not replace it.
+    /// Frame that was displayed when the user began to type. Words received in the meantime do not replace it.
     held: Option<Decoded>,
 }
 
 impl TrialUiState {
-    /// Returns whether the user is typing. An entry that was rejected and is still shown does not count.
+    /// Returns whether the user is typing. This is not the case if a rejected entry is still shown.
     fn is_typing(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())
@@ -146,7 +146,7 @@ fn bits_ui(
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());
-    // The frame around the entry has its own width, which is added to that of the text.
+    // The frame around the entry adds its own width to that of the text.
     let width = (ui.available_width() - 18.0).max(0.0);
     let response = mono_entry(ui, theme, &mut text, width, &word, "");
     if response.has_focus() {

@@ -14,9 +14,10 @@ use crate::devices::biss::protocol::{FrameError, RegisterAddress};
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Slave number of an encoder that is alone on its line.
+/// Slave number of an encoder that is the only one on its line.
 const SLAVE: u8 = 0;
-/// Time since the last reply within which the encoder cannot have restarted. A restart takes 500 ms (EDS 02:0Eh).
+/// Time since the last reply within which the encoder cannot have restarted unnoticed. A restart takes 500 ms (EDS
+/// 02:0Eh).
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Pause between two attempts, since the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -114,7 +115,8 @@ impl<'a> Master<'a> {
     pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<WriteReaction> {
         Ok(match self.write_register_once(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
-            // A command register may be cleared as soon as the command is executed (`U`). The status shows the result.
+            // A command register may be cleared as soon as the command is executed (`U`). The status register shows the
+            // result.
             Ok(0) if self.station.is_command_register(address) => Ok(WriteReaction::Yes),
             Ok(reads) => Ok(WriteReaction::No(Some(reads))),
             Err(trouble) => Err(trouble),
@@ -212,8 +214,8 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Reads more frames after five had wrong checksums and none was ever correct. If the cause is noise, some of them
-    /// are correct. If the widths are wrong, none is.
+    /// Reads more frames after five had wrong checksums and none was ever correct. Some of them are correct if the
+    /// cause is noise, and none if the widths are wrong.
     pub(super) fn recheck_frame_widths(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);

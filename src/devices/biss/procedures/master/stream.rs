@@ -21,8 +21,8 @@ impl Master<'_> {
     /// streams.
     ///
     /// # Errors
-    /// Starting a stream returns the same errors as [`position`](Self::position). Later, an error means that the
-    /// adapter failed or the job was cancelled. The stream continues after a cancellation.
+    /// Starting a stream returns the same errors as [`position`](Self::position). A running stream returns an error if
+    /// the adapter fails or the job is cancelled. The stream continues after a cancellation.
     pub fn next_frames(&mut self, period_us: u32) -> Result<Option<ConsecutiveFrames>, Error> {
         if self.station.transport != Transport::Adapter {
             return Ok(None);

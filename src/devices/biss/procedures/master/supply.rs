@@ -7,8 +7,8 @@ use crate::devices::biss::procedures::Error;
 use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
-/// Time allowed for a store that a register write may have started. No status shows the end of such a store, and its
-/// duration is not published (`U`).
+/// Time allowed for a store that a register write may have started. No status register shows its end, and its duration
+/// is not published (`U`).
 const STORE_TIME: Duration = Duration::from_secs(1);
 
 impl Master<'_> {

@@ -29,7 +29,7 @@ struct TimedReply {
 struct ReceivedBytes {
     receiver: Receiver,
     sent: Vec<u8>,
-    /// The first bytes received, for the trace.
+    /// The first received bytes, for the trace.
     raw: Vec<u8>,
     bytes: usize,
     echo_heard: bool,
@@ -174,7 +174,7 @@ impl Master<'_> {
         state.record_answer_start(at);
         state.echo.store_heard(received.echo_heard);
         if received.receiver.skipped_count() > 0 || received.damage.is_some() {
-            // The checksum of this reply is correct, but the line has damaged other bytes.
+            // This reply has a correct checksum, but the line has damaged other bytes.
             state.damaged += 1;
             state.quality.damaged += 1;
             self.station.noisy = true;

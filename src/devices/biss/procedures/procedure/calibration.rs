@@ -83,8 +83,8 @@ impl ProcedureContext<'_, '_> {
             return self.run(&course, procedure, explain);
         }
         let ended = self.run_uncancellable(|guide| guide.run(&course, procedure, explain));
-        // A successful run saves the table, and a failed one loses it. Only a run that was never started does not
-        // change anything.
+        // A successful run saves the table, and a failed one loses it. Nothing changes only if the run was never
+        // started.
         if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
             self.count_write_cycle();
         }

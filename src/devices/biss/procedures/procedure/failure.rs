@@ -34,7 +34,7 @@ pub enum Failure {
         /// Time waited, in seconds.
         seconds: u64,
     },
-    /// The operator did not fulfil the task in time.
+    /// The operator did not complete the task in time.
     #[error("the conditions are not met: {blockers:?}")]
     NotReady { task: OperatorTask, blockers: Vec<StartBlocker> },
     /// A value read back differs from the one written.

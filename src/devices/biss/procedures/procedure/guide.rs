@@ -27,7 +27,7 @@ const STATUS_POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. At longer intervals, turns of an encoder
 /// without a multiturn would be missed.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Interval between questions to the operator.
+/// Interval at which the operator is asked for an answer.
 const QUESTION_INTERVAL: Duration = Duration::from_millis(200);
 /// Duration of a motor speed measurement.
 const SPEED_MEASUREMENT_TIME: Duration = Duration::from_secs(1);
@@ -63,7 +63,7 @@ pub(super) struct RunProgress {
     pub(super) limit: Duration,
 }
 
-/// The operator's decision about a task, with the measurement at that time.
+/// What the operator decided about a task, with the measurement at that time.
 pub(super) enum OperatorDecision {
     Go(Option<ShaftMotion>),
     Skip,
@@ -102,7 +102,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         &self.standing
     }
 
-    /// Returns the number of persistent writes that were, or may have been, performed.
+    /// Returns the number of persistent writes that were or may have been performed.
     pub(in crate::devices::biss::procedures) fn write_cycles(&self) -> u64 {
         self.cycles
     }
@@ -176,7 +176,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends a command. If it is uncertain whether the encoder received the command, no error is returned. The next
+    /// Sends a command. No error is returned if it is uncertain whether the encoder received the command. The next
     /// exchange must then check the status or the written values.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
@@ -230,8 +230,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         result
     }
 
-    /// Starts a run, polls the status until the run is complete, and reports the progress. `explain` returns the
-    /// failure for an unexpected status. The status from before the command is ignored until it changes.
+    /// Starts a run, polls the status until the run is complete, and reports the progress. `explain` converts an
+    /// unexpected status to a failure. The status read before the command is ignored until it changes.
     pub(super) fn run(
         &mut self,
         course: &RunProgress,
@@ -304,7 +304,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         loop {
             let measured = self.measure_shaft(task, &mut monitor)?;
             if !is_told {
-                // Answers from before the question was displayed are void.
+                // Answers from before the question was displayed are ignored.
                 self.operator.on_task_start();
                 is_told = true;
             }
@@ -397,7 +397,7 @@ pub(super) fn lead_back(
             ended?;
         }
         if DeviceMode::new(master.read(lock.mode_at)?) != DeviceMode::OPERATION {
-            // The return also requires the password.
+            // The password is also required to leave the mode.
             unlock(master, lock, standing)?;
             set_mode(master, lock, DeviceMode::OPERATION, standing)?;
         }
@@ -439,7 +439,7 @@ fn end_procedure(master: &mut Master<'_>, description: &Description, mode: Devic
 fn ignore_refusal(ended: Result<(), Error>) -> Result<(), Error> {
     match ended {
         Err(Error::Refused { .. }) => Ok(()),
-        // It is not known whether the command was received. The next exchange shows whether the encoder is still there.
+        // It is unknown whether the command was received. The next exchange shows whether the encoder still replies.
         Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
         ended => ended,
     }

@@ -5,7 +5,7 @@ use super::MotorRun;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// The possible values of a quantity. There are several if a reply is missing.
+/// The possible values of a quantity. There is more than one if a reply is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PossibleValues<T>(Vec<T>);
 
@@ -19,12 +19,12 @@ pub struct LeftState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// No activity that a loss of the link would interrupt.
+    /// The encoder is not doing anything that a loss of the link would interrupt.
     Nothing,
     Running(MotorRun),
     /// Values have been entered but not saved, and are discarded when the mode is left or power is lost.
     Entered,
-    /// The flash was written, or may have been. Either the old or the new values are stored.
+    /// The flash has been or may have been written. Either the old or the new values are stored.
     Saving,
     Restarting,
 }

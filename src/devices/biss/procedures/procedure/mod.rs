@@ -42,7 +42,7 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, PositionFilter, P
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The operator skipped the whole procedure, or everything after the first run.
+    /// The operator skipped the whole procedure, or everything after its first run.
     Skipped {
         after: Option<MotorRun>,
     },

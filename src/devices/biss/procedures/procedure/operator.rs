@@ -72,8 +72,8 @@ impl MotorRun {
         if self.is_calibration() { Some(2.0) } else { None }
     }
 
-    /// Returns the maximum speed variation, in revolutions per minute, at which the motor counts as steady. It depends
-    /// on the speed because of the measuring accuracy.
+    /// Returns the maximum speed variation, in revolutions per minute, at which the motor is considered steady. The
+    /// limit depends on the speed, because the accuracy of the speed measurement does.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.max_fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::MEASURING_TOLERANCE,
@@ -88,9 +88,9 @@ impl MotorRun {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OperatorTask {
     Turn(MotorRun),
-    /// Keep the shaft at rest, because data is not accessed while it turns.
+    /// Keep the shaft at rest, because the data area is not accessed while the shaft turns.
     Stand,
-    /// Keep the shaft at rest at the angle that the preset value will be assigned to.
+    /// Keep the shaft at rest at the angle to which the preset value will be assigned.
     StandAtPlace,
 }
 
@@ -117,7 +117,7 @@ pub enum StartBlocker {
         /// Speed variation in revolutions per minute.
         spread: f64,
     },
-    /// The temperature is outside 25…40 °C (manual 6.4).
+    /// The temperature is outside the range of 25 °C to 40 °C (manual 6.4).
     Temperature {
         celsius: i16,
     },
@@ -129,7 +129,7 @@ pub enum OperatorAdvice {
     Speed { recommended: SpeedRange },
     /// If this run fails, the calibration table is lost (manual 6.4).
     TableAtRisk,
-    /// The encoder marks its positions as invalid. The speed is calculated from them regardless.
+    /// The encoder marks its positions as invalid. The speed is calculated from them anyway.
     Marked,
 }
 
@@ -140,7 +140,7 @@ pub struct OperatorPrompt {
     pub motion: Option<ShaftMotion>,
     /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
-    /// Conditions that currently prevent the start.
+    /// Conditions due to which the run cannot start yet.
     pub blockers: Vec<StartBlocker>,
     pub advice: Vec<OperatorAdvice>,
     pub waited: Duration,
@@ -149,7 +149,7 @@ pub struct OperatorPrompt {
 impl OperatorPrompt {
     /// Allowed temperature range for the calibration in degrees Celsius (manual 6.4).
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
-    /// Lowest speed considered as turning, in revolutions per minute.
+    /// Lowest speed at which the shaft is considered to be turning, in revolutions per minute.
     const MIN_TURNING_RPM: f64 = 1.0;
 
     pub(super) fn new(task: OperatorTask, measured: ShaftReading, waited: Duration) -> Self {
@@ -213,12 +213,12 @@ pub(super) struct ShaftReading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OperatorAnswer {
     Wait,
-    /// Start the run. Valid only if no condition prevents the start.
+    /// Start the run. This answer is valid only if all conditions are met.
     Go,
     /// Skip this part and continue with the next.
     Skip,
     Cancel,
-    /// Give up because no operator is present. The conditions that prevented the start are reported.
+    /// Give up because no operator is present. The conditions that are not met are reported.
     GiveUp,
 }
 
@@ -244,7 +244,7 @@ impl UnattendedOperator {
 impl Operator for UnattendedOperator {
     fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer {
         let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, StartBlocker::Temperature { .. }));
-        // With a measurement, the reason for giving up is more specific.
+        // With a measurement, the reason for giving up can be more specific.
         let measures =
             if demand.blockers == [StartBlocker::Measuring] { Self::FIRST_MEASUREMENT_TIME } else { Duration::ZERO };
         if demand.is_ready() {

@@ -76,7 +76,7 @@ fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64
     u64::from(turns) << from.singleturn_bits | u64::from(steps)
 }
 
-/// Returns the number of steps between two positions in the shorter direction.
+/// Returns the number of steps from `place` to the position of the reading, in the shorter direction.
 fn shortest_distance(place: u64, reading: &PositionReading) -> u64 {
     let bits = u32::from(reading.position_word().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);

@@ -58,7 +58,7 @@ impl SpeedMonitor {
             self.places.clear();
         }
         self.places.push_back((time, place.steps));
-        // The last position before the window marks its start.
+        // The last position before the window provides the value at the start of the window.
         while self.places.get(1).is_some_and(|(second, _)| time.nanoseconds_since(*second) >= self.window) {
             self.places.pop_front();
         }
@@ -168,7 +168,7 @@ mod tests {
         };
         assert!(tremble(16.0).is_still(), "16 steps are 1/8192 of a revolution");
         assert!(!tremble(18.0).is_still());
-        // It moved by half a degree in the second.
+        // The shaft moved by half a degree within the second.
         assert!(!measured(16, |seconds| seconds / 720.0).is_still());
     }
 
@@ -179,10 +179,10 @@ mod tests {
             gauge.next(&reading(at, 0.0, 0));
         }
         assert!(gauge.motion().is_some());
-        // Half a revolution may have been in either direction.
+        // The shaft may have turned half a revolution in either direction.
         gauge.next(&reading(1020, 0.5, 0));
         assert_eq!(gauge.motion(), None);
-        // Without progress of the clock no speed can be calculated.
+        // No speed can be calculated if no time has passed.
         gauge.next(&reading(1020, 0.5, 0));
         assert_eq!(gauge.motion(), None);
     }

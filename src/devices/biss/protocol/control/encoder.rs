@@ -39,9 +39,9 @@ enum State {
     Ignoring,
     /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first one highest.
     Head { bits: u32, cycle: u8 },
-    /// About to send the start bit S. In a read, the value must be known first.
+    /// About to send the start bit S. For a read, the value must be known first.
     Start { address: u8, access: Access },
-    /// Sending DATA and CRC4. After the start bit S, `sent` bits of `word` have been sent. In a write, received bits
+    /// Sending DATA and CRC4. After the start bit S, `sent` bits of `word` have been sent. For a write, received bits
     /// are appended to `word`.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }

@@ -32,7 +32,7 @@ enum State {
         bits: u32,
         cycle: u8,
     },
-    /// Waiting for the encoder's start bit S. The host repeats its own meanwhile.
+    /// Waiting for the encoder's start bit S. Meanwhile, the host repeats its own start bit.
     Start {
         transfer: Transfer,
         cycles: u8,
@@ -56,7 +56,7 @@ impl Transfer {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Returns one of the DATA and CRC4 bits that the host sends. The bit at 0 is sent first.
+    /// Returns the DATA or CRC4 bit that the host sends at index `at`. The bit at 0 is sent first.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -76,7 +76,7 @@ impl Host {
     /// Submits a request, which is sent as soon as the line is idle.
     ///
     /// # Errors
-    /// Returns the request if another one is in progress.
+    /// Returns the given request as an error if another one is in progress.
     pub fn submit(&mut self, request: Request) -> Result<(), Request> {
         if self.is_busy() {
             return Err(request);

@@ -24,7 +24,7 @@ use crate::bits::ByteOrder;
 /// Parses a description file.
 ///
 /// # Errors
-/// Returns the error and its position in the file.
+/// Returns the error and its position in the file if the description is invalid.
 pub(super) fn parse(text: &str) -> Result<Description, (Position, DescriptionErrorKind)> {
     flaw::take_error();
     let read: Result<File, SpannedError> = ron::from_str(text);
@@ -317,7 +317,7 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
     Firmware::new(major, minor, patch)
 }
 
-/// A row of a description file. It claims items such as registers, which no other row may claim.
+/// A row of a description file. A row claims items such as registers, and no other row may claim the same items.
 trait Row {
     fn unique_items(&self) -> Vec<UniqueItem>;
 }

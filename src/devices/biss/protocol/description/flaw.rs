@@ -68,7 +68,7 @@ pub enum DescriptionErrorKind {
     /// The factor or offset is not a finite number.
     #[error("\"{0}\": factor and offset must be finite numbers")]
     Endless(String),
-    /// The row lists values that save something, but the register cannot be written.
+    /// The row lists values that trigger a save, but the register cannot be written.
     #[error("\"{0}\": a read-only register cannot have \"saves\" values")]
     SavesNothing(String),
     /// The first bank of an area comes after its last.
@@ -90,7 +90,7 @@ pub enum DescriptionErrorKind {
     /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
-    /// A German name is given for an English name that does not occur in the description.
+    /// A German name is given for an English name that is not used in the description.
     #[error("german: the description does not contain the name \"{0}\"")]
     GermanNeedless(String),
 }

@@ -14,7 +14,7 @@ pub struct Register {
     pub width: u8,
     /// Name in the manual.
     pub name: Name,
-    /// Purpose of the register in the program, if it has one.
+    /// Purpose of the register for the program, if it has one.
     pub role: Option<Role>,
     /// Permitted access.
     pub access: Access,

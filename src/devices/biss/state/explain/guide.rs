@@ -177,7 +177,7 @@ pub fn report_lines(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
             |words| TEXTS.text("guide.of_operation").with_text("what", procedure_text(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
-    // The first line states the action or the verdict. The other lines add details.
+    // The first line states the action or the verdict, and the other lines add details.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
             0 => pulse_severity(report.result.lowest_cw).max(pulse_severity(report.result.lowest_ccw)),

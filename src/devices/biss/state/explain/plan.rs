@@ -5,7 +5,7 @@ use crate::devices::biss::profile::{PlanError, TypeMismatch};
 use crate::devices::biss::protocol::ProcedureKind;
 use crate::devices::biss::state::TEXTS;
 
-/// Returns the message for a profile that belongs to another type of encoder.
+/// Returns the message for a profile of another type of encoder.
 pub fn other_type(types: &TypeMismatch) -> Text {
     type_mismatch_text(types, "biss_review.other_kind", "biss_review.other_width")
 }

@@ -134,7 +134,7 @@ pub(super) fn interruption_text(
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
         // The table may be lost even without a write, and no backup contains it.
         (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
-        // An operation that may have been executed counts as a write cycle if it costs one.
+        // An operation that may have been executed is counted as a write cycle if it costs one.
         _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
         (None, ChangeKind::Restore) => Text::new("write.backup"),
         (None, ChangeKind::Bytes) => TEXTS.text("biss_write.bytes"),

@@ -31,11 +31,11 @@ pub struct Connection {
 const MAX_MISSED_PACKETS: u32 = 3;
 /// Time allowed for the first packet.
 const FIRST: Duration = Duration::from_secs(1);
-/// Length in bytes of the header that a target may send before the data. The manual does not specify it (`U`).
+/// Length in bytes of the header that a target may send before the data. The manual does not specify the length (`U`).
 const HEADER: usize = 4;
 
 impl Connection {
-    /// Creates the connection at the time it was opened, with the first packet due immediately.
+    /// Creates the sender and receiver of a connection that was opened at `now`. The first packet is due immediately.
     pub fn new(opened: &OpenedConnection, now: Moment) -> Self {
         // An interval of 0 would loop forever.
         let interval = |interval: Duration| interval.max(Duration::from_millis(1));
@@ -76,10 +76,10 @@ impl Connection {
         self.began && now.duration_since(self.last_received) > self.come_interval * MAX_MISSED_PACKETS
     }
 
-    /// Returns the time without packets if it is too long.
+    /// Returns the time without packets if it exceeds the limit.
     ///
-    /// During motion, the limit is three intervals of listening. A busy computer that could not listen may still have
-    /// packets queued. At rest, the limit is the time that the target itself waits for a packet. This is also the
+    /// During motion, the limit is three intervals of listening, because packets may still be queued if a busy computer
+    /// could not listen. At rest, the limit is the time that the target itself waits for a packet. This is also the
     /// absolute limit.
     pub fn excessive_silence(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.duration_since(self.next) > self.come_interval {

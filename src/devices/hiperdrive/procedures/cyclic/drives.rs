@@ -33,13 +33,14 @@ struct ShutdownProgress {
     off: u32,
 }
 
-/// Time for the stop ladder, including braking.
+/// Time for the stop sequence, including braking.
 const STOP_LADDER_TIME: Duration = Duration::from_millis(700);
-/// Number of packets that switch the drives off. Several are sent, since one may be lost.
+/// Number of packets that switch the drives off. More than one is sent, since a packet may be lost.
 const SWITCH_OFF_PACKETS: u32 = 3;
 
 impl Drives {
-    /// Creates the drives at the time the connection was opened. Requests numbered up to `spent` move nothing.
+    /// Creates the drives of a connection that was opened at `now`. Requests numbered up to `spent` cannot start a
+    /// motion.
     pub fn new(opened: &OpenedConnection, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
         let placed = drives.iter().filter(|drive| drive.get() <= places);

@@ -1,5 +1,5 @@
-//! Parameters read cyclically through the parameter words of a connection, one at a time (reference 6). Values are only
-//! read this way; writing requires explicit messages and a plan.
+//! Parameters read cyclically through the parameter words of a connection, one at a time (reference 6). The words are
+//! only used for reading. Writing requires explicit messages and a plan.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -9,9 +9,8 @@ use crate::units::Moment;
 
 /// Reads the watched parameters in turn.
 ///
-/// A request is repeated in every packet until its reply has arrived. The words are then cleared in both directions
-/// before the next request. A late reply is therefore never mistaken for the reply to a later request of the same
-/// parameter.
+/// A request is repeated in every packet until its reply has arrived. Before the next request, the words are cleared in
+/// both directions. A late reply is therefore never mistaken for the reply to a later request for the same parameter.
 #[derive(Clone, Debug, Default)]
 pub struct ParameterWords {
     watched: Vec<ParameterNumber>,
@@ -173,7 +172,7 @@ mod tests {
         own.receive(at(48), words(IS_350));
         let reading = ParameterReading { at: at(48), result: ParameterResult::Number(350) };
         assert_eq!(own.readings().get(&number(166)), Some(&reading));
-        // The old reply stands until the device shows that nothing is requested.
+        // The old reply is repeated until the device shows that nothing is requested.
         for ms in [50, 60] {
             assert_eq!(own.request(at(ms)), words(CLEAR));
             own.receive(at(ms + 5), words(IS_350));

@@ -1,4 +1,4 @@
-//! Motion requests to a drive, its permit, and the outcome of an act.
+//! Motion requests to a drive, its permit, and the outcome of an action.
 
 use std::time::Duration;
 
@@ -90,7 +90,7 @@ pub enum MotionLock {
     Unread,
     /// Parameter 186 is 255 or not a time, so the drive could continue to move after a loss of communication.
     NoTimeout,
-    /// The scale has changed, and the limits with it. The user has not confirmed the limits yet.
+    /// The scale has changed, so the limits denote other positions. The user has not confirmed the limits yet.
     LimitsUnconfirmed,
     /// The drive is not requested: parameter 152 is not 1.
     NotRequested,
@@ -122,7 +122,7 @@ pub enum MotionKind {
     },
 }
 
-/// A level of the escalation with which a drive is stopped (reference 3, *STOP ladder*).
+/// A level of the stop sequence (reference 3, *STOP ladder*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
     Mode,
@@ -154,7 +154,7 @@ pub enum ActionEnd {
     /// The drive did not follow a control word and remains in this state.
     NoAnswer(State),
     NotStarted,
-    /// The drive has left the state required for a motion.
+    /// The drive has left the state that a motion requires.
     Left(State),
     /// The drive is at rest, but has not reached its target.
     Short,
@@ -191,8 +191,8 @@ pub enum MotionRefusal {
         /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
-    /// Status bit 15 reports a drive outside its limits, although its position is inside. The direction back is
-    /// unknown.
+    /// Status bit 15 reports that the drive is outside its limits, although its position is inside. The direction back
+    /// inside is unknown.
     Unclear {
         /// Position in scaled steps.
         position: i32,

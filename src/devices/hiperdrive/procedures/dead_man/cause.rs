@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{ActualValues, StatusBit};
 use crate::units::Moment;
 
 impl DeadMan {
-    /// Ends the running motion if there is a reason to.
+    /// Ends the running motion if one of its end conditions is met.
     pub(super) fn check_end_conditions(
         &mut self,
         now: Moment,

@@ -1,5 +1,5 @@
-//! Taking a drive through its states: one control word after another, each until the drive has followed or a time
-//! limit expires (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
+//! Brings a drive through its states. The control words are sent one after another, each until the drive has followed
+//! or a time limit has expired (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
 
 use super::{
     ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRefusal, ReportMark, STEP, Stage, TargetState, UserAction,
@@ -83,7 +83,7 @@ impl StateSequencer {
             (State::Fault, _) => W::ACKNOWLEDGE,
             (State::Locked, _) if seen(W::OPERATIONAL) || sends(W::READY) => W::READY,
             (State::Locked, _) => W::OPERATIONAL,
-            // Below operational the drive forgets the run.
+            // Below the operational state, the drive forgets the run.
             (_, goal) if after_run && goal > TargetState::Ready => W::READY,
             (_, goal) => match TargetState::from_state(state) {
                 level if level > goal => goal.control_word(),

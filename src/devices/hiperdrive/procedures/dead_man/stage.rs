@@ -1,4 +1,5 @@
-//! Stages of the dead-man and their control words: at rest, leading, armed, started, moving, paused, stopping.
+//! Stages of the dead-man control and their control words: at rest, changing state, armed, started, moving, paused,
+//! stopping.
 
 use std::time::Duration;
 
@@ -17,7 +18,7 @@ pub(super) enum Stage {
         moves: Option<Moment>,
     },
     Lead(StateSequencer),
-    /// The drive has received the setpoints of a motion and the control word from which the motion can start.
+    /// The drive has received the setpoints of a motion and the control word that precedes its start.
     Arm {
         since: ReportMark,
         /// Last reported value of status bit 12.
@@ -128,7 +129,7 @@ impl DeadMan {
 
     fn check_motion_end(&mut self, mark: ReportMark, actual: ActualValues, stands: ReportMark) {
         let Stage::Go { since, .. } = self.stage else { return };
-        // A report from before the start may still show standstill, or another target as reached.
+        // A report from before the start may still show a standstill, or show a previous target as reached.
         let late = mark.has_elapsed_since(since, MAX_REPORT_DELAY);
         if self.is_speed_mode() {
             if late && mark.has_elapsed_since(stands, MAX_REPORT_DELAY) {
@@ -174,7 +175,8 @@ impl DeadMan {
         }
     }
 
-    /// Supervises a drive at rest. If the drive falls to a lower state, that state is held. A moving drive is stopped.
+    /// Supervises a drive at rest. If the drive falls to a lower state, that state is held. If the drive moves, it is
+    /// stopped.
     fn supervise_at_rest(&mut self, now: Moment, actual: ActualValues, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(TargetState::Operational),

@@ -120,7 +120,7 @@ impl TestBench {
             "no status from the drive" => {
                 self.is_connected = false;
                 self.man.handle_contact_loss(self.now);
-                // Leading alone takes longer.
+                // The change of state alone takes longer.
                 let leads = matches!(self.man.phase(), Phase::Leading(_));
                 self.run_cycles(if leads { 36 } else { 0 });
             }
@@ -171,7 +171,7 @@ fn motions_end_as_documented() {
                 format!("{how:?}").split([' ', '(', '{']).next().unwrap_or_default().to_owned()
             });
             assert_eq!(&name, expected, "{} while {phase}", row[0]);
-            // However the act has ended, the word sent is a standing one.
+            // Regardless of how the action has ended, the word sent is a word for standstill.
             assert!(ended.is_none() || bench.man.last_setpoint().control.is_at_rest(), "{} while {phase}", row[0]);
         }
     }

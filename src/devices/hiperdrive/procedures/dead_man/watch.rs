@@ -9,8 +9,8 @@
 //! | outside by status bit 15 alone, more than a degree inside or near both limits | only the direction enabled for this press, since the way in is unknown |
 //! | overrun while braking | a stop in progress continues and keeps its reason |
 //!
-//! A run that ends within one degree beyond a limit counts as having reached the end of its range: the repeatability of
-//! a drive is ±1° (manual, technical data; reference 5).
+//! A run that ends within one degree beyond a limit is considered to have reached the end of its range, since the
+//! repeatability of a drive is ±1° (manual, technical data; reference 5).
 
 use super::{
     ActionEnd, DeadMan, Motion, MotionKind, MotionLock, MotionRefusal, MotionRequest, NOT_REACHED_TIME, Permit, Stage,
@@ -27,8 +27,8 @@ pub enum LimitSide {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutsideLimits {
     At(LimitSide),
-    /// Status bit 15 is set, but the position does not show which limit the drive has passed. It is near both limits or
-    /// more than a degree inside them.
+    /// Status bit 15 is set, but the position does not show which limit the drive has passed, because it is near both
+    /// limits or more than a degree inside them.
     Unclear,
 }
 
@@ -60,8 +60,9 @@ impl OutsideLimits {
 }
 
 impl Permit {
-    /// Returns how a drive is outside its limits, by its position or else by status bit 15. Status bit 15 counts for
-    /// the limit that is within a degree. Returns `None` if the drive is inside, or if no limits are known.
+    /// Returns how a drive is outside its limits, according to its position or, if that is inside, to status bit 15.
+    /// Bit 15 is taken to refer to the limit that is within a degree. Returns `None` if the drive is inside or no
+    /// limits are known.
     pub fn outside_limits(&self, actual: ActualValues) -> Option<OutsideLimits> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
@@ -146,7 +147,7 @@ impl ActionMonitor {
         let is_job = matches!(motion.kind, MotionKind::Job { .. });
         // The target of a job is within the limits, so a deviation of up to a degree is no overrun.
         let beyond = if is_job && distance <= degree { None } else { self.check_limits(motion, actual, permit) };
-        // At its target a job may overshoot by its accuracy.
+        // Near its target, a job may overshoot by its accuracy.
         let arrives = is_job && self.best <= ACCURACY_DEG * degree;
         let allowed = if arrives { ACCURACY_DEG * degree } else { degree };
         // A user who allows outward motion watches the axis. A drive that counts the wrong way moves inward on this
@@ -155,7 +156,7 @@ impl ActionMonitor {
         beyond.or_else(|| leaves.then_some(ActionEnd::WrongWay { position: actual.position }))
     }
 
-    /// Detects motion while a job is paused: more than a degree from the position after braking.
+    /// Detects motion while a job is paused, which is a change of more than a degree from the position after braking.
     fn check_paused(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         if !has_braked {
             self.waits_at = None;
@@ -226,7 +227,7 @@ impl DeadMan {
         }
         let Some(watch) = &mut act.watch else {
             // The motion has not started yet, so the conditions for a start apply. This includes the first report after
-            // leading up.
+            // the drive was brought to the required state.
             let doubted = permit.doubted.then_some(MotionRefusal::Locked(MotionLock::Outdated));
             let refusal = doubted.or_else(|| permit.check_position_limits(motion.request, actual).err());
             if refusal.is_none() && self.stage.has_motion() {

@@ -36,7 +36,7 @@ const VENDOR: u16 = 0x1234;
 /// the code for four intervals, so that drives stop soon.
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
-/// Shortest interval that counts as long.
+/// Shortest interval that is treated as long.
 const LONG_INTERVAL: Duration = Duration::from_millis(35);
 /// Factor by which a device may extend the requested interval, up to the longest that may be requested.
 const MAX_INTERVAL_FACTOR: u32 = 2;
@@ -53,7 +53,7 @@ impl Master<'_> {
     /// Opens the cyclic connection. The target sends its packets to the local `port`.
     ///
     /// # Errors
-    /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device rejects the request, or an error if the
+    /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device rejects the request, or another error if the
     /// exchange fails.
     pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<OpenedConnection, Error> {
         let order = self.station.link.order;
@@ -86,10 +86,10 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a cyclic connection, ignoring cancellation. A connection that has already ended counts as closed.
+    /// Closes a cyclic connection, ignoring cancellation. It is not an error if the connection has already ended.
     ///
     /// # Errors
-    /// Returns [`Error::Refused`], or an error if the exchange fails.
+    /// Returns [`Error::Refused`] if the device rejects the request, or another error if the exchange fails.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const CONNECTION_NOT_FOUND: u16 = 0x0107;
         match self

@@ -35,7 +35,7 @@ impl Master<'_> {
         if self.is_zero(number, VARIANT, drive)? {
             return Ok(Error::NoDrive { drive });
         }
-        // The drive rejects the request in its present state. The cause may be that it is not requested.
+        // The drive rejects the request in its current state, possibly because the drive is not requested.
         if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED_BY_BUS, drive)? {
             return Ok(Error::NotRequested { drive });
         }

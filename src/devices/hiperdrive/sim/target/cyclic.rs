@@ -2,7 +2,7 @@
 //!
 //! Assumptions (`U`):
 //! - The first packet is sent one interval after the connection was opened.
-//! - Every packet in sequence counts, whatever its data count.
+//! - Every packet in sequence is accepted, regardless of its data count.
 //! - A packet that is old, has a wrong length or belongs to another connection is dropped and counted. It does not keep
 //!   the connection alive.
 

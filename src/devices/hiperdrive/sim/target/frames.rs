@@ -8,8 +8,8 @@ use crate::buses::ethernet_ip::protocol::{
     SocketAddress,
 };
 
-/// ListServices item (0100h) with version, capability and name. The only service carries CIP over TCP and cyclic data
-/// over UDP.
+/// ListServices item (0100h) with version, capability and name. Its service carries CIP over TCP and cyclic data over
+/// UDP.
 const SERVICES: (u16, [u8; 20]) = (0x0100, *b"\x01\x00\x20\x01Communications\0\0");
 /// Value of attribute 8 of the identity object for an operational device.
 const OPERATIONAL: u8 = 3;
@@ -21,7 +21,7 @@ type Refusal = EncapsulationStatus;
 impl TargetDevice {
     /// Returns the reply to a frame, if there is one.
     pub(super) fn reply_to(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
-        // By ODVA, a frame with unknown options or with the status of a reply is void.
+        // According to ODVA, a request with options or with a nonzero status is invalid.
         if frame.options != 0 || frame.status != EncapsulationStatus::OK {
             return None;
         }

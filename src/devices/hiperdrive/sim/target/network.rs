@@ -1,7 +1,7 @@
 //! TCP/IP object (class F5h) and Ethernet link object (F6h) as specified by ODVA (`P`).
 //!
-//! Assumptions (`U`): attribute 5 can be set only while attribute 3 selects stored addresses, and takes effect at once;
-//! the virtual device remains reachable at its old address.
+//! Assumptions (`U`): Attribute 5 can be set only while attribute 3 selects stored addresses, and takes effect
+//! immediately. The virtual device remains reachable at its old address.
 
 use std::net::Ipv4Addr;
 
@@ -31,8 +31,8 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
 /// Address assigned by a virtual DHCP or BOOTP server.
 const ASSIGNED_ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
-/// Value of attribute 1 of the TCP/IP object: an address was obtained. The value of attribute 2 below means BOOTP, DHCP
-/// and settable.
+/// Value of attribute 1 of the TCP/IP object, which means that an address was obtained. The value of attribute 2 below
+/// means BOOTP, DHCP and settable.
 const CONFIGURED: u32 = 1;
 const CAPABILITY: u32 = 0x15;
 const ETHERNET_LINK: u16 = 0xF6;
@@ -68,7 +68,7 @@ impl Network {
         };
     }
 
-    /// Restores the factory settings. The address is kept until the next power cycle.
+    /// Restores the factory settings. The current address is kept until the next power cycle.
     pub(super) fn restore_factory(&mut self) {
         (self.control, self.stored) = (dhcp_control(), NONE);
     }

@@ -17,7 +17,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::TransitQueue;
 use crate::units::Moment;
 
-/// The device with everything that is connected to it.
+/// The device with the state of all connections to it.
 #[derive(Debug)]
 pub(super) struct TargetDevice {
     pub(super) station: Station,

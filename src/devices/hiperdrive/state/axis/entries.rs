@@ -68,7 +68,7 @@ impl LengthEntries {
     /// Returns the pitch of the spindle.
     ///
     /// # Errors
-    /// Returns the reason if the entry is invalid.
+    /// Returns an error with the reason if the entry is invalid.
     pub fn parse_pitch(&self) -> Result<Length, Text> {
         parse_length("hd_axis.pitch", &self.pitch, 1000.0)
     }
@@ -76,13 +76,13 @@ impl LengthEntries {
     /// Returns the values that result from the entered pitch and resolution.
     ///
     /// # Errors
-    /// Returns the reason if an entry is invalid.
+    /// Returns an error with the reason if an entry is invalid.
     pub fn preview(&self, seen: &DriveFacts) -> Result<LimitsPreview, Text> {
         let (pitch, step) = (self.parse_pitch()?, parse_length("hd_axis.resolution", &self.resolution, 100.0)?);
         let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
         let ruler = Ruler { scale, pitch: Some(pitch) };
         let turns = seen.family.unwrap_or(Family::Short).factory_turns();
-        // With very fine steps, a part of the travel does not fit in 32 bits.
+        // With very fine steps, part of the travel does not fit into 32 bits.
         let lower = scale.steps_of_turns(-turns).unwrap_or(i32::MIN);
         let upper = scale.steps_of_turns(turns).unwrap_or(i32::MAX);
         let unchanged = seen.limits.and_then(|(low, high)| {
@@ -95,7 +95,7 @@ impl LengthEntries {
     /// Returns the number to assign to the present location of the axis.
     ///
     /// # Errors
-    /// Returns the reason if the number is invalid or outside the limits.
+    /// Returns an error with the reason if the number is invalid or outside the limits.
     pub fn parse_reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<ReferencePosition, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
@@ -110,7 +110,7 @@ impl LengthEntries {
     /// Returns the lower limit.
     ///
     /// # Errors
-    /// Returns the reason if the entry is invalid.
+    /// Returns an error with the reason if the entry is invalid.
     pub fn lower_limit(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.lower", &self.lower, ruler)
     }
@@ -118,7 +118,7 @@ impl LengthEntries {
     /// Returns the upper limit.
     ///
     /// # Errors
-    /// Returns the reason if the entry is invalid.
+    /// Returns an error with the reason if the entry is invalid.
     pub fn upper_limit(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.upper", &self.upper, ruler)
     }

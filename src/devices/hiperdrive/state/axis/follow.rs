@@ -109,7 +109,7 @@ impl Axis {
         }
     }
 
-    /// Records that a test move was started by the given act.
+    /// Records that the given action has started a test move.
     pub(crate) fn record_test_move_start(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
@@ -122,7 +122,7 @@ impl Axis {
             Some(DriveRequest::Try(values)) => {
                 self.record_agreed_limits(&values, true);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
-                // The restart mark is never saved.
+                // The value that marks the restart is never saved.
                 self.saved &= self.step == AxisStep::PowerCycle;
                 self.returned.clear();
             }
@@ -163,7 +163,7 @@ impl Axis {
             Some(DriveRequest::Try(values)) if begun => {
                 self.record_agreed_limits(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
-                // The restart mark is never saved. Apart from it, everything is as saved.
+                // The value that marks the restart is never saved. All other values are as saved.
                 if self.step != AxisStep::PowerCycle {
                     (self.partly, self.saved) = (true, false);
                 }

@@ -13,14 +13,14 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
-/// Minimum time for which a step is shown before the user can leave it.
+/// Minimum time for which a step must be shown before the user can leave it.
 const MIN_STEP_TIME: Duration = Duration::from_millis(600);
 
 impl Axis {
     /// Returns the request that a button triggers.
     ///
     /// # Errors
-    /// Returns the reason if the button cannot be pressed now.
+    /// Returns an error with the reason if the button cannot be pressed now.
     pub fn request(&self, button: AxisButton, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -143,7 +143,7 @@ impl Axis {
     /// Checks whether the axis may be moved.
     ///
     /// # Errors
-    /// Returns the reason if the axis may not be moved.
+    /// Returns an error with the reason if the axis may not be moved.
     pub fn may_move(&self, seen: &DriveFacts) -> Result<(), Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -171,7 +171,7 @@ impl Axis {
     /// Checks whether the present location of the axis can become a limit.
     ///
     /// # Errors
-    /// Returns the reason if the location cannot become a limit.
+    /// Returns an error with the reason if the location cannot become a limit.
     pub fn check_can_adopt_position(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.invalidated_step() {
             return Err(words::invalidated_step(step));
@@ -189,7 +189,7 @@ impl Axis {
     /// time was meant for the previous step.
     ///
     /// # Errors
-    /// Returns the remaining time if the step is too new.
+    /// Returns the remaining time as an error if the step has not been shown for long enough.
     pub fn check_step_settled(looked_at: Duration) -> Result<(), Duration> {
         match MIN_STEP_TIME.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
@@ -208,7 +208,7 @@ impl Axis {
     /// Checks whether the current step is complete, so that the next step may follow.
     ///
     /// # Errors
-    /// Returns the missing condition if the step is not complete.
+    /// Returns an error with the missing condition if the step is not complete.
     pub fn check_can_continue(&self, seen: &DriveFacts) -> Result<(), Text> {
         let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(TEXTS.text(id)) };
         if self.asked.is_some() {

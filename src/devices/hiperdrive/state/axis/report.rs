@@ -11,12 +11,12 @@ pub struct Device {
     pub serial_number: String,
 }
 
-/// Columns of a page.
+/// Width of a page in columns.
 const COLUMNS: usize = 78;
 const INDENT: &str = "   ";
 
-/// Returns the report of a completed set-up, or `None` while it is running. Values written back since then are reported
-/// as in `now`.
+/// Returns the report of a completed set-up, or `None` while it is running. Values that were written back after the
+/// set-up are reported as in `now`.
 pub fn write_report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
     let over = axis.run_summary()?;
     let seen = &over.seen;
@@ -56,7 +56,7 @@ fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) 
     }
 }
 
-/// Returns what was written, whether it is saved, and what now differs from the saved values.
+/// Returns what was written, whether it is saved, and which values now differ from the saved ones.
 pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), words::write_back_text(axis, now)) {

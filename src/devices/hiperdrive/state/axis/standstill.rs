@@ -1,6 +1,6 @@
-//! Comparison of two positions of an axis at standstill. Parameter 198 is the number written last, and no parameter
-//! reveals where it was written (manual, 198 and 107). If the reference is set again to the same number elsewhere, the
-//! only sign is a position that jumps without motion.
+//! Comparison of two positions of an axis at standstill. Parameter 198 is the number that was written last, and no
+//! parameter reveals where it was written (manual, 198 and 107). If the reference is set to the same number at another
+//! location, the only sign is a position that jumps without motion.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use crate::units::Moment;
 
 /// Maximum speed of a shaft in rpm, the largest value of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
-/// Time without a reading in which an axis may have moved and come to rest again.
+/// Time without a reading in which an axis may have moved and stopped again.
 const MAX_READING_GAP: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,7 @@ struct StandstillReading {
 /// A change of position that cannot be explained by motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PositionChange {
-    /// A change greater than the shaft can turn in the elapsed time. The reference was set again.
+    /// A change that exceeds the possible motion of the shaft in the elapsed time. The reference was set again.
     Jump,
     /// Number of steps by which the position changed while it was not read. The axis was moved, or its reference was
     /// set again.
@@ -49,8 +49,8 @@ impl StandstillMonitor {
         self.interrupted = true;
     }
 
-    /// Discards the last standstill because the drive was off and may have been turned by hand. The power-cycle check
-    /// compares the position itself.
+    /// Discards the last standstill, because the drive was off and may have been turned by hand. The power-cycle check
+    /// compares the positions itself.
     pub(super) fn discard(&mut self) {
         *self = StandstillMonitor::default();
     }
@@ -64,7 +64,7 @@ impl StandstillMonitor {
         let stands = !seen.moves && actual.status.is_set(StatusBit::StandingStill) && actual.speed == 0;
         let now = StandstillReading { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
         let is_interrupted = std::mem::take(&mut self.interrupted);
-        // After a motion, a changed position means nothing.
+        // A change of position after a motion proves nothing.
         let before = std::mem::replace(&mut self.last, stands.then_some(now))?;
         let same_act = is_interrupted || stands && before.act == now.act;
         let is_comparable = same_act && before.scale == scale && before.origin == origin;

@@ -1,12 +1,13 @@
-//! Results of the axis set-up, step by step. Each records the facts of the drive on which it depends. If one of them
-//! changes for any reason, the result becomes void together with all later ones.
+//! Results of the axis set-up, step by step. Each result contains the facts about the drive on which it depends. If one
+//! of them changes for any reason, the result becomes void together with all later ones.
 
 use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// Origin of positions. It is given by the position set last (198), the number of times this program set a position,
-/// and the number of jumps at standstill. Only a jump reveals a reference that was set again to the same number.
+/// Origin of positions. It is identified by the position set last (198), the number of times this program has set a
+/// position, and the number of jumps at standstill. Only a jump reveals that the reference was set to the same number
+/// again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PositionOrigin {
     set: Option<i64>,

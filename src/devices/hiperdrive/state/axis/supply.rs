@@ -1,4 +1,4 @@
-//! Power-cycle check: the state before and after the supply was lost, and the proof that it was off at all. A
+//! Power-cycle check: the state before and after the supply was lost, and the proof that the supply was actually off. A
 //! connection that was lost and restored does not prove anything.
 
 use super::DriveFacts;
@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{FactoryValue, PARAMETERS, PositionScale};
 
 /// Parameter that reveals a restart of the drive. It is never saved, so only a restart restores its factory setting
-/// (manual, 182), and it moves nothing.
+/// (manual, 182), and it has no effect on motion.
 pub(super) const RESTART_MARKER: u16 = HAND_DRIVE_WAIT;
 
 /// Angle in degrees by which a drive may readjust its position at power-up and after a stop (manual, 8.3).
@@ -25,27 +25,27 @@ pub struct StateBeforePowerOff {
 /// Evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RestartEvidence {
-    /// The restart is proven by a reading, in which parameter 182 has its factory setting again.
+    /// The restart is proven by a reading in which parameter 182 has its factory setting again.
     Read,
     Switched,
-    /// The restart is stated by the user. No reading proves it.
+    /// The restart is claimed by the user and not proven by a reading.
     Said,
-    /// The restart is unproven. The connection was lost, which can have other causes.
+    /// The restart is not proven. The connection was lost, but this can have other causes.
     Unproven,
-    /// The restart is disproved, since parameter 182 still has a value that any restart removes.
+    /// The restart is disproved, because parameter 182 still has a value that any restart would remove.
     Disproved,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Power {
-    /// The device still answers.
+    /// The device still replies.
     On(StateBeforePowerOff),
     /// The drive has stopped replying, or its parameters have not been read since.
     Gone(StateBeforePowerOff),
     Back {
         before: StateBeforePowerOff,
         kept: bool,
-        /// Steps between the positions before and after the restart. `None` if one of them is unknown.
+        /// Number of steps between the positions before and after the restart, or `None` if one of them is unknown.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
@@ -58,8 +58,8 @@ impl Power {
         Power::On(StateBeforePowerOff::default()).with_latest_values(seen)
     }
 
-    /// Adopts the latest values while the supply is on. As long as the mark is present, the supply has not been off
-    /// since the mark was set.
+    /// Adopts the latest values while the supply is on. If the marker is still set, the supply has not been off since
+    /// it was set.
     pub(super) fn with_latest_values(self, seen: &DriveFacts) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Unproven }
@@ -85,7 +85,7 @@ impl Power {
     }
 
     /// Records that the parameters were read again. This reading may be the first one after the power cycle, unless an
-    /// earlier one has shown that the supply was off.
+    /// earlier one has already shown that the supply was off.
     pub(super) fn after_survey(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before)
@@ -95,7 +95,7 @@ impl Power {
         let Some(scale) = seen.scale else { return self };
         let restart = match (switched, before.marked, is_marked(seen)) {
             (true, ..) => RestartEvidence::Switched,
-            // This also applies if the connection was lost before the mark was known to be set.
+            // This also applies if the connection was lost before it was known whether the marker was set.
             (_, _, Some(true)) => RestartEvidence::Disproved,
             (_, true, Some(false)) => RestartEvidence::Read,
             _ => RestartEvidence::Unproven,
@@ -111,7 +111,7 @@ impl Power {
         }
     }
 
-    /// Adopts the user's statement that the supply was off, if nothing proves or disproves the statement.
+    /// Adopts the user's statement that the supply was off, unless a reading has proven or disproved this.
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Unproven } => {

@@ -21,7 +21,7 @@ pub struct Outcome {
     pub allowed: i64,
 }
 
-/// Distance in steps by which an axis was jogged. Only motion while a button is held counts.
+/// Distance in steps by which an axis was jogged. Only motion during which a button is held is included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JogTravel {
     /// Farthest upward distance of a single jog, or 0 until the distance is significant.
@@ -29,7 +29,7 @@ pub struct JogTravel {
     pub down: i64,
     /// Whether clockwise rotation counts up, or `None` if not observed yet.
     pub clockwise_is_up: Option<bool>,
-    /// The act that moves the axis, and the position when the act started.
+    /// The action that moves the axis, and the position at its start.
     from: Option<(u64, i32)>,
 }
 

@@ -67,7 +67,7 @@ pub fn finding_text(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Te
         AxisStep::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
             (true, Some(true)) => Some(TEXTS.text("hd_axis.found_drive")),
             (true, Some(false)) => Some(TEXTS.text("hd_axis.found_no_drive")),
-            // Without data from the drive, nothing is known of its cable.
+            // Without data from the drive, nothing is known about its cable.
             (true, None) => None,
             (false, _) => Some(TEXTS.text("hd_axis.found_unrequested")),
         },
@@ -80,7 +80,7 @@ pub fn finding_text(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Te
             Some(text.with_number("steps", per_turn, decimals))
         }
         AxisStep::Confirm | AxisStep::Upper => {
-            // Confirmed limits stay, even after others were taught.
+            // Confirmed limits remain displayed, even after others were taught.
             let confirmed = axis.confirmed.filter(|_| step == AxisStep::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
             Some(TEXTS.text("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))

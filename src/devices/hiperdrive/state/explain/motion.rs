@@ -73,7 +73,8 @@ pub fn end_text(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// Text IDs of motions that ended badly although the drive can be moved again. These notices end with the next motion.
+/// Text IDs of motions that ended badly although the drive can be moved again. The notices are removed when the next
+/// motion starts.
 pub const MOTION_ENDS: [&str; 9] = [
     "hd_end.range_end",
     "hd_end.stale",
@@ -122,7 +123,7 @@ pub fn phase_text(phase: Phase) -> Text {
     }
 }
 
-/// Text IDs used by [`cyclic_loss_text`]. These notices end once control is taken again.
+/// Text IDs used by [`cyclic_loss_text`]. The notices are removed when control is taken again.
 pub const CONNECTION_LOSS_IDS: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 
@@ -138,7 +139,7 @@ pub fn cyclic_loss_text(lost: Option<&ConnectionLoss>) -> Text {
     }
 }
 
-/// Describes what is read through the parameter words of the cyclic connection.
+/// Describes the values that are read through the parameter words of the cyclic connection.
 pub fn parameter_words(view: &MotionSnapshot) -> Text {
     let Some(readings) = &view.parameters else { return TEXTS.text("hd_link.words_absent") };
     if readings.is_empty() {

@@ -52,7 +52,7 @@ fn profile_errors_are_explained_in_both_languages() {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
         assert_in_both_languages(&profile_error_text(&error, KINDS), &error);
     }
-    // The window calls a parameter by its own name.
+    // The window uses its own names for the parameters.
     for (from, to, german) in [
         ("drives: [", "parameters: {9: 5}, drives: [", "vom Gerät nicht gespeichert"),
         ("{158: 5}", "{186: 300}", "300"),

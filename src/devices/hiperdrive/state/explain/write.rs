@@ -155,7 +155,7 @@ pub fn warning_text(warning: &Warning) -> Text {
 }
 
 pub fn written_text(written: &WrittenChanges) -> Text {
-    // A service of the device is not read back.
+    // A service of the device cannot be read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }

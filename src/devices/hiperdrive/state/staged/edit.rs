@@ -35,7 +35,7 @@ pub enum LimitsPolicy {
     AsNumbers,
 }
 
-/// Reason why an edit is rejected. Nothing has changed.
+/// Reason why an edit is rejected. In this case, nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// No values of the device have been read.

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// A finding that the user should check. An edit can cause one, for example if a new scale moves the limits.
+/// A finding that the user should check. It may be the result of an edit, for example if a new scale moves the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EditFinding {
     /// A value from a profile or an earlier edit is not allowed.

@@ -95,7 +95,7 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
     }
 }
 
-/// Draws the button that takes control. Nothing moves without the cyclic connection, nor during a fault.
+/// Draws the button that takes control. The drive cannot be moved without the cyclic connection or during a fault.
 fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = translate(theme, "hd_axis.take");
@@ -110,7 +110,7 @@ fn check_can_jog(shown: &AxisPanel<'_>, direction: Direction) -> Result<(), Text
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.check_can_jog(shown.axis.drive(), direction))
 }
 
-/// Draws the reason why the jog buttons are blocked, or what they do.
+/// Draws the effect of the jog buttons, or the reason why they are blocked.
 fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| check_can_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_limits_text(shown.axis.drive()) {
@@ -243,7 +243,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     }
 }
 
-/// Draws the control of the supply. A virtual device is switched here, a real one by hand.
+/// Draws the control of the supply. A virtual device is switched here, and a real one by hand.
 fn supply_switch_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.format_text(&words::button_label(AxisStep::PowerCycle));

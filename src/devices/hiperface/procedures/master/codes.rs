@@ -19,8 +19,8 @@ impl Master<'_> {
     /// Reads the complete status queue into the station. It repeats 50h until the error bit is clear.
     ///
     /// # Errors
-    /// Every attempt failed, or the user cancelled. The station then holds the codes received so far, and the number of
-    /// codes that may have been lost.
+    /// Returns an error if every attempt fails or the user cancels. The station then holds the codes received so far,
+    /// and the number of codes that may have been lost.
     pub(in super::super) fn collect_codes(&mut self) -> Result<(), Error> {
         let (mut seen, mut repeated) = (Vec::new(), 0);
         while seen.len() < MAX_CODES && repeated < MAX_REPEATED {

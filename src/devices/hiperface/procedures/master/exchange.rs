@@ -13,8 +13,8 @@ use crate::devices::hiperface::protocol::{Answer, Command, MaskableFrame, Reques
 use crate::link::LinkError;
 use crate::units::Moment;
 
-/// Status codes that mean that the request was damaged on the line. `LENGTH` is among them because the checksum stays
-/// valid if a byte 00h is lost.
+/// Status codes that show that the request was damaged on the line. `LENGTH` is one of them, because the checksum
+/// remains valid if a byte 00h is lost.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
 pub(in super::super) enum ExchangeFailure {
@@ -58,12 +58,12 @@ impl Master<'_> {
         let heard = self.receive_reply(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
         let judgement = self.match_reply(request, heard);
-        // A damaged reply to a frame with an access code may be its echo, so none of it is shown.
+        // A damaged reply to a frame with an access code may be the echo of the frame, so none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::fully_masked(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
-        // Damaged bytes may contain a whole reply. Late or extra bytes were kept while listening, and an echo is not a
-        // reply.
+        // Damaged bytes may contain a complete reply. Late or extra bytes were kept while listening, and an echo is not
+        // a reply.
         if let Err(ExchangeFailure::Damage(ReplyDamage::Reply(_))) = judgement {
             self.line.skip_bytes(&reply);
         }

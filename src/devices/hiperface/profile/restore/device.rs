@@ -6,7 +6,7 @@ use crate::devices::hiperface::profile::HiperfaceProfile;
 /// Checks that the encoder is the one from which the profile was read. Encoders without a serial number never match.
 ///
 /// # Errors
-/// [`PlanError::OtherDevice`], [`PlanError::TypeMismatch`].
+/// Returns [`PlanError::OtherDevice`] or [`PlanError::TypeMismatch`] if it is another encoder.
 pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_type: u8) -> Result<(), PlanError> {
     if !is_same_device(profile, serial_number) {
         return Err(PlanError::OtherDevice {
@@ -14,7 +14,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
             device: serial_number.to_owned(),
         });
     }
-    // Two types may count their serial numbers separately.
+    // Serial numbers of different types may coincide.
     if profile.identity.encoder_type != encoder_type {
         return Err(PlanError::TypeMismatch { profile: profile.identity.encoder_type, device: encoder_type });
     }
@@ -24,7 +24,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
 /// Checks that the encoder is the one from which the profile was read, unless the options allow another one.
 ///
 /// # Errors
-/// [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`].
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder is not allowed.
 pub fn check_allowed(
     profile: &HiperfaceProfile,
     serial_number: &str,

@@ -12,7 +12,7 @@ pub struct UnknownMeaningField {
     pub field: u8,
     /// Number of differing bytes of unknown meaning.
     pub bytes: usize,
-    /// Decision of the user. `Some(true)` copies the bytes. Otherwise they are left out.
+    /// Decision of the user. `Some(true)` copies the bytes. Otherwise, they are left unchanged.
     pub answer: Option<bool>,
 }
 

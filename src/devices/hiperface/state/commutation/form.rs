@@ -99,7 +99,7 @@ pub struct OffsetInputs {
     pub limit_deg: f64,
 }
 
-/// Highest number of pole pairs that is accepted. No motor has as many.
+/// Maximum number of pole pairs that is accepted. It exceeds that of any motor.
 const MAX_POLE_PAIRS: u32 = 500;
 
 impl VectorSlot {
@@ -188,8 +188,8 @@ impl Form {
         }
     }
 
-    /// Returns the angle from the first to the second vector in electrical turns. It is always below ½. From ½ on, the
-    /// shaft could turn in the opposite direction.
+    /// Returns the angle from the first to the second vector in electrical turns, which is always below ½. At ½ or
+    /// more, the shaft could turn in the opposite direction.
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
@@ -241,7 +241,7 @@ impl Form {
     /// Returns the numbers from which the offset is calculated.
     ///
     /// # Errors
-    /// Returns the reason why the first invalid entry was rejected.
+    /// Returns an error with the reason if an entry is invalid. Only the first one is reported.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
         let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MAX_POLE_PAIRS)?;
         let periods = self.signal_periods(geometry)?;

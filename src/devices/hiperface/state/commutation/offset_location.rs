@@ -1,5 +1,5 @@
 //! Location of the offset in the memory. The assistant proposes a free location, and warns before other data is
-//! replaced. Nothing here changes the memory.
+//! replaced. This module does not change the memory.
 
 use super::{Commutation, Storage};
 use crate::app::Text;
@@ -47,7 +47,7 @@ impl Commutation {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
         let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
-        // If the offset is already an edit here, the warning is about the bytes in the encoder.
+        // If the offset has already been entered here as an edit, the warning is about the bytes in the encoder.
         let there = match wanted == bytes {
             true => places.filter_map(|at| staged.device_byte(field, at)).collect(),
             false => wanted,
@@ -61,7 +61,7 @@ impl Commutation {
 }
 
 /// Returns the first block of a field that satisfies `holds`. A block has the size of a commutation record. A plain
-/// number also occupies a whole block, since zeros between other numbers may be data.
+/// number also occupies a whole block, because zeros between other numbers may be data.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })

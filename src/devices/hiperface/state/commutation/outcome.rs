@@ -33,7 +33,7 @@ pub struct CommutationOffset {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionSetting {
     pub value: u32,
-    /// Whether the encoder must be set to exactly this value, because its absolute position and phase disagree.
+    /// Whether exactly this value must be set, because the absolute position and the phase of the encoder disagree.
     pub exact: bool,
     /// Offset in electrical degrees that remains after setting the position, −180 to 180.
     pub remaining_deg: f64,
@@ -141,8 +141,8 @@ impl Commutation {
         one.is_some() && one == other
     }
 
-    /// Checks whether the offset may be used. The second vector must confirm the offset, or the user must have chosen
-    /// to do without it.
+    /// Checks whether the offset may be used. Either the second vector must confirm it, or the user must have chosen to
+    /// do without a second vector.
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.

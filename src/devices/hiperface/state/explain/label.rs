@@ -14,7 +14,8 @@ pub struct LabelRow {
     pub meaning: Text,
 }
 
-/// Returns the rows of an extended type label, or an empty list if the bytes are no label. Invalid limits are left out.
+/// Returns the rows of an extended type label, or an empty list if the bytes are not a label. Invalid limits are
+/// omitted.
 pub fn label_rows(bytes: &[u8]) -> Vec<LabelRow> {
     let Ok(parts) = ExtendedLabel::parse_parts(bytes) else { return Vec::new() };
     let flags = bytes.get(1).copied().unwrap_or(0);

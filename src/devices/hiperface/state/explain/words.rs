@@ -72,7 +72,7 @@ pub fn geometry_text(geometry: Geometry) -> Text {
             TEXTS.text("geometry.multiturn").with("periods", periods).with("turns", turns)
         }
         Geometry::Linear { period_nm, .. } => {
-            // The number of decimals suffices for a whole number of nanometres.
+            // The number of decimals is sufficient for a whole number of nanometres.
             let decimals = (0..6u32).find(|decimals| period_nm.is_multiple_of(10u32.pow(6 - decimals))).unwrap_or(6);
             let decimals = usize::try_from(decimals).unwrap_or(6);
             TEXTS.text("geometry.linear").with_number("millimetres", f64::from(period_nm) * 1e-6, decimals)

@@ -16,7 +16,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Draws the offset. The space is the same while there is no offset.
+/// Draws the offset. It takes up the same space while there is no offset.
 pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.offset"), |ui| {
         let offset = encoder.commutation.offset(encoder.geometry());

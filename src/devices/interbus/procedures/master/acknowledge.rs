@@ -1,9 +1,10 @@
-//! Words with an echo (reference 4), including those whose echo looks like the word of a busy encoder (reference
-//! 6.11a).
+//! Words with an echo (reference 4), including those whose echo may be the same as the word of a busy encoder
+//! (reference 6.11a).
 //!
-//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0. So does the word of a busy encoder,
-//! which may also contain the data just sent. Such an echo is accepted after it has lasted longer than any processing
-//! by this encoder so far. An edge of cam 0 is also read out before the program is left, since leaving stores it.
+//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0. The word of a busy encoder has the
+//! same code, and may also contain the data just sent. Such an echo is accepted when it has lasted longer than any
+//! processing by this encoder so far. An edge of cam 0 is also read out before the program is left, because leaving the
+//! program stores the edge.
 
 use std::time::Duration;
 
@@ -22,8 +23,8 @@ impl Master<'_> {
     /// Sends a setting until its exact echo is stable.
     ///
     /// # Errors
-    /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::Refused`],
-    /// [`Error::OtherMaster`], [`Error::TimeOut`] or an error of the exchange.
+    /// Returns [`Error::Illegal`] if the word must not be sent. After sending, returns [`Error::Refused`],
+    /// [`Error::OtherMaster`] or [`Error::TimeOut`], or another error if the exchange fails.
     pub(in crate::devices::interbus::procedures) fn send_setting(&mut self, command: Command) -> Result<(), Error> {
         self.try_send_setting(command, 0)
     }
@@ -32,7 +33,7 @@ impl Master<'_> {
     /// waiting times until the encoder has accepted the value.
     ///
     /// # Errors
-    /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, and otherwise the same errors as
+    /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, or an error of
     /// [`send_setting`](Self::send_setting).
     pub(in crate::devices::interbus::procedures) fn set_and_verify(
         &mut self,

@@ -1,4 +1,4 @@
-//! Mode of an encoder, which a job reads, changes and finally restores.
+//! Mode of an encoder, which a job reads, changes and restores at its end.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ const READING_INTERVAL: Duration = Duration::from_millis(10);
 const MODE_VALIDITY: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Runs `work` and returns the encoder to its previous mode. This is also done after an error.
+    /// Runs `work` and then returns the encoder to its previous mode, even after an error.
     ///
     /// # Errors
     /// Returns the error of `work`, [`Error::NotRunning`] if the work cannot begin, or [`Error::NotLedBack`] if the
@@ -27,7 +27,7 @@ impl Master<'_> {
         self.finish(ended)
     }
 
-    /// Returns the encoder to its state before [`enter`](Self::enter). This is also done if the work has failed.
+    /// Returns the encoder to its state before [`enter`](Self::enter), even if the work has failed.
     ///
     /// # Errors
     /// Returns the error of the work, or [`Error::NotLedBack`] if the state cannot be restored.
@@ -50,9 +50,9 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.left_state() })
     }
 
-    /// Ends a parameterisation, an error or a read-out of another program and returns the resulting mode. Values that
-    /// were set but not stored are now stored, which counts as one store. A persistent error is not reported, since the
-    /// encoder can still be read and set.
+    /// Ends a parameterisation, an error or a read-out of another program, and returns the resulting mode. Values that
+    /// were set but not stored are now stored, which uses one store cycle. A persistent error is not reported, since
+    /// the encoder can still be read and set.
     ///
     /// # Errors
     /// Returns [`Error::NotLedBack`] with the cause if the encoder cannot be returned to operation.
@@ -83,8 +83,8 @@ impl Master<'_> {
     /// Switches the encoder to a mode and checks the result.
     ///
     /// # Errors
-    /// Returns [`Error::NoMode`], [`Error::NotSelectable`] or [`Error::UnknownMode`] if the switch is not possible.
-    /// Other errors come from the handshake or the exchange.
+    /// Returns [`Error::NoMode`], [`Error::NotSelectable`] or [`Error::UnknownMode`] if the switch is not possible, or
+    /// another error if the handshake or the exchange fails.
     pub(in crate::devices::interbus::procedures) fn switch_to_mode(
         &mut self,
         wanted: StartupMode,
@@ -153,7 +153,7 @@ impl Master<'_> {
         if self.known.kept == Some(mode) || self.known.hold.is_some_and(|(held, _)| held == mode) {
             return Ok(());
         }
-        // Checks whether this read-out has ended the mode. In another mode, words for cams have other effects.
+        // Checks whether this read-out has ended the mode, because words for cams have other effects in another mode.
         self.send_idle_word()?;
         if is_same_operating_mode(self.read_startup_mode()?, mode) {
             self.known.kept = Some(mode);
@@ -281,8 +281,8 @@ impl Master<'_> {
         }
     }
 
-    /// Sends 00000000h until the IN word contains no value. It is used while parameters or cams are being set, since
-    /// 80000000h would store them. A value that persists is accepted because it differs from the next echo.
+    /// Sends 00000000h until the IN word contains no value. This is done while parameters or cams are being set,
+    /// because 80000000h would store them. A value that persists is accepted, because it differs from the next echo.
     fn clear_query_while_setting(&mut self) -> Result<(), Error> {
         let patience = VALUE_CLEAR_TIMEOUT.min(self.patience);
         let ended =
@@ -297,7 +297,8 @@ impl Master<'_> {
     }
 }
 
-/// Returns whether two modes are equal. K2 and K3 count as equal, since both return the position.
+/// Returns whether two modes are equal. K2 and K3 are treated as equal, since the IN word contains the position in
+/// both.
 pub(super) fn is_same_operating_mode(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)

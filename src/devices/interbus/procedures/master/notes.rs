@@ -12,8 +12,7 @@ pub(super) struct JournalNotes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<ModeSwitch>,
-    /// Number of cam programs that were left without a change. The encoder may nevertheless have stored each of them.
-    /// See reference 5.
+    /// Number of cam programs that were left without a change. The encoder may still have stored each of them.
     left: u64,
     /// Whether the selected cam program was changed. If so, its store is counted as part of the write.
     is_set: bool,
@@ -61,7 +60,7 @@ impl Master<'_> {
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
         let Some(excursion) = journal.recorded_mode_switch(&serial_number) else { return Ok(()) };
         if is_same_operating_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
-            // The encoder was returned, or another mode has been selected since.
+            // The encoder was returned to its mode, or another mode has been selected since then.
             journal.record_mode_restored(&serial_number);
             return Ok(());
         }

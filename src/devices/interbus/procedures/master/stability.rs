@@ -25,7 +25,7 @@ pub(super) const MIN_HANDSHAKE_TIMEOUT: Duration = Duration::from_millis(150);
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StabilityTimer {
-    /// Whether only cycles count. This applies to recordings, in which no time passes.
+    /// Whether only cycles are counted. This applies to recordings, in which no time passes.
     timeless: bool,
     cycles: u32,
     since: Option<Moment>,

@@ -256,7 +256,7 @@ fn parse_number(text: &str, comma: bool) -> Option<f64> {
         ["°", "mm", "deg", "Grad", "grad"].iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
     let text = text.replace('−', "-");
     let text = if comma { text.replace(',', ".") } else { text };
-    // The parser would accept words such as `inf`.
+    // The number parser would accept words such as `inf`.
     let is_plain = text.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E'));
     text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
 }
@@ -265,7 +265,7 @@ fn parse_number(text: &str, comma: bool) -> Option<f64> {
 fn parse_whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
-    // Only digits are accepted, since a name such as 1e3 is possible.
+    // Only digits are accepted, because 1e3 may be a name.
     let is_whole = !bare.is_empty() && bare.bytes().all(|c| c.is_ascii_digit());
     bare.parse().ok().filter(|_| is_whole)
 }

@@ -3,21 +3,21 @@
 use super::VisibleRange;
 use crate::devices::interbus::profile::{Scale, Unit};
 
-/// A grid line of the chart, which is at the start of a position.
+/// A grid line of the chart, at the start of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     pub position: f64,
     pub value: f64,
-    /// Number of decimals in the label of the line.
+    /// Number of decimals in the label of the grid line.
     pub decimals: usize,
 }
 
 /// Intervals of grid lines in degrees. Each of them divides a turn.
 const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
-/// Maximum number of grid lines. No chart has room for more.
+/// Maximum number of grid lines. No chart has space for more.
 const MAX_TICKS: usize = 400;
 
-/// Returns the smallest number of the series 1, 2, 5, 10, 20, 50 … that is not below `at_least`.
+/// Returns the smallest number of the series 1, 2, 5, 10, 20, 50 and so on that is at least `at_least`.
 pub fn round_up_1_2_5(at_least: f64) -> f64 {
     if !at_least.is_finite() || at_least <= 0.0 {
         return 1.0;
@@ -28,7 +28,7 @@ pub fn round_up_1_2_5(at_least: f64) -> f64 {
     nice * power
 }
 
-/// Returns the visible grid lines. Their distance is at least `apart` steps.
+/// Returns the visible grid lines, which are at least `apart` steps apart.
 pub fn grid_ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_per_unit();
     let unit = round_interval(scale.unit(), apart / one);
@@ -45,7 +45,8 @@ pub fn grid_ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) ->
     (0..MAX_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
-/// Returns the next grid line after a position, or the previous one before it, in steps. It may be beyond the range.
+/// Returns the next grid line after a position, or the previous one before it, in steps. The result may be beyond the
+/// range.
 pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = grid_lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);

@@ -1,5 +1,5 @@
-//! Changes of a cam while it or one of its edges is dragged. A part that is dragged over one end of the measuring range
-//! reappears at the other end.
+//! Changes of a cam while it or one of its edges is dragged. A part that is dragged beyond one end of the measuring
+//! range reappears at the other end.
 
 use super::edge_value;
 use crate::devices::interbus::profile::Edge;

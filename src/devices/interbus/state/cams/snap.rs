@@ -4,7 +4,7 @@ use super::{Chart, DragTarget, edge_value, grid};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
-/// Targets to which an edge snaps, and the distance from which it does.
+/// Targets to which an edge snaps, and the maximum distance for this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnapSettings {
     /// Maximum distance of a target in steps.
@@ -31,7 +31,7 @@ const SNAP_DISTANCE: f64 = 6.0;
 const GRID: f64 = 10.0;
 
 /// Returns the number of steps by which a cam is moved instead of `by`. If a target is near, an edge of the cam snaps
-/// to it. Otherwise, `by` is rounded to whole steps.
+/// to the target. Otherwise, `by` is rounded to whole steps.
 pub fn snap_distance(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, snap: &SnapSettings) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {

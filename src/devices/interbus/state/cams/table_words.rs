@@ -76,7 +76,7 @@ pub fn rounding_text(row: &TableRow, scale: &Scale) -> Text {
 pub fn edge_text(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimal_places() + 1;
     let id = if edge.is_rounded() { "camtable.edge_off" } else { "camtable.edge" };
-    // The number has all decimals of the table, since rounding would hide the difference.
+    // The number has as many decimals as in the table, because rounding would hide the difference.
     let requested = decimals.max(decimal_count(edge.requested));
     let text = TEXTS.text(id).with_number("asked", edge.requested, requested).with("unit", scale.unit().symbol());
     let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });

@@ -69,8 +69,8 @@ impl StagedEdits {
         ValueId::all().filter_map(|place| self.difference_of(place)).collect()
     }
 
-    /// Returns whether a cam was edited, apart from its name. An inactive cam that is added to a profile does not
-    /// count.
+    /// Returns whether a cam was edited, apart from its name. An inactive cam that is added to a profile is not
+    /// considered edited.
     pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)

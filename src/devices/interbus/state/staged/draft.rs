@@ -30,7 +30,7 @@ pub enum SavedEdit {
 }
 
 impl StagedEdits {
-    /// Returns the edits for a draft. They include those that wait until their program is read.
+    /// Returns the edits for a draft, including those that wait until their program is read.
     pub fn draft_edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {

@@ -65,7 +65,7 @@ pub enum Edit {
     },
     /// Mirrors a program within the measuring range. Inactive cams are also mirrored unless they are beyond the range.
     Mirror(ProgramNumber),
-    /// Shifts a program by a number of steps. Parts beyond one end of the range reappear at the other end. Inactive
+    /// Shifts a program by a number of steps. Parts that leave the range at one end reappear at the other. Inactive
     /// cams are also shifted unless they are beyond the range.
     Rotate {
         program: ProgramNumber,

@@ -56,7 +56,7 @@ pub(super) fn card_ui(
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
     card_with_trailing(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
         let label = theme.format_text(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
-        // Without polling, the last reading is old and must not be shown as the present one.
+        // Without polling, the last reading is old and must not be shown as the current one.
         let reading = encoder.record.last().filter(|_| encoder.session.is_polling());
         let sends = reading.filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
         let model = CamChart {

@@ -58,7 +58,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
                 line_ui(ui, icons::WARNING, theme.palette.warn, theme.format_text(&words::edit_error_text(&unread)));
             }
         }
-        // A table with problems is not added, since the cam of an omitted line would be switched off.
+        // A table with problems is never added, because the cam of an omitted line would be switched off.
         let is_whole = table.problems.is_empty();
         if !is_whole {
             paragraph(ui, theme.label(translate(theme, "ib_table.mend")));

@@ -117,7 +117,7 @@ fn row_ui(
                 let to = forms::position(text, &encoder.scale, chart.range)?;
                 put(match lane.edges {
                     Some(_) => Edit::Edge { program, cam, edge, to },
-                    // Until the user enters the other edge, it has the same position.
+                    // The other edge has the same position until the user enters it.
                     None => Edit::Cam { program, cam, start: to, stop: to, on: false },
                 });
                 Ok(())

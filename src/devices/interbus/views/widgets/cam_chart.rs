@@ -116,8 +116,8 @@ impl CamChart<'_> {
         Some(self.chart.with_cam(drag.hold.cam(), drag.to?))
     }
 
-    /// Handles the keyboard. The arrow keys move an edge or the cam by one step or to the next grid line, and other
-    /// keys switch the cam on and off.
+    /// Handles the keyboard. The arrow keys move an edge or the cam by one step or to the next grid line. Other keys
+    /// switch the cam on and off.
     pub(super) fn handle_keys(&self, ui: &Ui, response: &Response, hold: DragTarget, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;

@@ -38,8 +38,8 @@ struct LanePainter<'a> {
     base: Id,
 }
 
-/// Draws the lanes for a part of the range and returns the action of the user. A `Ui` can contain only one chart unless
-/// further charts have a separate id with `push_id`.
+/// Draws the lanes for a part of the range and returns the action of the user. A `Ui` can contain only one chart,
+/// unless each further chart has a separate ID from `push_id`.
 pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::current_drag(ui, base).filter(|_| model.movable);

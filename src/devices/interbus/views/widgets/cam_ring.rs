@@ -91,8 +91,8 @@ struct Ring<'a> {
     base: Id,
 }
 
-/// Draws the ring and returns the action of the user. A `Ui` can contain only one ring unless further rings have a
-/// separate id with `push_id`.
+/// Draws the ring and returns the action of the user. A `Ui` can contain only one ring, unless each further ring has a
+/// separate ID from `push_id`.
 pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
     let drag = cam_chart::current_drag(ui, base).filter(|_| model.movable);

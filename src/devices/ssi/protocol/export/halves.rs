@@ -49,7 +49,7 @@ struct WordHalves {
 /// Returns the source of a structured text function block `SSI_DECODE`, which uses DWORD instead of LWORD.
 ///
 /// # Errors
-/// [`TooWideError`] if 32 bits do not suffice.
+/// Returns a [`TooWideError`] if 32 bits are not sufficient.
 pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = SplitWordDialect::for_layout(layout, Language::StructuredText)?;
     let mut text = String::new();
@@ -72,7 +72,7 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
 /// Returns an SCL source file with a function block `SSI_DECODE`. TIA Portal imports it under *External source files*.
 ///
 /// # Errors
-/// [`TooWideError`] if 32 bits do not suffice.
+/// Returns a [`TooWideError`] if 32 bits are not sufficient.
 pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = SplitWordDialect::for_layout(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
@@ -182,7 +182,7 @@ impl SplitWordDialect {
     }
 }
 
-/// Joins two half-word expressions with an operator. An expression that is `None` is zero and is left out.
+/// Joins two half-word expressions with an operator. An expression that is `None` is zero and is omitted.
 fn join_terms(a: Option<String>, b: Option<String>, operator: &str) -> Option<String> {
     match (a, b) {
         (Some(a), Some(b)) => Some(format!("({a} {operator} {b})")),
@@ -205,7 +205,7 @@ fn or_expression(a: Option<&String>, b: Option<&String>) -> Option<String> {
 }
 
 impl WordHalves {
-    /// Returns an expression that compares two words half by half. A half that is zero in both words is left out.
+    /// Returns an expression that compares two words half by half. A half that is zero in both words is omitted.
     fn compare_expression(&self, other: &WordHalves, operator: &str, between: &str, none: &str) -> String {
         let halves = [(&self.high, &other.high), (&self.low, &other.low)].into_iter();
         let halves = halves.filter(|(a, b)| a.is_some() || b.is_some());

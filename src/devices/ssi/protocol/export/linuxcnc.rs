@@ -61,7 +61,7 @@ pub enum FormatError {
 /// Returns the format string of a frame.
 ///
 /// # Errors
-/// [`FormatError::Cannot`] if LinuxCNC cannot decode the frame.
+/// Returns [`FormatError::Cannot`] if LinuxCNC cannot decode the frame.
 pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let descriptor = layout.descriptor();
     let modifier = match layout.position_code().code() {
@@ -121,10 +121,10 @@ enum BitField {
 }
 
 /// Parses a format string as a frame whose position is a single number. Bit fields become error bits that make the
-/// position invalid; the user can change this.
+/// position invalid. The user can change this later.
 ///
 /// # Errors
-/// [`FormatError`] with the invalid field.
+/// Returns a [`FormatError`] with the invalid field if the format string is not a frame.
 pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
     let text = text.trim().trim_matches('"');
     let text = text.split_once('=').filter(|(key, _)| key.starts_with("ssi_chan_")).map_or(text, |(_, format)| format);

@@ -1,5 +1,5 @@
-//! Settings for the SSI module of a PLC that reads this frame, in the terms of the module manuals. The encoder is not
-//! changed.
+//! Settings for the SSI module of a PLC that reads this frame, in the terms of the module manuals. The settings of the
+//! encoder remain the same.
 
 use std::fmt::Write;
 
@@ -163,7 +163,7 @@ fn beckhoff_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel,
         bits @ 1..=32 => ExportText::Setting(2, SettingMeaning::Variable(bits)),
         bits => ExportText::FrameTypeNone { bits },
     };
-    // A parity bit says nothing about the state of the encoder.
+    // A parity bit does not describe the state of the encoder.
     let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
     let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
     let bits = places.lowest_bit() - fails;
@@ -204,7 +204,7 @@ fn delta_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Se
 }
 
 fn synapticon_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
-    // This module counts bits from the first one received.
+    // This module numbers the bits from the first one received.
     let first = |ends: Option<(u8, u8)>| {
         Setting::Plain(ends.map_or_else(|| "–".to_owned(), |(_, high)| (places.frame - 1 - high).to_string()))
     };

@@ -12,7 +12,7 @@ const CLOCK: &str = "#1a5fb4";
 const DATA: &str = "#26a269";
 const BITS: &str = "#b8dcff";
 
-/// Returns the colour of a field in print. Black text is legible on it.
+/// Returns the print colour of a field, on which black text is legible.
 fn role_colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",
@@ -81,7 +81,7 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Tran
                 _ if begins == index => layout.role_name(*role),
                 _ => format!("{} … {}", layout.role_name(first), layout.role_name(*role)),
             };
-            // Names of single clocks alternate between two heights, so neighbours do not overlap.
+            // The names of single clocks alternate between two heights, so that neighbouring names do not overlap.
             let y = if begins == index && index % 2 == 1 { 104 } else { 90 };
             let middle = PictureLength::Whole(u32::midpoint(from, to));
             let path = vec![

@@ -74,7 +74,7 @@ pub enum SettingAdvice {
 /// The reason why settings are impossible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
-    /// The family lacks this setting.
+    /// The family does not have this setting.
     #[error("{family} has no {field}")]
     None {
         /// Name of the family.
@@ -146,7 +146,7 @@ impl Settings {
     /// Returns the frame that a family sends with these settings.
     ///
     /// # Errors
-    /// [`SettingsError`] if the family cannot send such a frame.
+    /// Returns a [`SettingsError`] if the family cannot send such a frame.
     pub fn resolve(&self, family: &Family) -> Result<ResolvedFrame, SettingsError> {
         let range = self.position_range(family)?;
         let preset = self.preset.unwrap_or(0);
@@ -171,7 +171,7 @@ impl Settings {
                 possible: value_list(possible),
             });
         };
-        // Alignment to clock 25 already is alignment to clock 24 with a shift. See reference section 6, trap 3.
+        // Alignment to clock 25 is the same as alignment to clock 24 with a shift. See reference section 6, trap 3.
         let shift_right = self.shift && align != Alignment::Right25;
         if shift_right && !family.shift {
             return Err(SettingsError::None { family: family.name.clone(), field: SettingName::ShiftRight });
@@ -188,7 +188,7 @@ impl Settings {
         }
         let errors = error_bits_at(frame, place, lead + bits);
         let last_error = errors.iter().map(|bit| bit.clock).max().unwrap_or(0);
-        // Error bits that follow the position leave the length of the frame unchanged if there is room for them.
+        // Error bits that follow the position do not change the length of the frame if there is enough room for them.
         let fixed = error_bits_at(frame, ErrorPlace::Fix, 0).iter().map(|bit| bit.clock).max().unwrap_or(0);
         let whole = if place == ErrorPlace::Following && frame.area.is_some() { fixed } else { last_error };
         let own = area.max(whole);

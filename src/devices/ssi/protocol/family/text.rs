@@ -31,7 +31,7 @@ impl Settings {
     /// Splits a specification such as `ahm36,code=gray,st=12` into the family key and its settings.
     ///
     /// # Errors
-    /// [`SpecError`] with the valid values.
+    /// Returns a [`SpecError`] with the valid values if the specification is invalid.
     pub fn parse(text: &str) -> Result<(String, Self), SpecError> {
         let mut words = text.split(',').map(str::trim);
         let key = words.next().unwrap_or_default().to_ascii_lowercase();

@@ -1,5 +1,5 @@
-//! Candidate layouts for encoders of no known family. They have common widths, and separate bits for clocks that are
-//! always 1, have been active, or are unexplained.
+//! Candidate layouts for encoders that belong to no known family. They have common widths, and separate bits for clocks
+//! that are always 1, were active at some time, or are unexplained.
 
 use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
@@ -16,12 +16,12 @@ use crate::devices::ssi::protocol::range::Range;
 /// Number of position widths to propose.
 const WIDTHS: usize = 4;
 const MIN_SHARES: usize = 3;
-/// Minimum number of frames per thousand in which a bit must deviate to be regarded as an error bit.
+/// Minimum number of frames per thousand in which a bit must deviate to be considered an error bit.
 const ERROR_BIT_PERMILLE: usize = 5;
 const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
-/// Tries frames of no family that have the given number of clocks.
+/// Tries frames without a family that have the given number of clocks.
 pub(super) fn try_custom_frames(
     take: &mut TestCandidateFn<'_>,
     read: &FrameNumbers,
@@ -38,7 +38,8 @@ pub(super) fn try_custom_frames(
     let mut widths_of: Vec<u8> = (least..=most).collect();
     let rank =
         |bits: &u8| common_bit_splits(*bits, 1).first().map_or(9.0, |(turns, steps)| width_penalty(*turns, *steps));
-    // These are the complete frame up to the lowest bit, the bits that changed, and the most common widths in between.
+    // The widths are that of the complete frame up to the lowest bit, that of the bits that changed, and the most
+    // common widths in between.
     let ends = |bits: &u8| *bits == most || *bits == least;
     widths_of
         .sort_by(|a, b| (!ends(a), rank(a)).partial_cmp(&(!ends(b), rank(b))).unwrap_or(std::cmp::Ordering::Equal));
@@ -78,8 +79,8 @@ pub(super) fn try_custom_frames(
     }
 }
 
-/// Returns the frames that could be mistaken for one with this parity bit. In one the code covers a zero at its end,
-/// and in the other it covers an error bit.
+/// Returns the frames that could be mistaken for one with this parity bit. In one of them, the code covers a zero at
+/// its end. In the other, it covers an error bit.
 fn parity_variants(frame: &FrameDescriptor, parity: Parity) -> [FrameDescriptor; 2] {
     let none = FrameDescriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
@@ -113,7 +114,7 @@ fn possible_ranges(read: &FrameNumbers, bits: u8) -> Vec<(Range, f64)> {
         .collect()
 }
 
-/// Returns the bits outside the position that need a name. These are bits that are always 1, bits that were active, and
+/// Returns the bits outside the position that need a name: bits that are always 1, bits that were active, and
 /// unexplained bits.
 fn bits_outside_position(words: &FrameSet, read: &FrameNumbers, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;

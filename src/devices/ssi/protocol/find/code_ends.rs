@@ -1,12 +1,12 @@
-//! Search for the number of steps after which positions wrap, if it is not a power of two. It follows from numbers that
-//! never occur and from the size of backward jumps.
+//! Search for the number of steps after which positions wrap, if it is not a power of two. The number is derived from
+//! numbers that never occur and from the size of backward jumps.
 
 use super::motion::{Motion, median};
 use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
 const TRIED_COUNTS: usize = 40;
-/// Maximum information in bits above that of the best number of steps for another number to fit as well.
+/// Maximum information in bits by which another number of steps may exceed the best one to be considered equally good.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
 /// Returns the possible codes, each with two numbers of steps: the most common one that fits, and the last one that
@@ -25,7 +25,7 @@ pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
     // The range contains at least the positions from 0 to the highest one that occurred.
     add(read.reading.code, extremes.iter().map(|(_, highest)| highest + 1).collect());
     if read.reading.code == Code::Gray {
-        // Gray excess leaves out as many words before the positions as after them.
+        // Gray excess omits as many words before the positions as after them.
         let unseen = |(lowest, highest): &(u64, u64)| whole - 2 * (*lowest).min(whole - 1 - highest);
         add(Code::GrayExcess, extremes.iter().map(unseen).collect());
     }
@@ -45,7 +45,7 @@ fn number_extremes(read: &FrameNumbers) -> Vec<(u64, u64)> {
 }
 
 /// Returns the numbers of steps that make the motion most even: the most common one and the last one. Returns `None` if
-/// none is better than the full range of the bits.
+/// none of them is better than the full range of the bits.
 fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
@@ -133,7 +133,7 @@ fn common_step_counts(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     all
 }
 
-/// Returns how unusual a number of steps is, from 0 for a usual number up to 5.
+/// Returns how uncommon a number of steps is, from 0 for a common number up to 5.
 pub(super) fn unusual_step_cost(steps: u64) -> u8 {
     if !common_step_counts(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;

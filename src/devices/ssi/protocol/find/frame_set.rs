@@ -1,5 +1,5 @@
-//! Recorded frames as bits over time: which clocks change, which are constant, and where a word is repeated. Nothing is
-//! decoded here.
+//! Recorded frames as bits over time, which show the clocks that change, the clocks that are constant, and repetitions
+//! of a word. This module does not decode anything.
 
 use std::collections::HashMap;
 
@@ -134,7 +134,7 @@ impl Bit {
         }
     }
 
-    /// Returns the information in bits of a bit that nothing else explains.
+    /// Returns the information in bits of a clock whose bits are not explained by anything else.
     pub(super) fn information_bits(&self, frames: usize) -> f64 {
         binary_entropy(self.changes, frames)
     }

@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 
-/// Weight of a frame that belongs to no family, compared to 0.8 for a changed setting of a family.
+/// Weight of a frame that belongs to no family. For comparison, a changed setting of a family has a weight of 0.8.
 pub(super) const NO_FAMILY_WEIGHT: f64 = 2.0;
 pub(super) const EXCHANGE_WEIGHT: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
@@ -72,8 +72,8 @@ pub(super) fn encoder_parity(reading: &Reading, inverted: bool) -> Option<Parity
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// Returns an even parity bit after Gray code, which could also be a zero covered by the code. Both look like the
-/// lowest position bit.
+/// Returns an even parity bit after Gray code, which could also be a zero covered by the code. In both cases, it looks
+/// like the lowest position bit.
 pub(super) fn find_ambiguous_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     encoder_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }

@@ -1,6 +1,6 @@
-//! Measurement of how evenly a shaft turns if frames are read as certain numbers. The measure is the information in
-//! each number that cannot be predicted from the previous ones. A misread number causes a jump, and its information is
-//! not reduced.
+//! Measurement of how evenly a shaft turns if frames are interpreted as certain numbers. The measure is the information
+//! in each number that cannot be predicted from the previous ones. A wrong interpretation causes jumps, which cannot be
+//! predicted.
 
 /// Number of steps over which each median is taken.
 const BLOCK: usize = 16;

@@ -1,4 +1,5 @@
-//! Candidate layouts of a family. Only settings whose position ends where the reading ends are tried.
+//! Candidate layouts of a family. Only settings with which the position ends at the same clock as in the reading are
+//! tried.
 
 use super::frame_set::FrameSet;
 use super::members::{EXCHANGE_WEIGHT, PADDED, TestCandidateFn, find_ambiguous_parity, sum};

@@ -1,5 +1,5 @@
 //! Plausibility of a layout. Encoders are built with a few common widths, and never with 4096 turns of 2 steps. The
-//! weight is 0 for the most common layout, and a changed setting has a weight of about 1.
+//! weight is 0 for the most common layout. For comparison, a changed setting has a weight of about 1.
 
 /// Common numbers of step bits with their weights.
 const STEPS: [(u8, f64); 16] = [
@@ -26,7 +26,8 @@ const TURNS: [(u8, f64); 9] =
 /// Minimum number of step bits in multiturn encoders.
 const FEW_STEPS: u8 = 8;
 
-/// Returns the weight of a combination of turn bits and step bits, which is higher if it is less usual.
+/// Returns the weight of a combination of turn bits and step bits. The less common the combination, the higher the
+/// weight.
 pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)

@@ -22,7 +22,8 @@ pub(super) struct TrialReading {
 pub(super) struct LayoutProbe<'a> {
     seen: &'a FrameSet,
     read: &'a FrameNumbers,
-    /// Indices of frames that the next frame follows evenly. The flag is set if the position wraps between the two.
+    /// Indices of frames that the next frame follows evenly. The flag is set if the position wraps between these two
+    /// frames.
     pairs: Vec<(usize, bool)>,
 }
 

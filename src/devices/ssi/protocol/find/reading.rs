@@ -1,6 +1,6 @@
 //! Ways to read frames as numbers. A reading defines the clocks of the position, its code, whether the wires are
-//! swapped, and the number of steps after which positions wrap. Bits outside the position add their information to that
-//! of the motion.
+//! swapped, and the number of steps after which positions wrap. The information of bits outside the position is added
+//! to that of the motion.
 
 use std::ops::RangeInclusive;
 
@@ -15,12 +15,11 @@ const FIRST_TEST_FRAMES: usize = 620;
 const RUN_LENGTH: usize = 31;
 /// Number of the best readings that are tested with all frames.
 const BEST_READINGS: usize = 8;
-/// Maximum information in bits above that of the best reading. Only such readings are tested with other numbers of
-/// steps.
+/// Maximum information in bits by which a reading may exceed the best reading to be tested with other numbers of steps.
 const NEAR_BITS: f64 = 400.0;
 /// Minimum number of changes per thousand frames of a clock that can be the lowest bit of a turning shaft.
 const LAST_PERMILLE: usize = 10;
-/// Minimum percentage of frames with correct parity for a bit to be regarded as a parity bit.
+/// Minimum percentage of frames with correct parity for a bit to be considered a parity bit.
 const PARITY_PERCENT: usize = 85;
 const INVERTED_BITS: f64 = 2.0;
 const BCD_BITS: f64 = 6.0;
@@ -177,7 +176,7 @@ impl FrameNumbers {
         let (bits, unexplained) = reading.non_motion_information(seen);
         let mut read = FrameNumbers { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
         // A disturbed frame does not prove that the end of the range was passed. At a real end, no higher bit changes,
-        // even briefly.
+        // not even briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
         let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.has_usual_bits(seen, index));
         read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.wraps_after(index) && usual(index));
@@ -250,8 +249,7 @@ fn is_missing_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
     at_end * 2 >= changes && near * 4 < round
 }
 
-/// Returns all readings that begin at a clock that may be the first of the position and end at a clock that may be its
-/// lowest bit.
+/// Returns all readings that begin at a possible first clock of the position and end at a possible lowest bit.
 fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;

@@ -1,4 +1,5 @@
-//! Assessment of the classes: whether the result is certain, how good each class is, and which motion would decide.
+//! Assessment of the classes: whether the result is certain, how well each class fits, and which motion would
+//! distinguish them.
 
 use super::frame_set::FrameSet;
 use super::members::{LayoutCandidate, has_only_even_steps};
@@ -33,14 +34,14 @@ pub(super) fn search_uncertainty(words: &FrameSet, groups: &[Group]) -> Option<S
     }
     let sure = frames >= CERTAIN_FRAMES && first.read.reading.width() >= CERTAIN_BITS;
     let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= CERTAIN_DIFFERENT_FRAMES;
-    // The readings are compared here without the penalties for unusual layouts.
+    // The readings are compared here without the penalties for uncommon layouts.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.total_cost() - first.read.total_cost() >= LEAD_BITS);
     let proven =
         sure && is_even(&first.read, frames, CERTAIN_INFORMATION) && unproven_properties(words, first).is_empty();
     (!proven).then_some(SearchUncertainty::Open)
 }
 
-/// Returns whether many jumps have the same size. This indicates a wrong code rather than disturbances.
+/// Returns whether many jumps have the same size, which indicates a wrong code and not disturbances.
 fn has_uniform_jumps(read: &FrameNumbers) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
@@ -106,7 +107,7 @@ fn step_count_bounds(read: &FrameNumbers) -> Option<(u64, u64)> {
     let (lowest, highest) = seen.fold((any, any), |(low, high), number| (low.min(number), high.max(number)));
     let unseen = (lowest - first).max(last.saturating_sub(highest));
     let (one, other) = read.reading.steps.unwrap_or((last + 1, last + 1));
-    // Gray excess leaves out the same number of words on both sides.
+    // Gray excess omits the same number of words on both sides.
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 

@@ -1,14 +1,14 @@
-//! Change of a frame for other positions or another code. The frame becomes longer or shorter, as a user would redraw
-//! it.
+//! Adaptation of a frame to other positions or another code. The frame becomes longer or shorter in the way in which a
+//! user would redraw it.
 
 use crate::devices::ssi::protocol::{Code, FrameDescriptor, LayoutError, PositionCode, Range};
 
-/// Returns the frame with other positions or another code. Zeros after the position absorb the change if there are any.
-/// Otherwise the parts after the position move, and the frame becomes longer or shorter.
+/// Returns the frame with other positions or another code. If there are zeros after the position, they absorb the
+/// change. Otherwise, the parts after the position move, and the frame becomes longer or shorter.
 ///
 /// # Errors
-/// Returns an error if the positions or code words are impossible. Whether the complete frame is possible must be
-/// checked by the caller.
+/// Returns an error if the positions or code words are impossible. The caller must check whether the complete frame is
+/// possible.
 pub(super) fn with_positions(
     before: &FrameDescriptor,
     range: Range,
@@ -73,13 +73,13 @@ mod tests {
 
     #[test]
     fn a_frame_without_zeros_grows_and_shrinks_with_its_position() {
-        // AFM60: 12 + 18 bits, error bit behind them on 31.
+        // AFM60 with 12 + 18 bits, and the error bit after them on clock 31.
         let before = FrameDescriptor { clocks: 31, errors: vec![error(31)], ..FrameDescriptor::binary(12, 18) };
         let now = with_positions(&before, bits(12, 15), Code::Gray).unwrap();
         assert_eq!((now.clocks, now.area, now.errors[0].clock, now.code), (28, 27, 28, Code::Gray));
         let back = with_positions(&now, bits(12, 18), Code::Binary).unwrap();
         assert_eq!(back, before);
-        // Decimal digits: 3600 steps need four, and 12 bits were 12 clocks.
+        // In decimal digits, 3600 steps need four digits. The 12 bits occupied 12 clocks.
         let steps = Range::Steps { per_turn: 3600, turns: 1 };
         let plain = FrameDescriptor { range: steps, ..FrameDescriptor::binary(0, 12) };
         let bcd = with_positions(&plain, steps, Code::Bcd).unwrap();
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn trailing_zeros_absorb_changes_of_the_position() {
-        // AHS36: 14 clocks for the position, the error bit on 15.
+        // AHS36 with 14 clocks for the position and the error bit on clock 15.
         let before =
             FrameDescriptor { clocks: 15, area: 14, errors: vec![error(15)], ..FrameDescriptor::binary(0, 12) };
         let now = with_positions(&before, bits(0, 13), Code::Binary).unwrap();
@@ -117,7 +117,7 @@ mod tests {
         assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
         let odd = Range::Steps { per_turn: 361, turns: 1 };
         assert!(with_positions(&plain, odd, Code::GrayExcess).is_err());
-        // Too long for a frame, and no panic.
+        // The frame would be too long, which must not cause a panic.
         let long = with_positions(&FrameDescriptor { lead: 40, ..plain }, bits(32, 32), Code::Binary).unwrap();
         assert!(Layout::new(long).is_err());
     }

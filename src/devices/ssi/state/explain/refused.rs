@@ -1,4 +1,4 @@
-//! Messages about impossible layouts in both languages, for errors of a frame, a family or a format string.
+//! Messages about impossible layouts in both languages. The cause is an error in a frame, a family or a format string.
 
 use crate::app::Text;
 use crate::app::explain::literal_text;

@@ -1,4 +1,4 @@
-//! Form rows for a family, which contain the settings of its encoders.
+//! Form rows for a family, which are the settings of its encoders.
 
 use super::{CODES, Field, FieldInput, GRAY_COVERAGES, Group, RangeKind, Row, byte, number_word, position_rows};
 use crate::app::Text;
@@ -48,7 +48,7 @@ pub(super) fn settings_after_entry(
                 steps: None,
                 turns: None,
                 revolutions: None,
-                // A setting for a range of bits may not be possible for a range of steps.
+                // An alignment for a range of bits may not be possible for a range of steps.
                 align: None,
                 clocks: None,
                 ..next
@@ -89,13 +89,13 @@ pub(super) fn settings_after_entry(
         (Field::Shift, FieldInput::Switch(is_on)) => next.shift = *is_on,
         (Field::Errors, FieldInput::Choice(place)) => {
             next.errors = Some(*possible_error_places(designer, family).get(*place)?);
-            // The length of the frame depends on the error bits again.
+            // The length of the frame now depends on the error bits again.
             next.clocks = None;
         }
         (Field::Clocks, FieldInput::Number(clocks)) => next.clocks = Some(byte(*clocks)?),
         _ => return None,
     }
-    // The number of clocks follows the resolution, unless the user has set it.
+    // The number of clocks is adapted to the resolution, unless the user has set it.
     if matches!(field, Field::Multiturn | Field::Singleturn | Field::Bits | Field::Steps | Field::Turns)
         && settings.clocks.is_none()
     {

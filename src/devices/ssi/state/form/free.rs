@@ -70,7 +70,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
     }
 }
 
-/// Returns the change of a frame of no family after an entry, or `None` if the field does not belong to it.
+/// Returns the change of a frame without a family after an entry, or `None` if the field does not belong to the frame.
 pub(super) fn edit_after_entry(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = apply_range_input(&before.range, field, input) {
@@ -184,7 +184,7 @@ fn with_parity(mut next: FrameDescriptor, choice: usize) -> Option<FrameDescript
     match (choice, next.parity) {
         (0, Some(parity)) => {
             next.parity = None;
-            // The clock of the parity bit is removed with it.
+            // If the parity bit has the last clock, the clock is removed as well.
             if next.repeat.is_none() && parity.clock == next.clocks {
                 next.clocks -= 1;
             }
@@ -231,7 +231,7 @@ impl LayoutDesigner {
         let mut next = self.design().profile.descriptor.clone();
         if index < next.errors.len() {
             let removed = next.errors.remove(index);
-            // The last clock is removed with the only bit on it.
+            // If the error bit is the only bit on the last clock, the clock is removed as well.
             if next.repeat.is_none() && next.parity.is_none() && removed.clock == next.clocks {
                 next.clocks -= 1;
             }

@@ -21,7 +21,7 @@ struct Table<'t> {
 enum Times {
     /// A time column. Contains its unit in seconds.
     Column(f64),
-    /// No time column: one row per sample, at this interval in seconds.
+    /// No time column. There is one row per sample, at this interval in seconds.
     Samples(f64),
 }
 
@@ -32,7 +32,7 @@ const DATA: [&str; 2] = ["dat", "miso"];
 /// Parses the levels of both lines. Returns `None` if the text is not a logic analyser export.
 ///
 /// # Errors
-/// Returns a message with the line, the reason and a remedy if the export is unusable.
+/// Returns an error with the line, the reason and a remedy if the export is unusable.
 pub(super) fn parse_levels(text: &str) -> Option<Result<Vec<LineLevels>, Text>> {
     let table = Table::parse(text)?;
     Some(table.find_times().and_then(|times| table.parse_levels(times)))
@@ -140,8 +140,8 @@ impl<'t> Table<'t> {
         Ok(levels)
     }
 
-    /// Returns the clock channel and the data channel, identified by name. If the names do not help, the clock is the
-    /// channel that changes more often.
+    /// Returns the clock channel and the data channel, which are identified by name. If the names are not conclusive,
+    /// the channel that changes more often is taken as the clock.
     fn find_channels(&self, skipped: usize, read: &[(f64, Vec<Option<bool>>)]) -> Result<(usize, usize), Text> {
         let names: Vec<String> = self.heading.iter().skip(skipped).map(|name| name.to_lowercase()).collect();
         let named = |words: &[&str]| names.iter().position(|name| words.iter().any(|word| name.contains(word)));
@@ -157,7 +157,7 @@ impl<'t> Table<'t> {
         let counts: Vec<usize> = (0..names.len()).map(changes).collect();
         let mut active: Vec<usize> =
             (0..names.len()).filter(|own| counts.get(*own).is_some_and(|own| *own > 0)).collect();
-        // If there are only two channels, the data line may be one that never changes.
+        // If there are only two channels, the data line may never change.
         if active.len() == 1 && names.len() == 2 {
             active.extend((0..2).filter(|own| counts.get(*own) == Some(&0)));
         }

@@ -1,12 +1,12 @@
 //! Moving of parts of a frame. The result is always a possible frame. If the requested clock is not possible, the
-//! nearest possible one towards the present clock is used.
+//! nearest possible clock on the side of the current one is used.
 
 use super::{Handle, PositionParts, has_bit_patterns};
 use crate::devices::ssi::protocol::{FrameDescriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
 
 /// Returns the frame after a part was moved to a clock, or as close to it as possible.
 ///
-/// Other parts stay in place. However, error and parity bits directly after the position move with its end if
+/// Other parts remain in place. However, error and parity bits directly after the position move with its end if
 /// `following` is set. A bit that is moved onto another one swaps places with it.
 #[must_use]
 pub fn move_part(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
@@ -152,7 +152,7 @@ fn try_move(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool
         Handle::Parity => move_bit(&mut new, SingleBit::Parity, at, to),
     }
     if !depends_on_area_end(&new) {
-        // The area has no effect on the frame, but it must have room for the position.
+        // The area has no effect on the frame, but it must provide enough room for the position.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
         new.area = new.area.max(u8::try_from(needed).ok()?).min(new.clocks_per_word());
     }

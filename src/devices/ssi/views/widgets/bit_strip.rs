@@ -1,18 +1,18 @@
 //! An SSI frame as a row of cells, one for each clock, with movable boundaries and single bits.
 //!
-//! * **Size**: the available width; cells shrink to a minimum width, then the strip wraps into as few lines of whole
-//!   bytes as possible.
-//! * **Keyboard**: Tab moves to the cells and from handle to handle. On the cells the left and right arrows, Home and
-//!   End select one, Space inverts its bit if allowed. On a handle the arrows move it by one clock, Home and End as far
-//!   as possible.
-//! * **Pointer**: a click selects a cell and inverts its bit; a click on its number only selects. A handle is dragged;
-//!   the resulting frame is shown during the drag, and Escape cancels it. The name and use of a handle are shown below
-//!   it.
-//! * **Accessible**: the cells are a slider with the given label, whose value is the selected cell; each handle is a
+//! * **Size**: the available width. Cells shrink to a minimum width. Below it, the strip wraps into as few lines of
+//!   whole bytes as possible.
+//! * **Keyboard**: Tab moves to the cells and from handle to handle. On the cells, the left and right arrow keys, Home
+//!   and End select a cell, and Space inverts its bit if this is allowed. On a handle, the arrow keys move it by one
+//!   clock, and Home and End move it as far as possible.
+//! * **Pointer**: a click on a cell selects it and inverts its bit. A click on its number only selects it. A handle can
+//!   be dragged. The resulting frame is shown during the drag, and Escape cancels the drag. The name and use of a
+//!   handle are shown below it.
+//! * **Accessible**: the cells are a slider with the given label, whose value is the selected cell. Each handle is a
 //!   slider with its location. A field is a group with its bits.
-//! * **Painting**: a cell in the colour of its field with the clock number above; it contains the bit, or the number of
-//!   the bit while there is no frame; a bracket with the name below each field, a tab at each movable end; a bit with a
-//!   meaning is filled with the colour of its verdict, as is its name, which has an icon.
+//! * **Painting**: a cell has the colour of its field, with the clock number above it. It contains the bit or, if there
+//!   is no frame, the number of the bit. There is a bracket with the name below each field and a tab at each movable
+//!   end. A bit with a meaning is filled with the colour of its verdict, and so is its name, which has an icon.
 
 mod grips;
 mod names;
@@ -48,12 +48,12 @@ pub(crate) struct BitStrip<'a> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
-    /// A part is dragged to this clock. Sent in every UI frame of a drag.
+    /// A part is dragged to this clock. The event is sent in every UI frame of the drag.
     Preview(Handle, u8),
     /// A part was moved to this clock, which differs from the old one.
     Moved(Handle, u8),
     Selected(u8),
-    /// The bit at this clock is to be inverted.
+    /// The user wants to invert the bit at this clock.
     Toggled(u8),
 }
 
@@ -67,12 +67,12 @@ struct Drag {
     to: Option<u8>,
 }
 
-/// Draws the strip and returns the action of the user. If a `Ui` contains two strips, each needs an id (`push_id`).
+/// Draws the strip and returns the action of the user. If a `Ui` contains two strips, each needs an ID from `push_id`.
 pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Option<StripEvent> {
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
-    // The cells show the frame after the drag, while the handles stay at their present places.
+    // The cells show the frame after the drag, whereas the handles remain at their current positions.
     let preview = held.and_then(|drag| Some(model.strip.with_part_moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
     let cells =
@@ -220,7 +220,7 @@ fn common_meaning(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> 
     own.min_by_key(|meaning| *meaning == BitMeaning::Warning)
 }
 
-/// Reserves the left and right arrow keys for a widget, so they do not move the focus.
+/// Reserves the left and right arrow keys for a widget, so that they do not move the focus.
 fn reserve_arrow_keys(ui: &Ui, id: Id) {
     let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));

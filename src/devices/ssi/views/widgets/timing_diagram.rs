@@ -1,12 +1,12 @@
 //! The timing of a burst to scale: clock line, data line with its bits, and the times between them.
 //!
 //! * **Size**: the available width, and the height required by the labels.
-//! * **Keyboard**: none; Tab skips the diagram.
-//! * **Pointer**: shows the hovered time with the clock and its content.
+//! * **Keyboard**: none. Tab skips the diagram.
+//! * **Pointer**: shows the time under the pointer, with the clock and its content.
 //! * **Accessible**: an image with the given label, whose value lists the times.
-//! * **Painting**: moments are vertical lines below their labels; the clock is drawn as a waveform; bits are drawn in
-//!   the colours of their fields with the field name below; each time is a dimension line in a lane. Where nothing
-//!   happens the axis is broken and states the omitted time.
+//! * **Painting**: moments are vertical lines below their labels. The clock is drawn as a waveform. Bits are drawn in
+//!   the colours of their fields with the field name below. Each time is a dimension line in a lane. Where nothing
+//!   happens, the axis is broken and the omitted time is stated.
 
 mod axis;
 mod place;
@@ -154,7 +154,7 @@ impl Picture<'_> {
         self.theme.palette.muted.into()
     }
 
-    /// Draws the labels of moments and breaks, and a vertical line through all rows at each moment.
+    /// Draws the labels of moments and breaks, and a vertical line through all rows for each moment.
     fn draw_guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[LabelPlacement]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
             let top = self.rows.flags - (put.level + 1) as f32 * TEXT_HEIGHT;

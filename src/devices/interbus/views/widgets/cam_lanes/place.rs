@@ -79,12 +79,12 @@ impl PlotArea {
             return None;
         }
         let bar = Rect::from_x_y_ranges(left..=right.max(left + 2.0), self.lane_rect(cam).y_range());
-        // The rectangle is limited to the lanes, since nothing is drawn far beyond them.
+        // The rectangle is limited to the lanes, because nothing must be drawn far beyond them.
         Some(bar.shrink2(Vec2::new(0.0, 5.0)).intersect(self.plot.expand2(Vec2::new(GRIP_WIDTH, 0.0))))
     }
 
-    /// Returns the area in which an edge can be grabbed. If the cam is wide enough, most of the area is inside it,
-    /// which separates adjoining edges.
+    /// Returns the area in which an edge can be grabbed. If the cam is wide enough, most of the area is inside the cam,
+    /// so that adjoining edges can be distinguished.
     pub(super) fn grip_rect(&self, cam: CamNumber, x: f32, is_start: bool, width: f32) -> Rect {
         let inside = (width / 2.0).clamp(1.0, GRIP_WIDTH - 2.0);
         let (left, right) =

@@ -15,7 +15,7 @@ const LAST_GRIP_WIDTH: f32 = 9.5;
 /// Distance in points of a handle's visible tab from its edge.
 const TAB_DISTANCE: f32 = 3.0;
 const SECOND_TAB_DISTANCE: f32 = 8.0;
-/// Fraction of a field at each of its ends that does not drag the whole field.
+/// Length of each end of a field, as a fraction of the field, in which a drag does not move the whole field.
 const END_FRACTION: f32 = 0.25;
 
 pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
@@ -60,7 +60,7 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
     event
 }
 
-/// Returns the id of a handle. It stays the same if zeros appear or disappear between turns and steps.
+/// Returns the ID of a handle. It remains the same if zeros appear or disappear between turns and steps.
 fn id(base: Id, handle: Handle) -> Id {
     let handle = if handle == Handle::TurnsEnd { Handle::Split } else { handle };
     base.with("handle").with(handle)
@@ -80,7 +80,7 @@ fn grip_rect(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         let (first, last) = strip.position()?;
         let runs = rows.range_rects(first, last);
         let widest = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))?;
-        // The ends of the field belong to its boundaries, so only its middle moves the position.
+        // The ends of the field belong to its boundaries, so the position can only be dragged by its middle.
         let lane = Rows::lane_rect(widest);
         let ends = (lane.width() * END_FRACTION).max(GRIP_WIDTH).min(lane.width() / 3.0);
         return Some(lane.shrink2(Vec2::new(ends, 0.0)));
@@ -89,7 +89,7 @@ fn grip_rect(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let x =
         edge.center().x + field_side(handle) * if has_second_tab(strip, handle) { GRIP_WIDTH } else { GRIP_DISTANCE };
     let (top, bottom) = match handle {
-        // Another boundary can be at the same edge.
+        // Another boundary may be at the same edge.
         Handle::AreaEnd => (edge.top() - GRIP_DISTANCE * 3.0, edge.top()),
         _ => (edge.top(), edge.bottom()),
     };
@@ -101,7 +101,7 @@ fn grip_rect(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
 pub(super) fn edge_rect(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
     let clocks = strip.layout().clock_count();
-    // A boundary after bits that are shifted out would lie after the last clock.
+    // A boundary after bits that are shifted out would be located after the last clock.
     let clock = strip.clock(handle)?.min(clocks);
     Some(rows.edge_rect(clock, begins, clocks))
 }
@@ -117,7 +117,7 @@ fn has_second_tab(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.strip_handles().contains(&Handle::Split)
 }
 
-/// Returns the side of the edge on which the field of a boundary lies: -1 before, 1 after, 0 on both sides.
+/// Returns the side of the edge on which the field of a boundary is located: -1 before, 1 after, and 0 on both sides.
 const fn field_side(handle: Handle) -> f32 {
     match handle {
         Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,

@@ -1,5 +1,5 @@
-//! Names of the fields below their brackets. A name is centred if it fits. Otherwise it is placed next to a leader
-//! line, on as many rows as needed.
+//! Names of the fields, below their brackets. A name is centred if it fits below its field. Otherwise, it is placed
+//! next to a leader line, on as many rows as needed.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -18,9 +18,9 @@ pub(super) struct NameTag {
     pub(super) field: usize,
     line: usize,
     level: usize,
-    /// Left edge relative to the first cell of the line.
+    /// Left edge relative to the first cell in its line of cells.
     left: f32,
-    /// Position of the leader line relative to the first cell of the line, or `None` without a leader line.
+    /// Position of the leader line relative to the first cell in its line of cells, or `None` without a leader line.
     leader: Option<f32>,
     galley: Arc<Galley>,
 }
@@ -28,7 +28,7 @@ pub(super) struct NameTag {
 const NAME_SPACING: f32 = 6.0;
 /// Maximum width of a name. A longer name is truncated, and the tooltip shows it in full.
 const MAX_NAME_WIDTH: f32 = 160.0;
-/// Maximum number of rows of names above the last one. It is the maximum number of error bits in a frame.
+/// Number of rows in which a free space for a name is searched. It equals the maximum number of error bits in a frame.
 const LEVELS: usize = 8;
 
 /// A name that is wider than its field.
@@ -38,14 +38,14 @@ struct OverflowingName {
     x: f32,
     /// Whether the names of both neighbours fit into their fields.
     alone: bool,
-    /// Whether the name starts at its leader line. Otherwise it ends there.
+    /// Whether the name starts at its leader line. Otherwise, it ends there.
     begins: bool,
     room: f32,
     galley: Arc<Galley>,
 }
 
 impl OverflowingName {
-    /// Places the name in a free space beside the names that are already placed.
+    /// Places the name in a free space beside the names that have already been placed.
     fn place_beside(self, tags: &[NameTag]) -> NameTag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
@@ -59,7 +59,7 @@ impl OverflowingName {
                 self.x + NAME_SPACING / 2.0 - width
             };
             let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
-            // If a name cannot avoid leader lines, it avoids at least the other names.
+            // If a name cannot avoid leader lines, it must at least avoid the other names.
             let apart = || (0..).find(|level| self.has_no_overlap(tags, left, *level));
             (left, free.or_else(apart).unwrap_or(LEVELS))
         };
@@ -111,8 +111,8 @@ impl NameTag {
     }
 }
 
-/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` is not placed yet,
-/// because the height of a line depends on the result.
+/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` has not been
+/// placed yet, because the height of a line depends on the result.
 pub(super) fn name_tags(
     ui: &Ui,
     theme: &Theme,
@@ -155,8 +155,9 @@ pub(super) fn name_tags(
         OverflowingName { index, line, x: run.center().x, alone: true, begins, room, galley }
     });
     let mut narrow: Vec<OverflowingName> = narrow.collect();
-    // Each of several adjacent names ends at its own leader line, which leaves space for the line of the next name. At
-    // the left end there is no space for this. There each name begins at its own line, and the last one is the highest.
+    // If several adjacent names do not fit, each ends at its own leader line, which leaves space for the line of the
+    // next name. There is no space for this at the left end. There, each name begins at its own line, and the last name
+    // is the highest.
     for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
         let (alone, begins) = (group.len() == 1, group.iter().any(|own| own.begins));
         for own in group {

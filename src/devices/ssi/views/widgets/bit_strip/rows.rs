@@ -1,4 +1,5 @@
-//! Arrangement of the cells in a bit strip: on one line if there is room, otherwise on lines of whole bytes.
+//! Arrangement of the cells in a bit strip. They are on one line if there is enough room, and otherwise on several
+//! lines of whole bytes.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
@@ -31,11 +32,11 @@ impl Rows {
         let count = f32::from(clocks.max(1));
         if count * MIN_CELL_WIDTH <= room {
             let cell = (room / count).floor().min(MAX_CELL_WIDTH);
-            // The line has room for more clocks, which appear while the end of the frame is dragged.
+            // The line has room for more clocks, which appear when the end of the frame is dragged.
             let columns = (room / cell).floor().min(64.0) as u8;
             return Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() };
         }
-        // As few lines as possible, each of whole bytes.
+        // The strip has as few lines as possible, each of whole bytes.
         let columns = |lines: u8| clocks.div_ceil(lines).next_multiple_of(8);
         let columns = (2..=8).map(columns).find(|columns| f32::from(*columns) * MIN_CELL_WIDTH <= room).unwrap_or(8);
         let cell = (room / f32::from(columns)).floor().clamp(MIN_CELL_WIDTH, MAX_CELL_WIDTH);
@@ -50,7 +51,7 @@ impl Rows {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
 
-    /// Places the rows at a top left corner. Below each line there is space for `names[line]` rows of names.
+    /// Places the rows at a top left corner. There is space for `names[line]` rows of names below each line.
     pub(super) fn at_origin(mut self, origin: Pos2, names: &[usize]) -> Self {
         self.origin = origin + Vec2::new(SIDE_MARGIN, 0.0);
         let mut top = 0.0;
@@ -106,8 +107,8 @@ impl Rows {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE_HEIGHT))
     }
 
-    /// Returns the edge after a clock. If a part begins there, the edge is at the cell of the next clock, which may be
-    /// on the next line.
+    /// Returns the edge after a clock. If a part begins at this edge, the edge of the next clock's cell is returned,
+    /// which may be on the next line.
     pub(super) fn edge_rect(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
         let begins = clock == 0 || begins && clock < clocks;
         let cell = self.cell_rect(if begins { clock + 1 } else { clock });
@@ -121,7 +122,7 @@ impl Rows {
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8)
     }
 
-    /// Returns the clock under the pointer, or the nearest one in the same line.
+    /// Returns the clock under the pointer, or the nearest one on the same line.
     pub(super) fn clock(&self, pos: Pos2, clocks: u8) -> u8 {
         let column = ((pos.x - self.origin.x) / self.cell).floor().clamp(0.0, f32::from(self.columns) - 1.0);
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8 + 1)

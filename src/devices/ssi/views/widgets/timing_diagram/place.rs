@@ -1,5 +1,5 @@
-//! Placement of labels without overlaps. The labels of moments are above their lines, and those of times are next to
-//! their bars.
+//! Placement of labels without overlaps. Labels of moments are above their lines, and labels of times are next to their
+//! bars.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LabelExtent {
@@ -17,7 +17,7 @@ pub(super) struct LabelPlacement {
 const LABEL_SPACING: f32 = 6.0;
 
 /// Places the labels of moments on as few rows as possible. No label overlaps another one or crosses the line of a
-/// higher label. If this is impossible, each label has a row.
+/// higher label. If this is impossible, each label has a separate row.
 pub(super) fn place_labels(flags: &[LabelExtent], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     for levels in 1..=flags.len() {
         let mut put = Vec::new();
@@ -70,7 +70,7 @@ pub(super) struct Bar {
     pub(super) width: f32,
 }
 
-/// Places the bars of times on lanes. A label starts within its bar if it fits, otherwise beside it.
+/// Places the bars of times in lanes. A label starts within its bar if it fits, and is placed beside it otherwise.
 pub(super) fn place_bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     let mut taken: Vec<(usize, f32, f32)> = Vec::new();
     let mut put = Vec::new();
@@ -111,7 +111,7 @@ mod tests {
             place_labels(&two, (0.0, 400.0)),
             [LabelPlacement { level: 0, left: 16.0 }, LabelPlacement { level: 0, left: 306.0 }]
         );
-        // At the end there is only space before the line.
+        // At the end, there is only space before the line.
         assert_eq!(place_labels(&two[1..], (0.0, 350.0)), [LabelPlacement { level: 0, left: 234.0 }]);
     }
 
