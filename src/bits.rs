@@ -22,7 +22,7 @@ pub enum ByteOrder {
     LowFirst,
 }
 
-/// A number with its width in bits. It is displayed with as many upper-case hexadecimal digits as the width requires.
+/// A number with its width in bits, displayed with as many upper-case hexadecimal digits as the width requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// The bits, right-justified.

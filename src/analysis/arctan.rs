@@ -84,8 +84,8 @@ impl OctantTable {
         Phase::from_periods(angle / TAU)
     }
 
-    /// Returns the largest error of linear interpolation between two nodes, in radians. It is h²/8 · 3√3/8 for nodes at
-    /// a distance h.
+    /// Returns the largest error of linear interpolation between two nodes, in radians. For nodes at a distance h, this
+    /// error is h²/8 · 3√3/8.
     pub fn max_error_rad(&self) -> f64 {
         let spacing = 1.0 / (self.0.len() - 1) as f64;
         spacing * spacing / 8.0 * (3.0 * 3.0_f64.sqrt() / 8.0)

@@ -19,7 +19,8 @@ pub struct SecondVectorResult {
     /// Number of pole pairs derived from the movement, rounded. 0 if the shaft has moved by more than an electrical
     /// turn.
     pub pole_pairs: u32,
-    /// Ratio of the actual to the expected movement. It is 1 if correct, and negative if two phases are exchanged.
+    /// Ratio of the actual to the expected movement: 1 if the movement is as expected, and negative if two phases are
+    /// exchanged.
     pub ratio: f64,
 }
 

@@ -87,7 +87,8 @@ enum Direction {
 }
 
 impl AnglePath {
-    /// Number of quarter periods by which an angle must move back for a reversal. Noise moves it back less.
+    /// Number of quarter periods by which an angle must move back for a reversal. Noise moves the angle back by less
+    /// than this.
     const REVERSAL_QUARTERS: i64 = 3;
 
     fn starting_at(first: UnwrappedAngle) -> Self {

@@ -72,8 +72,8 @@ impl Moments {
     /// Adds samples in volts. If one channel is longer, its surplus values are ignored.
     ///
     /// # Errors
-    /// Returns [`FitError::NotFinite`] if a sample is not finite. Whole blocks before that sample have then been added,
-    /// and nothing else.
+    /// Returns [`FitError::NotFinite`] if a sample is not finite. In this case, only the whole blocks before that
+    /// sample have been added.
     pub fn add_samples(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
         let length = sine.len().min(cosine.len());
         let (sine, cosine) = (sine.get(..length).unwrap_or_default(), cosine.get(..length).unwrap_or_default());

@@ -33,7 +33,7 @@ impl Motion {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
-    /// Resets the averages. The next position is then not connected with the previous one.
+    /// Resets the averages, so that the next position is not related to the previous one.
     pub fn reset(&mut self) {
         self.recent.clear();
     }

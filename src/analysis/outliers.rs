@@ -38,7 +38,7 @@ const MAX_FITS: usize = 4;
 /// Ratio of a normal distribution's standard deviation to the median of its distances from zero.
 const NORMAL_DEVIATION_RATIO: f64 = 1.4826;
 /// Maximum median distance from an upright ellipse, as a fraction of its amplitude. Above it, the samples lie on no
-/// ellipse. A cloud of samples has 0.3.
+/// ellipse. A cloud of samples has a median distance of 0.3.
 const MAX_MEDIAN_DISTANCE: f64 = 0.15;
 /// A channel is constant if its range is below this fraction of the other channel's range.
 const DEAD_CHANNEL_FRACTION: f64 = 0.05;

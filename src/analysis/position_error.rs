@@ -47,7 +47,7 @@ pub const POINTS: usize = 720;
 const TERMS: usize = 2 * HARMONICS;
 /// Number of periods in a segment. Each segment is fitted with its own motion.
 const SEGMENT_PERIODS: f64 = 4.0;
-/// Maximum number of segments examined. They are distributed over the capture.
+/// Maximum number of segments examined, distributed over the capture.
 const SEGMENTS: usize = 32;
 /// Maximum number of samples per segment. A segment with more samples is thinned out.
 const SEGMENT_SAMPLES: usize = 4096;
@@ -71,8 +71,8 @@ pub struct Samples<'a> {
 }
 
 impl PositionError {
-    /// Calculates the error of samples relative to their ellipse. The ranges in `left_out` are excluded. They are
-    /// ordered and do not overlap.
+    /// Calculates the error of samples relative to their ellipse. The samples in the ranges of `left_out` are excluded.
+    /// The ranges must be ordered and must not overlap.
     pub(super) fn from_samples(
         samples: Samples<'_>,
         left_out: &[Range<usize>],

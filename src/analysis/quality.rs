@@ -86,8 +86,8 @@ pub enum QualityFinding {
     OffsetCosine(f64),
     GainRatio(f64),
     PhaseError(f64),
-    /// Rms distance of the samples from the ellipse, relative to the amplitude. It is caused by noise, interference and
-    /// harmonics.
+    /// Rms distance of the samples from the ellipse, relative to the amplitude. Noise, interference and harmonics cause
+    /// this distance.
     Residual(f64),
 }
 

@@ -14,8 +14,8 @@ pub const MIN_OCTANTS: u32 = 6;
 /// one point has 0.4 or more, while a residual of 0.02 is already a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
-/// Maximum median angle between samples in degrees. Above it, the direction is uncertain: with fewer than four samples
-/// per period, noise or an uneven motion can easily increase it to half a period (U).
+/// Maximum median angle between samples in degrees. Above this angle, the direction is uncertain: with fewer than four
+/// samples per period, noise or a varying speed can easily increase the angle to half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -106,14 +106,15 @@ impl Analysis {
         })
     }
 
-    /// Returns the average number of periods per second over continuous sections. It is negative if the angle falls.
-    /// After a reversal, it is the positive mean of both directions. Returns `None` without times.
+    /// Returns the average number of periods per second over continuous sections. The frequency is negative if the
+    /// angle falls. After a reversal, the result is the positive mean of both directions. Returns `None` without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
-    /// Returns whether there are enough samples per period to track the angle. Only then is the frequency known.
+    /// Returns whether there are enough samples per period to track the angle. The frequency is known only if this is
+    /// the case.
     pub fn is_angle_tracked(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }

@@ -63,7 +63,7 @@ impl Spectrum {
         Ok(Spectrum { spacing_hz: rate_hz / count as f64, amplitudes_v })
     }
 
-    /// Returns the distance between lines in hertz. It is the reciprocal of the duration.
+    /// Returns the distance between lines in hertz, which is the reciprocal of the duration.
     pub fn spacing_hz(&self) -> f64 {
         self.spacing_hz
     }

@@ -15,9 +15,10 @@ pub const STEPS: u64 = 32;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
-    /// Number of periods in the whole range, at least 1. It is the product of periods per revolution and revolutions.
+    /// Number of periods in the whole range, at least 1: the periods per revolution times the number of revolutions.
     pub periods: u64,
-    /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period. It is 0 if unknown.
+    /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period, or 0 if the lead is
+    /// unknown.
     pub offset_steps: f64,
     /// Whether the absolute position refers to the middle of its step instead of the beginning.
     pub half_step: bool,
@@ -100,7 +101,8 @@ impl SynchronisedPosition {
 }
 
 /// Returns the average lead of the absolute position in steps of 1/32 period over at least one turn. Differences are
-/// averaged as angles, for which 31 steps equal −1. Returns `None` without samples, or if they cancel each other out.
+/// averaged as angles, for which 31 steps equal −1. Returns `None` without samples, or if the differences cancel each
+/// other out.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {

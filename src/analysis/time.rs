@@ -26,7 +26,7 @@ impl SampleTime {
         SampleTime(self.0.saturating_add(nanoseconds))
     }
 
-    /// Returns the exact number of nanoseconds since `origin`. It is negative if `origin` is later.
+    /// Returns the exact number of nanoseconds since `origin`, which is negative if `origin` is later.
     pub const fn nanoseconds_since(self, origin: SampleTime) -> i64 {
         self.0.saturating_sub(origin.0)
     }

@@ -34,7 +34,7 @@ impl PositionUnwrapper {
         self.gap = true;
     }
 
-    /// Unwraps the next position word along the shortest path from the previous word. A wrap is then an ordinary step.
+    /// Unwraps the next position word along the shortest path from the previous word. A wrap is thus an ordinary step.
     /// Returns `None` for a word outside the range, which is treated as a gap.
     pub fn next(&mut self, word: i64) -> Option<UnwrappedPosition> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {

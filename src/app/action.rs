@@ -26,7 +26,7 @@ pub enum Action {
     ShowTab(Tab),
     SetTheme(ColorScheme),
     SetLanguage(Language),
-    /// Sets how the logbook names the user.
+    /// Set the form in which the logbook names the user.
     SetUserName(UserName),
     KeepLayout(String),
     /// Open the lower panel, or reduce it to one line.
@@ -36,7 +36,7 @@ pub enum Action {
     /// Store the new size of the window, in points.
     KeepSize(u32, u32),
     Select(SessionId),
-    /// End a session. The user is asked first if it has edits.
+    /// End a session. If the session has edits, the user is asked first.
     CloseSession(SessionId),
     Stop,
     StopMotion,
@@ -63,9 +63,9 @@ pub enum Action {
     /// Ask for a path as text, because the system has no file dialog.
     TypePath(FileQuestion),
     /// Use the path that the user typed. The user is asked before an existing file is replaced. A system dialog asks
-    /// this itself.
+    /// this question itself.
     Typed(FileQuestion, PathBuf),
-    /// Use the file chosen in a system dialog. It may be replaced if it exists.
+    /// Use the file chosen in a system dialog. An existing file may be replaced.
     Chosen(FileQuestion, PathBuf),
     CloseComparison,
     /// Show the entries of the logbook that match a filter.
@@ -73,7 +73,7 @@ pub enum Action {
     /// Add a note about a device to the logbook.
     AddNote(DeviceKey, String),
     Recorder(RecorderOwner, recorder::RecorderAction),
-    /// Clear a recording. The user is asked first if it is long.
+    /// Clear a recording. If the recording is long, the user is asked first.
     AskForget(RecorderOwner),
     /// Ask for the name of the file to which a recording is exported as a table.
     AskTable {
@@ -84,7 +84,7 @@ pub enum Action {
     AskPicture(Picture),
     /// Ask for the file name of the trace of a session.
     AskTrace(SessionId),
-    /// Report that a picture was requested of a plot that is not completely visible.
+    /// Report that no picture was taken, because the plot is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
     /// Execute a command that every kind of device supports, for the given session, which may no longer be the one
@@ -105,7 +105,7 @@ pub enum Action {
 pub enum ReviewAction {
     /// Execute the plan with this id, which the user has reviewed.
     Write(PlanId),
-    /// Grant or withdraw a permit. The plan is then made again.
+    /// Grant or withdraw a permission for the write. The plan is created again with the new choice.
     Toggle(Permit),
     /// Write even though the device has reached its limit of write cycles.
     ForceWear(bool),
@@ -164,7 +164,7 @@ pub enum TaskResult {
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
-    /// The logbook was searched. The number is that of the search.
+    /// The logbook was searched. The number identifies the search.
     LogbookRead(u64, Result<LogbookMatches, LogbookError>),
     NoteAdded(Result<(), LogbookError>),
     /// Reading a backup has succeeded or failed.

@@ -20,7 +20,7 @@ pub trait DriveStopHandle: Send {
     /// `false` as soon as the drives have stopped and the connection is closed.
     fn is_connected(&self) -> bool;
 
-    /// Returns whether the session has ended. This program can then no longer move its drives.
+    /// Returns whether the session has ended, after which this program can no longer move its drives.
     fn is_orphaned(&self) -> bool;
 }
 
@@ -34,7 +34,7 @@ type SessionStopHandles = (Box<dyn DriveStopHandle>, WorkerStopHandle);
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<SessionStopHandles>>,
-    /// Whether the drives have been released. No motion can be started after that.
+    /// Whether the drives have been released. From then on, no motion can be started.
     released: AtomicBool,
     closing: AtomicBool,
 }
@@ -43,7 +43,7 @@ struct Shared {
 const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 impl DriveStopHandles {
-    /// Maximum time for stopping the drives and closing the connections. The program then ends in any case.
+    /// Maximum time for stopping the drives and closing the connections. After this time, the program ends in any case.
     pub const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(1);
 
     pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stop_handle: WorkerStopHandle) {
@@ -74,7 +74,7 @@ impl DriveStopHandles {
         !self.lock_sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
-    /// Waits until no drive is connected, for at most `patience`. Returns whether this is the case.
+    /// Waits until no drive is connected, for at most `patience`. Returns whether no drive is connected.
     pub fn wait_for_disconnect(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
@@ -83,7 +83,8 @@ impl DriveStopHandles {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Waits until the window has begun to close, for at most `patience`. Returns whether it has.
+    /// Waits until the window has begun to close, for at most `patience`. Returns whether the window has begun to
+    /// close.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

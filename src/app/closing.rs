@@ -18,7 +18,7 @@ impl Studio {
         self.services.brakes.clone()
     }
 
-    /// Returns whether the window is closing. No more questions are asked then.
+    /// Returns whether the window is closing. A closing window asks no more questions.
     pub fn is_closing(&self) -> bool {
         self.closing
     }

@@ -82,7 +82,7 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    /// Rejects saving or writing a profile with a newer schema. Returns `true` if it was rejected.
+    /// Rejects saving or writing a profile with a newer schema. Returns whether the request was rejected.
     pub(crate) fn refuse_if_read_only(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| read_only_reason(device.source()));
         let Some(refusal) = refusal else { return false };

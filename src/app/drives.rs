@@ -70,7 +70,7 @@ pub trait StoredDriveData {
     /// Returns the name of the entry in the settings, or `None` before the device has been read.
     fn storage_name(&self) -> Option<String>;
 
-    /// Adopts the stored data about the drives. Returns the data to store next, if they differ.
+    /// Adopts the stored data about the drives. Returns the data to store next, if they differ from the stored data.
     ///
     /// All data are adopted once per device. After that, only limits marked elsewhere are adopted.
     fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
@@ -81,7 +81,7 @@ pub trait StoredDriveData {
     /// Returns whether the settings have been read since control was taken.
     fn read_state(&self) -> SettingsReadState;
 
-    /// Records whether the settings have been read since control was taken. Nothing moves until they have.
+    /// Records whether the settings have been read since control was taken. No drive moves until they have been read.
     fn set_read_state(&mut self, marks: SettingsReadState);
 }
 
@@ -173,7 +173,7 @@ fn apply_changes<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &
 mod tests {
     use super::*;
 
-    /// Issue 21.11: limits confirmed here are locked again by a new mark, but not by the confirmed mark.
+    /// Limits confirmed here are locked again by a new mark, but not by the confirmed mark.
     #[test]
     fn marks_are_compared_by_number() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();

@@ -112,7 +112,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Table { owner, visible, suggested });
     }
 
-    /// Reports that a picture was requested of a plot that is not completely visible.
+    /// Reports that no picture was taken, because the plot is not completely visible.
     pub(super) fn notify_picture_truncated(&mut self) {
         self.services.notify(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }

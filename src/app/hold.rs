@@ -24,8 +24,8 @@ pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether a motion that this button does not hold is in progress or was stopped just now. A key press then stops
-    /// it.
+    /// Whether a motion that this button does not hold is in progress or was stopped just now. If so, a key press is a
+    /// request to stop.
     pub moving: bool,
 }
 
@@ -55,7 +55,7 @@ pub enum HoldInput {
     Finger,
 }
 
-/// How the input of a frame affects a held button.
+/// Effect of the input of a frame on a held button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
     Press,
@@ -177,8 +177,8 @@ impl HoldState {
         self.holder == Some(HoldSource::Pointer)
     }
 
-    /// Returns whether the button has the keyboard focus but no key has been seen up yet. The first press is then
-    /// ignored.
+    /// Returns whether the button has the keyboard focus but no key has been seen up yet. In this state, the first
+    /// press is ignored.
     pub fn is_waiting_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

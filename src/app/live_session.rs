@@ -124,7 +124,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.stop_handle()
     }
 
-    /// Returns the worker. It must be closed where waiting for its end blocks nothing.
+    /// Returns the worker. Closing the worker can take time, so it must be done where waiting blocks nothing else.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -34,7 +34,7 @@ pub struct LogbookPage {
 pub struct LogbookMatches {
     /// Entries, newest first.
     pub entries: Vec<Entry>,
-    /// Whether there are older entries that match.
+    /// Whether the logbook contains older matching entries that are not listed.
     pub has_more: bool,
     /// Devices that have entries, in the order of their kinds and serial numbers.
     pub devices: Vec<DeviceKey>,
@@ -83,7 +83,7 @@ impl LogbookMatches {
 }
 
 impl Studio {
-    /// Returns the name of the bus for a kind of device, or `None` if this program does not have the kind.
+    /// Returns the name of the bus for a kind of device, or `None` if this program does not support that kind.
     pub fn bus(&self, kind: &str) -> Option<&'static str> {
         self.services.world.kinds.for_profile(kind).map(|kind| kind.bus_name())
     }

@@ -12,7 +12,7 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Returns whether drives are connected in any session. STOP must then be reachable.
+    /// Returns whether drives are connected in any session. If so, STOP must be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
@@ -32,13 +32,13 @@ impl Studio {
         self.motion_controls().any(MotionControl::is_motion_active)
     }
 
-    /// Returns whether drives are under control. Their values then arrive without a request.
+    /// Returns whether drives are under control. If so, their values arrive without a request.
     pub fn has_control(&self) -> bool {
         self.motion_controls().any(MotionControl::has_control)
     }
 
-    /// Returns whether STOP has an effect on drives. This is so if this window controls a drive, or has requested a
-    /// motion that has not ended. STOP cannot stop the motion of another controller.
+    /// Returns whether STOP has an effect on drives. This is the case if this window controls a drive, or has requested
+    /// a motion that has not ended. STOP cannot stop the motion of another controller.
     pub fn can_stop_motion(&self) -> bool {
         self.has_control() || self.is_turned_by_hand()
     }

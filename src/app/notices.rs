@@ -17,8 +17,8 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns the remaining display time of a notice that has been displayed for `shown`. Returns `None` if it is
-    /// displayed until the user closes it.
+    /// Returns the remaining display time of a notice that has been displayed for `shown`. Returns `None` if the notice
+    /// is displayed until the user closes it.
     pub fn display_time(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
@@ -39,7 +39,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Returns a prefix with the names of the device and the part. It is empty if there are none.
+    /// Returns a prefix with the names of the device and the part, or an empty string if the notice names neither.
     pub fn device_prefix(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(Severity::Warning.display_time(Duration::from_secs(21)), Some(Duration::ZERO));
     }
 
-    /// Issue 22.28: saving a file removes the errors about that file and no others.
+    /// Saving a file removes the errors about that file and no others.
     #[test]
     fn saving_a_file_settles_its_own_errors() {
         let mut log = NoticeLog::default();

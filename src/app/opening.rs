@@ -101,7 +101,7 @@ impl Studio {
 
     /// Releases the session on a connection for another use, unless it is writing.
     ///
-    /// If its link is still being opened, a channel is returned that closes when this has ended.
+    /// If the link of the session is still being opened, the returned channel closes when the attempt has ended.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -149,7 +149,7 @@ impl Studio {
         }
     }
 
-    /// Starts an attempt to open a link for a session. Results of earlier attempts are then ignored.
+    /// Starts an attempt to open a link for a session. From then on, results of earlier attempts are ignored.
     fn start_open_attempt(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.next_number();
         self.release_tool_connections(&url);

@@ -22,7 +22,8 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Creates a picture from RGB pixels. Returns `None` if the number of bytes does not match the size, or if it is 0.
+    /// Creates a picture from RGB pixels. Returns `None` if the number of bytes does not match the size, or if the size
+    /// is zero.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
         let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
@@ -32,7 +33,7 @@ impl Picture {
     /// Saves the picture as PNG.
     ///
     /// # Errors
-    /// Returns the error if the file cannot be written. An existing file then stays unchanged.
+    /// Returns the error if the file cannot be written. In this case, an existing file stays unchanged.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),

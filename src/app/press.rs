@@ -23,12 +23,12 @@ const MIN_RELEASE_S: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
-    /// The state of the key is unknown. It may be held.
+    /// The state of the key is unknown. The key may be held down.
     #[default]
     Nothing,
     Down,
-    /// At this time, the key was released or another key was pressed. The key has not been up for long enough since
-    /// then.
+    /// Time at which the key was released or another key was pressed. Since then, the key has not been up for long
+    /// enough.
     Released(f64),
     Up,
 }
@@ -98,7 +98,7 @@ impl KeyStates {
         next
     }
 
-    /// Returns whether the key was seen up. Its next press is then fresh, unless it follows immediately.
+    /// Returns whether the key was seen up. If so, the next press is fresh, unless it follows immediately.
     pub fn is_armed(&self, key: PressKey) -> bool {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }
@@ -135,7 +135,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.2: a press that the toolkit reports as new is not fresh if the key was not seen up before.
+    /// A press that the toolkit reports as new is not fresh if the key was not seen up before.
     #[test]
     fn a_press_is_fresh_only_after_a_release() {
         let mut keys = KeyStates::default();
@@ -158,8 +158,8 @@ mod tests {
         assert!(!keys.is_fresh_press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// Issue 21.2: a release followed immediately by a press is a repetition, in one frame or in two, regardless of the
-    /// time between the frames.
+    /// A release followed immediately by a press is a repetition, in one frame or in two, regardless of the time
+    /// between the frames.
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
@@ -179,8 +179,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.2: a user's press is fresh even if nothing else happened after the release, because a frame was
-    /// requested.
+    /// A user's press is fresh even if nothing else happened after the release, because a frame was requested.
     #[test]
     fn a_users_press_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
@@ -214,7 +213,7 @@ mod tests {
         assert!(!keys.is_fresh_press(Enter), "it is known to be down");
     }
 
-    /// Issue 22.29: Enter typed by a barcode scanner immediately after another key is not fresh.
+    /// Enter typed by a barcode scanner immediately after another key is not fresh.
     #[test]
     fn a_press_right_after_another_key_is_not_fresh() {
         let mut keys = KeyStates::ALL_UP;

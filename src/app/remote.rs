@@ -1,7 +1,7 @@
 //! Remote sessions: the window is shown and operated on another computer.
 
-/// Returns whether the user operates this computer over a remote desktop. The release of a button may then arrive late,
-/// and the window shows the button as pressed until then.
+/// Returns whether the user operates this computer over a remote desktop. Over a remote desktop, the release of a
+/// button may arrive late. Until it arrives, the window shows the button as pressed.
 #[cfg(windows)]
 pub(super) fn is_remote_session() -> bool {
     // The variable is that of the logon and may be outdated: a session can be continued from another computer.

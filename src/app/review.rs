@@ -21,7 +21,7 @@ pub struct Review<K: Reviewable> {
     /// Whether the change was made for another type of device.
     pub is_for_other_type: bool,
     pub(crate) change: K::Change,
-    /// The relevant permits, and whether they are granted.
+    /// Permissions that affect the plan, each with its present state.
     permits: Vec<PermitToggle>,
 }
 
@@ -98,7 +98,7 @@ impl<K: Reviewable> Review<K> {
         Some(change)
     }
 
-    /// Returns the permits to offer: those that are granted, and those that would change the plan.
+    /// Returns the permissions to offer to the user: those already granted, and those that would change the plan.
     fn permit_toggles(&self) -> Vec<PermitToggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
@@ -141,7 +141,7 @@ impl OperationTexts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
-    /// Label of the answer that declines the permit.
+    /// Label of the answer that denies the permission.
     pub no: Text,
     pub yes: Text,
     pub permit: Permit,
@@ -230,7 +230,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     type Written;
 
     fn change_title(change: &Self::Change) -> Text;
-    /// Returns the flag for a permit in a change, or `None` if the permit does not apply.
+    /// Returns the flag of a change that grants a permission, or `None` if the permission does not apply to the change.
     fn permit_flag(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
     /// Returns whether some values differ but are not written, because they depend on the mounting.

@@ -20,11 +20,11 @@ use crate::link::{LinkError, PortInfo};
 use crate::store::{BaseFolders, Store};
 use crate::worker::JobId;
 
-/// Access to everything outside the studio. Tests replace it.
+/// Access to everything outside the application state, such as files, serial ports and the time. Tests replace it.
 #[derive(Clone)]
 pub struct StudioEnvironment {
     pub store: Store,
-    /// Values for kinds of devices from outside.
+    /// Values supplied from outside for kinds of devices.
     pub given: TypeMap,
     pub kinds: KindRegistry,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
@@ -139,7 +139,7 @@ impl Services {
         self.log.add(Notice { part, ..self.create_notice(severity, texts, about) });
     }
 
-    /// Adds a notice to the log. It is not displayed, because the window already shows it elsewhere.
+    /// Adds a notice to the log without displaying it, because the window already shows the same text elsewhere.
     pub(crate) fn log_only(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add_to_log(self.create_notice(severity, texts, about));
     }

@@ -34,7 +34,7 @@ pub struct Settings {
     pub size: Option<(u32, u32)>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub lower_open: bool,
-    /// Whether the user has stopped live values. They then no longer start automatically.
+    /// Whether the user has stopped live values. If so, they no longer start automatically.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub live_stopped: bool,
     /// Whether the Live panel shows values without a plot.
@@ -327,8 +327,7 @@ mod tests {
         Settings::parse(&format!("(drives: {{\"HUB-4 7\": ({drives})}})")).unwrap()
     }
 
-    /// Issue 21.11: the content written by another window is merged with the changes from the known content that were
-    /// made here.
+    /// The content written by another window is merged with the changes from the known content that were made here.
     #[test]
     fn changes_are_merged_and_marks_only_tighten() {
         let cases = [
@@ -383,7 +382,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: unconfirmed limits stay locked even if other parts of the entry cannot be read.
+    /// Unconfirmed limits stay locked even if other parts of the entry cannot be read.
     #[test]
     fn marks_are_read_from_a_broken_entry() {
         let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
@@ -391,7 +390,7 @@ mod tests {
         assert_eq!(Settings::parse_partial(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
     }
 
-    /// Issue 21.11: links used by other windows in the meantime are kept, after those that were used here.
+    /// Links used by other windows in the meantime are kept, after those that were used here.
     #[test]
     fn links_of_two_windows_are_merged() {
         let of = |links: &[&str]| {
@@ -413,7 +412,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: a settings file from an older version is read although it has no marks.
+    /// A settings file from an older version is read although it has no marks.
     #[test]
     fn settings_without_marks_are_read() {
         let before = "(drives: {\"HUB-4 7\": (pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1])})";

@@ -32,7 +32,7 @@ pub(crate) struct SettingsStore {
     known: Settings,
     failed: Option<Settings>,
     writing: Option<Settings>,
-    /// Whether the file has been read, or copied because it is invalid. It is not overwritten before that.
+    /// Whether the file has been read, or copied because it is invalid. Before that, the file is not overwritten.
     may_write: bool,
     is_failure_reported: bool,
     reading_since: Option<Zoned>,

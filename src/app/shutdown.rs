@@ -94,8 +94,8 @@ pub(crate) fn is_same_connection(one: &LinkUrl, other: &LinkUrl) -> bool {
 }
 
 impl Services {
-    /// Releases the thread of a session. When it ends, `turn` is dropped, and the next user of the connection can
-    /// continue.
+    /// Releases the thread of a session. When the thread ends, `turn` is dropped, and the next user of the connection
+    /// can continue.
     pub(crate) fn release_worker<D: Kind>(
         &mut self,
         worker: Worker<D>,

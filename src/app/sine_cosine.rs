@@ -43,6 +43,7 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Removes and returns the requested reading, or the reason why it failed. Returns `None` if there is neither.
+    /// Removes and returns the requested reading, or the reason why it failed. Returns `None` if there is no new
+    /// result.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

@@ -44,7 +44,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Creates a studio with the stored settings. `wake` is called when there are new events.
+    /// Creates the application state from the stored settings. `wake` is called when there are new events.
     pub fn new(world: StudioEnvironment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
@@ -252,7 +252,7 @@ impl Studio {
         }
     }
 
-    /// Creates an unsaved profile, if the kind of device supports that.
+    /// Creates an unsaved profile, if the kind of device supports unsaved profiles.
     fn new_profile(&mut self, tab: Tab) {
         let Some(kind) = self.services.world.kinds.kind_for_tab(tab) else { return };
         let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested_path()).collect();
@@ -286,7 +286,7 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).any(device) || self.has_active_search() || self.can_stop_tools()
     }
 
-    /// Returns whether live values are arriving. The window must then be drawn continuously.
+    /// Returns whether live values are arriving. If so, the window must be drawn continuously.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(|device| device.is_polling()) || self.has_control()
     }

@@ -22,7 +22,7 @@ impl Tab {
     }
 }
 
-/// The default is the first tab. It is used if the settings do not name one.
+/// The default is the first tab, which is used if the settings do not name a tab.
 impl Default for Tab {
     fn default() -> Self {
         Tab("First")

@@ -18,7 +18,7 @@ pub struct TaskRunner {
     wake: Wake,
 }
 
-/// A mailbox that passes actions to the studio from any thread.
+/// A mailbox that accepts actions for the application state from any thread.
 #[derive(Clone)]
 pub struct ActionMailbox {
     sender: Sender<Action>,

@@ -14,7 +14,7 @@ pub enum Language {
     German,
 }
 
-/// A text of a catalogue with its arguments. It does not depend on the language.
+/// A text of a catalogue with its arguments, independent of the language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     catalogue: &'static Catalogue,
@@ -69,7 +69,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// English text for the command line. It is empty if it is the same as in the window.
+    /// English text for the command line, or an empty string if the text is the same as in the window.
     #[serde(default)]
     terminal: String,
 }
@@ -149,7 +149,7 @@ impl Text {
         self.text_for(Output::Window(language))
     }
 
-    /// Returns the text for the command line. It is in English and contains hints for the command line.
+    /// Returns the text for the command line, which is in English and contains hints for the command line.
     pub fn terminal_text(&self) -> String {
         self.text_for(Output::Terminal)
     }

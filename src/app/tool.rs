@@ -54,7 +54,7 @@ pub trait Tool: Any {
     /// Returns the recorder of the tool, mutably.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Adopts a reading that the device has taken at standstill.
+    /// Adopts the next reading of a source, if any. The reading was taken at standstill.
     fn adopt_reading(&mut self, source: &mut dyn SineCosineSource);
 
     /// Releases a connection, because it is needed elsewhere.
@@ -67,7 +67,7 @@ pub trait Tool: Any {
     fn open(&mut self, path: PathBuf, services: &mut Services);
 }
 
-/// An action of a tool. It can be passed on as a payload.
+/// An action of a tool, which can be passed on as a payload.
 pub trait ToolAction: Any + Send {
     /// Tab in which the tool is shown.
     const TAB: Tab;
@@ -94,7 +94,7 @@ pub struct ToolContext<'a> {
 }
 
 impl ToolContext<'_> {
-    /// Returns the shared services of the studio.
+    /// Returns the services shared by all devices and tools.
     pub fn services(&mut self) -> &mut Services {
         &mut self.studio.services
     }

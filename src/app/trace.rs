@@ -144,7 +144,7 @@ pub struct TraceLog {
 }
 
 impl TraceLog {
-    /// Maximum memory of the log in bytes. It is enough for about 40,000 readings of a position.
+    /// Maximum memory of the log in bytes, enough for about 40,000 readings of a position.
     const MAX_BYTES: usize = 16 << 20;
 
     /// Adds frames with their explanations. `dropped` frames arrived too fast to be included.

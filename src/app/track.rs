@@ -20,7 +20,7 @@ use follower::PositionTracker;
 pub use meaning::PositionScales;
 pub use watchable::{Watchable, WatchedValue};
 
-/// Maximum number of positions. It is enough for more than a day at the highest rate of a serial line.
+/// Maximum number of positions, enough for more than a day at the highest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
 /// Maximum time in nanoseconds between two positions that are joined by a line. A longer line would suggest a motion
 /// that was not observed.

@@ -82,7 +82,7 @@ impl CommandId {
 
 /// A kind of device on the command line. A command that the kind does not support is reported as incorrect usage.
 pub trait DeviceCommands: ProfileCommands {
-    /// Returns the name of the kind on the command line and in profiles.
+    /// Returns the name of this kind of device on the command line and in profiles.
     fn name(&self) -> &'static str;
 
     /// Returns a one-sentence description for the help text.
@@ -98,12 +98,13 @@ pub trait DeviceCommands: ProfileCommands {
         None
     }
 
-    /// Returns the options that the kind adds to a command. Several kinds may share an option.
+    /// Returns the options that this kind of device adds to a command. Several kinds may share an option.
     fn options(&self, _command: CommandId) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns the options that the kind adds to every command and to the window. Several kinds may share an option.
+    /// Returns the options that this kind of device adds to every command and to the window. Several kinds may share an
+    /// option.
     fn common_options(&self) -> Vec<Arg> {
         Vec::new()
     }
@@ -121,7 +122,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the actions of `do` that combine several other actions. They are listed last.
+    /// Returns the actions of `do` that combine several other actions. The help lists these actions last.
     fn combined_actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
@@ -169,11 +170,11 @@ pub trait ProfileCommands: Sync {
         vec![item.clone()]
     }
 
-    /// Removes the values from the backup of a write that the write did not change, if the backup contains more than
-    /// the surroundings of the write.
+    /// Removes the values that a write did not change from its backup, if the backup contains more than the
+    /// surroundings of the write.
     fn keep_items(&self, _backup: &mut Body, _items: &[ChangedItem]) {}
 
-    /// Returns what to do instead, if a restore of the backup cannot write back an item.
+    /// Returns an instruction for the user if a restore of the backup cannot write back an item.
     fn instead_of_undo(&self, _item: &ChangedItem, _backup: &Body) -> Option<String> {
         None
     }

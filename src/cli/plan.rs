@@ -37,7 +37,7 @@ pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
     pub new: Option<String>,
-    /// Number of write cycles. It is zero for an operation that is saved together with others.
+    /// Number of write cycles, zero for an operation that is saved together with others.
     pub write_cycles: u64,
 }
 

@@ -132,7 +132,7 @@ pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
 }
 
 /// Writes the plan that restores a profile, or only prints it if this is a dry run. If the restore undoes a write, the
-/// plan is refused when values have changed since.
+/// plan is rejected if values have changed since that write.
 pub fn write_restore<P: PlannedWrite>(
     common: &CommonArgs,
     output: &Output,

@@ -52,7 +52,7 @@ pub trait CliDevice: Kind {
         None
     }
 
-    /// Returns the reply times. `None` if they are not measured or the link has no time-out.
+    /// Returns the reply times. Returns `None` if reply times are not measured or the link has no time-out.
     fn reply_times(_session: &Session<Self>) -> Option<ReplyTiming> {
         None
     }

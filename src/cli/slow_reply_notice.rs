@@ -26,7 +26,7 @@ pub(super) struct SlowReplyNotice {
 }
 
 impl SlowReplyNotice {
-    /// Starts to measure the time. Without a pace, a device is never reported as slow.
+    /// Starts to measure the time. If `pace` is `None`, the device is never reported as slow.
     pub(super) fn start(pace: Option<ReplyTiming>) -> Self {
         SlowReplyNotice { pace, look: Instant::now() + FIRST_NOTICE_DELAY }
     }
@@ -50,7 +50,8 @@ impl SlowReplyNotice {
 }
 
 impl ReplyTiming {
-    /// Returns the message, which explains how to allow more time if that may help.
+    /// Returns a message if the device has not replied yet or replies slowly. If replies may exceed the time limit, the
+    /// message suggests a longer time limit or a check of the network.
     fn message(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {

@@ -30,7 +30,7 @@ pub(crate) struct UndoneWrite {
 #[derive(Clone)]
 struct KeptItem {
     item: String,
-    /// What to do instead.
+    /// Instruction for the user.
     instead: String,
 }
 
@@ -63,7 +63,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
     kind.restore(common, output, &restore, profile)
 }
 
-/// Refuses an entry that is not a write of single values.
+/// Rejects an entry that is not a write of single values.
 fn check_kind(entry: &Entry) -> Result<()> {
     let (id, kind) = (entry.id, entry.device.kind.as_str());
     let why = match entry.kind {
@@ -99,7 +99,7 @@ fn check_kind(entry: &Entry) -> Result<()> {
 }
 
 impl UndoneWrite {
-    /// Refuses another device, and values that have changed since the write.
+    /// Rejects the undo on a different device, or if values have changed since the write.
     fn check<P: PlannedWrite>(&self, common: &CommonArgs, prepared: &P) -> Result<()> {
         let (id, of) = (self.entry, &self.device);
         if let Some(found) = common.log.device().filter(|found| found != of) {
@@ -146,7 +146,7 @@ fn describe(changed: &ChangedSince) -> String {
 }
 
 impl Restore {
-    /// Refuses to undo a write if the device is another one, or if its values have changed since. Does nothing for a
+    /// Rejects the undo of a write on a different device, or if values have changed since the write. Does nothing for a
     /// restore of a profile.
     ///
     /// # Errors

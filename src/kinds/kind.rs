@@ -20,7 +20,7 @@ pub struct ToolTab {
     pub view: &'static dyn ToolView,
 }
 
-/// The device kinds and tools that make up the program. The studio, the window and the command line use them.
+/// The device kinds and tools that make up the program, in the lists that the window and the command line use.
 #[derive(Clone, Copy)]
 pub struct Program {
     pub studio: KindRegistry,

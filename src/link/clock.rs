@@ -14,7 +14,7 @@ pub trait Clock: Send + Sync {
     fn sleep_until(&self, moment: Moment);
 }
 
-/// The monotonic clock of the computer. It starts at zero when it is created.
+/// The monotonic clock of the computer, counted from the creation of this value.
 #[derive(Debug)]
 pub struct RealClock(Instant);
 

@@ -112,8 +112,7 @@ impl<'a> SerialLine<'a> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Begins an exchange and skips bytes that arrived earlier. If there are any, the line must then be silent for
-    /// `quiet`.
+    /// Begins an exchange and skips bytes that arrived earlier. After such bytes, the line must be silent for `quiet`.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels or the line stays busy.

@@ -62,8 +62,8 @@ pub trait ByteLink: Send {
     /// Returns an error if the connection was lost or the format cannot be set.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
-    /// Returns whether [`set_format`](Self::set_format) has an effect. It has none on a device server, which uses its
-    /// configured format. A reply through such a server does not confirm the baud rate and parity.
+    /// Returns whether [`set_format`](Self::set_format) has an effect. The call has no effect on a device server, which
+    /// uses its configured format. A reply through such a server does not confirm the baud rate and parity.
     fn can_set_format(&self) -> bool {
         true
     }

@@ -58,8 +58,8 @@ impl Trace {
     }
 
     /// Reports a frame to all watchers. The time of a reply is calculated from the duration of its bytes. If a device
-    /// server or a pseudo-terminal transfers all bytes at once, the result may be earlier than the request. The time of
-    /// the request is then used.
+    /// server or a pseudo-terminal transfers all bytes at once, the result may be earlier than the request. In this
+    /// case, the time of the request is used.
     pub fn record_frame(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
         if bytes.is_empty() {
             return;

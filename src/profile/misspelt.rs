@@ -7,7 +7,7 @@ use super::{ProfileError, SCHEMA};
 /// State shared by the structures of a file while it is being read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// Schema version of the file if it is newer than supported. Unknown entries are then kept.
+    /// Schema version of the file, if newer than supported. Unknown entries of such a file are kept.
     newer: Cell<Option<u32>>,
     beyond: RefCell<Vec<String>>,
     /// Misspelt name that may explain an error about a missing entry.

@@ -9,7 +9,7 @@ use crate::expected::AllowedValues;
 /// A mark on a value that is valid only for one device on one machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
-    /// Marked item. It is always writable.
+    /// Marked item, which is always writable.
     pub item: Item,
     /// Meaning of the item.
     pub meaning: String,

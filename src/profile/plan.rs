@@ -5,7 +5,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// A planned write for review by the user. Only the operations in the plan are executed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
-    /// The values on which the plan is based. They are read again before the first operation and must be unchanged.
+    /// The values on which the plan is based. Before the first operation, these values are read again and must be
+    /// unchanged.
     pub base: Base,
     /// Operations in order of execution.
     pub ops: Vec<Op>,

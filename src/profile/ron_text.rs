@@ -13,7 +13,7 @@ use super::misspelt::{Misspelling, Reading, edit_distance};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::AllowedValues;
 
-/// Unknown entries by name. They were added by the user or belong to a newer schema.
+/// Unknown entries by name, which were added by the user or belong to a newer schema.
 pub type UnknownValues = BTreeMap<String, Value>;
 
 /// Name of the structure that holds the user's own entries.
@@ -50,7 +50,7 @@ impl Entries {
         Ok(Entries { path: path.to_owned(), entries, missed: Vec::new(), reading: reading.clone() })
     }
 
-    /// Removes and returns an entry. If it is missing, its name is recorded.
+    /// Removes and returns an entry. If the entry is missing, its name is recorded.
     fn take_value(&mut self, name: &str) -> Option<Value> {
         let value = self.entries.remove(name);
         if value.is_none() {

@@ -16,19 +16,19 @@ struct Change {
     new: Option<String>,
 }
 
-/// A value that is no longer the one that the write has left.
+/// A value that has changed since a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangedSince {
     /// Name of the value.
     pub item: String,
-    /// Value that the write has left. `None` if the item did not exist then.
+    /// Value directly after the write. `None` if the item did not exist.
     pub expected: Option<String>,
     /// Present value. `None` if the item does not exist.
     pub found: Option<String>,
 }
 
 impl ValueChanges {
-    /// Adds up changes in their order. Each item must be a single value.
+    /// Combines changes in the given order. Each item must be a single value.
     pub fn of(items: impl IntoIterator<Item = ChangedItem>) -> Self {
         let mut values: BTreeMap<String, Change> = BTreeMap::new();
         for ChangedItem { item, old, new, .. } in items {

@@ -88,7 +88,7 @@ pub struct ByteTransfer {
 pub struct ReceivedByte {
     /// Data bits.
     pub byte: u8,
-    /// Whether one bit was inverted in transit. The parity is then wrong.
+    /// Whether one bit was inverted in transit, which makes the parity wrong.
     pub flipped: bool,
 }
 
@@ -100,7 +100,7 @@ impl SimulatedFaults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device fails. It then neither replies nor acts.
+    /// Returns the number of frames after which the device fails. A failed device neither replies nor acts.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }

@@ -54,7 +54,7 @@ pub(crate) struct SerialCharacter {
     pub(crate) start: Moment,
     pub(crate) end: Moment,
     pub(crate) byte: u8,
-    /// Whether one bit was inverted in transit. A parity bit is then wrong.
+    /// Whether one bit was inverted in transit, which makes a parity bit wrong.
     pub(crate) flipped: bool,
 }
 

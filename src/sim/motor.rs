@@ -16,8 +16,8 @@ impl Motor {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 
-    /// Returns the speed in revolutions per minute. At a positive speed, the motor turns clockwise and the position
-    /// increases.
+    /// Returns the speed in revolutions per minute. If the speed is positive, the motor turns clockwise and the
+    /// position increases.
     pub fn rpm(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::SeqCst))
     }

@@ -12,7 +12,7 @@ use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::file_names::{LetterCase, safe_name};
 use super::files::{create_folder, write_new};
 
-/// Time format in file names. It is UTC without colons, which Windows forbids.
+/// Time format in file names: UTC without colons, which Windows forbids.
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 

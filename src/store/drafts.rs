@@ -29,7 +29,8 @@ impl Drafts {
     /// Writes a draft to `<device>/<key>.ron`. An earlier draft is replaced.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be created or the file cannot be written. The earlier draft then remains.
+    /// Returns an error if the folder cannot be created or the file cannot be written. In this case, the earlier draft
+    /// remains.
     pub fn save(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
         create_folder(&self.device_folder(device))?;
         write_atomically(&self.draft_path(device, key), text.as_bytes())

@@ -25,8 +25,8 @@ const BYTE_ORDER_MARK: &str = "\u{FEFF}";
 /// (`/dev/stdout`) has no content to protect and is written to directly.
 ///
 /// # Errors
-/// Returns an error if the folder is missing, the target is a folder or write-protected, or the disk is full. The old
-/// content is then unchanged.
+/// Returns an error if the folder is missing, the target is a folder or write-protected, or the disk is full. In this
+/// case, the old content is unchanged.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content)

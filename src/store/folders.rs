@@ -51,7 +51,7 @@ impl BaseFolders {
 mod tests {
     use super::*;
 
-    /// The same rule applies to every path from the user (issue 22.24).
+    /// The same rule applies to every path from the user.
     #[test]
     fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();

@@ -371,7 +371,7 @@ pub(crate) fn split<C>(
     });
 }
 
-/// Draws a dot for the connection. It is filled if connected and hollow otherwise.
+/// Draws a dot for the connection, filled if connected and hollow otherwise.
 pub(crate) fn connection_dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();

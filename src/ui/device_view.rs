@@ -50,11 +50,11 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
 
 /// View of a kind of device, with the types of that kind.
 pub trait TypedDeviceView: Sync + 'static {
-    /// Application state of the device. It is independent of drawing.
+    /// Application state of the device, independent of drawing.
     type Device: DeviceType;
     /// Pages of the device's tab.
     type Page: TabPage;
-    /// Text buffers and selections of one session. They are dropped when a different device replies.
+    /// Text buffers and selections of one session, which are dropped when a different device replies.
     type Memory: Default + 'static;
     /// The form that edits a link to this device.
     type ConnectForm: TypedConnectForm;
@@ -62,8 +62,8 @@ pub trait TypedDeviceView: Sync + 'static {
     /// Whether the undo and redo keys act on the device's edits. `false` if an editor handles these keys.
     const HAS_UNDO_KEYS: bool;
 
-    /// Returns the serial number that distinguishes a device from others of its kind. Returns `None` if it is unknown
-    /// or irrelevant.
+    /// Returns the serial number that distinguishes a device from others of its kind. Returns `None` if the number is
+    /// unknown or irrelevant.
     fn serial_number(_device: &Self::Device) -> Option<&str> {
         None
     }

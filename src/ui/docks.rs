@@ -101,7 +101,7 @@ impl Docks {
         }
     }
 
-    /// Returns the tiles that contain only the given panes, even if they were dragged elsewhere.
+    /// Returns the tiles that contain only the given panes, even if the tiles were dragged elsewhere.
     fn tiles_of(&self, panes: &[Pane]) -> Vec<TileId> {
         let mut tiles = Vec::new();
         if let Some(root) = self.tree.root() {

@@ -72,7 +72,7 @@ pub fn edit_bar_ui(
     });
 }
 
-/// Draws the number of edits. The label is left out if it does not fit.
+/// Draws the number of edits. A label that does not fit is left out.
 fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());

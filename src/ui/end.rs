@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::app::{Action, ActionMailbox, DriveStopHandles, Studio};
 
 const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
-/// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
+/// Exit status after a termination signal: 128 plus 15, the number of SIGTERM.
 const TERMINATED_STATUS: i32 = 143;
 
 /// Guard that releases the drives when its thread ends, or when that thread ends the program.

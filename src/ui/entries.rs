@@ -69,8 +69,8 @@ pub(crate) fn labelled_entry(
     entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 
-/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then.
-/// If `take` rejects the text, the text stays in the entry, and the reason is drawn below it.
+/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. Until the text takes effect,
+/// `draft` holds it. If `take` rejects the text, the text stays in the entry, and the reason is drawn below it.
 pub fn committed_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,

@@ -14,7 +14,7 @@ const MEASURING_TIME: Duration = Duration::from_secs(1);
 
 pub(super) struct LivePace {
     interval: Duration,
-    /// Time of the last measurement, and the processor time used until then.
+    /// Time of the last measurement, and the processor time used up to that measurement.
     last: Option<(Duration, Duration)>,
 }
 

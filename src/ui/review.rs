@@ -288,7 +288,7 @@ fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Questi
     });
 }
 
-/// Draws the permits and the option to write to a worn device.
+/// Draws the permissions that the user can grant, and the option to write to a worn device.
 fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
         ui.add_space(theme.space.inside);

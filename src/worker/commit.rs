@@ -94,7 +94,7 @@ pub trait PlannedWrite {
     /// Returns the kind of the logbook entry.
     fn entry_kind(&self) -> EntryKind;
 
-    /// Returns the values before the change, in a text from which they can be restored.
+    /// Returns the values before the change, as a text from which they can be restored.
     fn before_image(&self) -> String;
 
     /// Returns the plan to write.

@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use crate::link::CancelToken;
 
-/// Maximum interval. A longer interval is shortened to it.
+/// Maximum interval of polling and of watched values. Longer intervals are reduced to this one.
 const MAX_INTERVAL: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The live requests of a session, shared by all clones.

@@ -104,7 +104,8 @@ pub trait Device: Send + 'static {
     /// Requests a watched value. Messages from the device during this time are part of the sample.
     ///
     /// # Errors
-    /// Returns an error if the device does not answer, which ends polling. A rejection is also an answer.
+    /// Returns an error if the device does not answer, which ends polling. A device that rejects the request has
+    /// answered.
     fn read_watched(
         &mut self,
         context: &mut SessionContext,
@@ -193,7 +194,7 @@ pub enum Event<D: Device> {
     Progress(JobId, Progress<D::JobStep>),
     /// A message from the device during a job or at its end.
     Remark(D::DeviceMessage),
-    /// The job has finished, with its result.
+    /// The job has finished. Contains its result.
     Finished(JobId, Box<D::Output>),
     /// The job failed.
     Failed(JobId, Box<D::Error>),

@@ -55,7 +55,7 @@ impl<T> Ring<T> {
         drop(oldest);
     }
 
-    /// Takes all entries, oldest first. The number is that of the entries dropped since the previous call.
+    /// Takes all entries, oldest first. Also returns the number of entries dropped since the previous call.
     pub fn drain(&self) -> (Vec<T>, u64) {
         let mut state = self.lock();
         let items = std::mem::take(&mut state.items);

@@ -31,7 +31,7 @@ impl SessionContext {
         self.log.clone()
     }
 
-    /// Records that a device was identified. Only the first time counts.
+    /// Records that a device was identified. A repeated call for the same device has no effect.
     pub fn record_identity(&self, device: &DeviceKey) {
         self.log.record_identity(&self.store, device);
     }

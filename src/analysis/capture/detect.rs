@@ -247,8 +247,8 @@ fn count_filled_fields(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// Returns the column names and, if present, the units. They are the last lines before the data that have as many
-/// columns as the data.
+/// Returns the column names and, if present, the units. The header consists of the last lines before the data that have
+/// as many columns as the data.
 fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let wide = |line: &&HeaderLine| {
         count_filled_fields(&line.fields) >= width.min(2) && count_filled_fields(&line.fields) + 1 >= width

@@ -45,7 +45,7 @@ impl Columns {
         [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
-    /// Returns the same columns with the first column as the time, because it counts samples.
+    /// Returns the same columns, but with the first column as the time, because that column counts samples.
     pub(super) fn with_sample_counter(self) -> Columns {
         let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
         let (refsin, refcos) = self.references.unzip();

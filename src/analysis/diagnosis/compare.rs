@@ -24,9 +24,9 @@ pub enum ComparisonObstacle {
     NoSpectrum,
 }
 
-/// A disturbance has increased if it has grown by at least this factor.
+/// Factor by which a disturbance must grow to be reported as an increase.
 const DISTURBANCE_INCREASE: f64 = 1.5;
-/// An ellipse parameter is further outside its limits if it has grown by at least this factor.
+/// Factor by which the deviation of an ellipse parameter must grow to be reported as worse.
 const LIMIT_EXCESS_INCREASE: f64 = 1.1;
 /// Minimum noise increase that is reported, as a fraction of the amplitude.
 const MIN_NOISE: f64 = 0.001;

@@ -88,7 +88,7 @@ pub enum FindingKind {
         /// Half the difference between the largest and smallest amplitudes, divided by the mean amplitude.
         share: f64,
     },
-    /// Isolated outliers are present. They were left out of the fit.
+    /// The capture contains isolated outliers, which were left out of the fit.
     Spikes {
         count: usize,
         /// Greatest distance of an outlier from the ellipse, in volts.
@@ -142,7 +142,7 @@ pub enum FindingKind {
     /// The second of two captures contains an interference line that is weaker in the first or missing there.
     InterferenceRose {
         frequency_hz: f64,
-        /// Peak in the first capture, in volts. It is 0 if no interference was visible.
+        /// Peak in the first capture, in volts, or 0 if no interference was visible.
         from_v: f64,
         /// Peak in the second capture, in volts.
         to_v: f64,

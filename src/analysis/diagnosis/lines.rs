@@ -21,14 +21,14 @@ const MULTIPLES: f64 = 10.0;
 /// Spacing of the spectrum's lines above which none is attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
-/// Preferred minimum length of the examined record in seconds. It is ten mains periods.
+/// Preferred minimum length of the examined record in seconds, equal to ten periods of 50 Hz mains.
 const PREFERRED_SECONDS: f64 = 0.2;
 /// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
 /// Minimum number of periods. With fewer, the signal's own line covers the whole spectrum.
 const MIN_PERIODS: f64 = 8.0;
-/// Number of signal harmonics that are skipped, for even and for uneven motion. The wide harmonics of an uneven motion
-/// cover much of the spectrum and do not stand out as lines, so fewer are skipped.
+/// Number of signal harmonics that are skipped at a steady speed and at a varying speed. At a varying speed, the wide
+/// harmonics cover much of the spectrum and do not stand out as lines, so fewer are skipped.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const HARMONIC_HALF_WIDTH: usize = 3;
@@ -257,7 +257,7 @@ struct FrequencyProbe<'a> {
 }
 
 impl FrequencyProbe<'_> {
-    /// Returns the line at a frequency. Returns `None` if it is not interference.
+    /// Returns the spectral line at a frequency, or `None` if the line is not interference.
     fn strong_line_at(&self, frequency_hz: f64) -> Option<StrongLine> {
         let [sine, cosine, along_sine, along_cosine] = self.amplitudes_at(frequency_hz);
         let stretch = self.correction.correction_factors();

@@ -22,7 +22,7 @@ const SAMPLES_PER_PERIOD: f64 = 16.0;
 /// Maximum distance of a sample from the end of the range to be at that end, as a fraction of the amplitude.
 const END_DISTANCE: f64 = 0.002;
 /// A channel is clipped if at least this fraction of its samples is at the end of the range. An unclipped sine has a
-/// third of it: √(2·0.002)/π = 2 %.
+/// third of this fraction at that end: √(2·0.002)/π = 2 %.
 const CLIPPED_FRACTION: f64 = 3.0 * 0.0201;
 /// Minimum number of periods. All samples of a shaft at rest are at one level, which looks like clipping.
 const MIN_PERIODS: f64 = 2.0;

@@ -61,7 +61,7 @@ impl Bucket {
         other.low >= self.low && other.high <= self.high
     }
 
-    /// Returns whether a value is too far from the base for an `f32` distance.
+    /// Returns whether the distance of a value from the block's base exceeds the range of `f32`.
     fn is_beyond(self) -> bool {
         self.low == f32::NEG_INFINITY || self.high == f32::INFINITY
     }
@@ -121,8 +121,8 @@ impl<T: Number> SampleBlock<T> {
         self.values.len()
     }
 
-    /// Appends `values`, which must fit, with their flags. Empty flags mean that no flag is set. A value that is not a
-    /// finite number is marked as bad.
+    /// Appends `values`, which must fit into the block, with their flags. Empty flags mean that no flag is set. A value
+    /// that is not a finite number is marked as bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
         self.values.extend_from_slice(values);

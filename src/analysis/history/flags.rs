@@ -46,8 +46,8 @@ const GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
-/// Flags of a block. The flags of single samples are elsewhere in memory, allocated with the first flag. They are read
-/// only if the combined flags of a group, which are stored inline, are set.
+/// Flags of a block. The flags of single samples are elsewhere in memory, allocated with the first flag. Those flags
+/// are read only if the combined flags of their group, which are stored inline, are set.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
     any: Flags,

@@ -50,8 +50,8 @@ impl Grid {
     }
 }
 
-/// Intersection of a [`Grid`] with the samples of a history. It is valid for all columns of the history. Samples
-/// appended later are not included, and evicted samples are not drawn.
+/// Intersection of a [`Grid`] with the samples of a history. The same intersection is valid for all columns of the
+/// history. Samples appended later are not included, and evicted samples are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridColumns {
     /// Starts of all pixel columns, followed by the end of the last one.

@@ -75,7 +75,7 @@ pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
     (reduce_eight(*values, min_of), reduce_eight(*values, max_of))
 }
 
-/// Reduces eight values pairwise. No operation then has to wait for the previous one.
+/// Reduces eight values pairwise, so that no operation has to wait for the previous one.
 fn reduce_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
@@ -88,7 +88,7 @@ fn max_of<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 
-/// Sums the terms in eight parallel sums. They take little more time than a single sum.
+/// Sums the terms in eight parallel sums, which take little more time than a single sum.
 fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -10,7 +10,7 @@ use super::{Column, History};
 /// Statistics of a range of samples. All fields except `bad` refer to samples with a valid value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Number of samples with a valid value. It is at least 1.
+    /// Number of samples with a valid value, at least 1.
     pub count: u64,
     /// Number of samples without a valid value.
     pub bad: u64,
@@ -19,7 +19,7 @@ pub struct Statistics {
     pub min: Value,
     /// Maximum, as appended.
     pub max: Value,
-    /// Standard deviation in the column's unit, with the divisor count − 1. It is 0 for a single sample.
+    /// Standard deviation in the column's unit, with the divisor count − 1. A single sample has a deviation of 0.
     pub deviation: f64,
 }
 

@@ -118,7 +118,8 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Calls `act` with a form of the dialog and the rest of the studio, and then executes what the form has requested.
+    /// Calls `act` with a form of the dialog and the resources for a search, and then executes the requests of the
+    /// form.
     fn with_form_context(
         &mut self,
         tab: Tab,

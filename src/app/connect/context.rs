@@ -63,7 +63,7 @@ impl<'a> FinderContext<'a> {
         Ok(earlier)
     }
 
-    /// Asks the user whether another master is on the line. The search continues if there is none.
+    /// Asks the user whether another master is on the line. If there is no other master, the search continues.
     pub fn ask_about_other_master(&mut self, url: &LinkUrl) {
         self.studio.question = Some(Question::other_master(
             self.studio.services.world.kinds.display_link(url),

@@ -97,7 +97,7 @@ impl<F: 'static> Finder for NoFinder<F> {
     }
 }
 
-/// The interface of a connection form for the dialog. It is implemented for every [`FormModel`].
+/// The object-safe interface of a connection form, implemented for every [`FormModel`].
 pub trait AnyForm {
     /// Returns the form for downcasting.
     fn as_any_form(&self) -> &dyn Any;

@@ -74,8 +74,8 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Adds the parameters that have no entry in the form. Those of a virtual device are added only if the link refers
-    /// to one.
+    /// Adds the parameters that have no entry in the form. Parameters of a virtual device are added only if the link
+    /// refers to a virtual device.
     pub(crate) fn add_remaining(
         &mut self,
         rest: &[NameAndValue],

@@ -6,7 +6,7 @@ use crate::link::{LinkScheme, LinkUrl, PortInfo};
 pub struct PortEntry {
     /// Path or name of the port as in a link.
     pub path: String,
-    /// Description of the adapter by the system. It may be empty.
+    /// Description of the adapter by the system, which may be empty.
     pub description: String,
     pub used: bool,
     /// Whether the port exists at present: either the system lists it, or its path exists, as for a pseudo-terminal. A

@@ -69,13 +69,14 @@ impl AnyDevice {
         self.state().is_current_attempt(attempt)
     }
 
-    /// Returns the backups or the reason why there are none, or `None` if they have not been requested yet.
+    /// Returns the backups or the reason why they cannot be listed. Returns `None` before the backups have been
+    /// requested.
     pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
         self.state().backups.as_ref()
     }
 
-    /// Returns the writes in the logbook or the reason why there are none, or `None` if they have not been requested
-    /// yet.
+    /// Returns the writes in the logbook or the reason why they cannot be listed. Returns `None` before the writes have
+    /// been requested.
     pub fn logged_writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
@@ -151,7 +152,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// Marks a save as waiting for an answer from the user. Another save may then begin.
+    /// Marks a save as waiting for an answer from the user, so that another save may begin.
     pub(in crate::app) fn mark_save_waiting(&mut self) {
         self.state_mut().is_saving = false;
     }

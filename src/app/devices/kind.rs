@@ -40,7 +40,7 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Checks whether a link can refer to a device of this kind. The link is not opened.
     ///
     /// # Errors
-    /// Returns the reason why it cannot.
+    /// Returns the reason why the link cannot refer to such a device.
     fn check_link(url: &LinkUrl) -> Result<(), OpenError>;
 
     /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
@@ -98,7 +98,7 @@ pub trait DeviceType: DeviceModel + Sized {
 pub(crate) type OpenProfile =
     Box<dyn FnOnce(SessionId, ProfileFile, ProfileDocument, &mut Services) -> Box<AnyDevice> + Send>;
 
-/// The interface of a kind of device for the studio. It is implemented for every [`DeviceType`].
+/// The object-safe interface of a kind of device, implemented for every [`DeviceType`].
 pub trait DeviceKind: Sync {
     /// Returns the tab in which devices of this kind are shown.
     fn tab(&self) -> Tab;
@@ -111,7 +111,7 @@ pub trait DeviceKind: Sync {
     /// Checks whether a link can refer to a device of this kind.
     ///
     /// # Errors
-    /// Returns the reason why it cannot.
+    /// Returns the reason why the link cannot refer to such a device.
     fn check_link(&self, url: &LinkUrl) -> Result<(), OpenError>;
     /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
     fn secret_parameters(&self) -> Vec<&'static str>;

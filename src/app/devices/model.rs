@@ -144,7 +144,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Returns the reason why nothing can be written to this kind of device.
     fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text>;
 
-    /// Calls `act` with the memory of the device, or reports why there is none.
+    /// Calls `act` with the memory of the device, or reports why the device has no writable memory.
     fn with_memory<R>(
         &mut self,
         services: &mut Services,
@@ -232,7 +232,7 @@ impl<'a> ActionContext<'a> {
         ActionContext { services, others, next: Vec::new() }
     }
 
-    /// Queues a command for the same device. It is executed after the present action.
+    /// Queues a command for the same device, to be executed after the present action.
     pub(crate) fn queue_command(&mut self, command: DeviceCommand) {
         self.next.push(command);
     }
@@ -269,11 +269,11 @@ pub trait MotionControl {
     /// Returns whether a motion requested in this window has not ended yet.
     fn is_motion_active(&self) -> bool;
 
-    /// Returns whether this window has control of the drives. Values then arrive without a request.
+    /// Returns whether this window has control of the drives. If so, their values arrive without a request.
     fn has_control(&self) -> bool;
 }
 
-/// A device memory. It is written after a review, and is saved and restored as a profile.
+/// A device memory, which is written after a review, and saved and restored as a profile.
 pub trait DeviceMemory {
     /// Opens the review of the edits.
     fn review_edits(&mut self, services: &mut Services);

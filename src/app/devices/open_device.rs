@@ -25,7 +25,7 @@ use crate::store::FileError;
 /// A device or profile of any kind.
 pub type AnyDevice = dyn OpenDevice;
 
-/// The interface of a device of any kind. It is implemented for every `DeviceModel`.
+/// The object-safe interface of a device of any kind, implemented for every `DeviceModel`.
 pub trait OpenDevice: Any {
     /// Returns the state common to all sessions.
     fn state(&self) -> &SessionState;

@@ -69,7 +69,7 @@ struct Column {
     column: usize,
     factor: f64,
     range: Option<i64>,
-    /// Whether the values are calculated from another line. A missing value is then not an error of the sample.
+    /// Whether the values are calculated from another line. If so, a missing value is not an error of the sample.
     derived: bool,
 }
 
@@ -87,7 +87,7 @@ struct Rows {
     cells: Vec<Cell>,
 }
 
-/// A cell of a table. It is empty if the line has no sample at that time, and the sample may be invalid.
+/// A cell of a table. The cell is empty if the line has no sample at that time. A sample may be invalid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
@@ -266,7 +266,7 @@ fn cell_of(column: &Column, histories: &[Option<&History>], due: &[Option<u64>])
     Cell { value, flags }
 }
 
-/// Returns the heading of a column with name and unit. It does not depend on the language of the window.
+/// Returns the heading of a column with name and unit, which does not depend on the language of the window.
 fn column_heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal_text()),
@@ -291,7 +291,7 @@ impl ExportWriter {
         ExportResult { number: self.number, path: self.path, rows }
     }
 
-    /// Writes the table; returns `false` if it was cancelled.
+    /// Writes the table. Returns `false` if the export was cancelled.
     fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<bool> {
         let mut text = String::from(if self.counts { "sample" } else { "time [s]" });
         for heading in &self.headings {

@@ -10,7 +10,7 @@ pub struct SeriesId(pub(super) u32);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub unit: Text,
-    /// Size of this unit in units of the samples. It is never 0.
+    /// Size of this unit in units of the samples, never 0.
     pub factor: f64,
     /// Useful number of decimals.
     pub decimals: usize,
@@ -43,7 +43,7 @@ pub struct Series {
     /// Displayed range of values in the unit of the line. `None` shows all visible samples.
     pub range: Option<(f64, f64)>,
     pub ended: bool,
-    /// Whether the values are calculated from another line. A missing value is then not a fault of the device.
+    /// Whether the values are calculated from another line. If so, a missing value is not a fault of the device.
     pub derived: bool,
     /// The reason why there are no samples, if known.
     pub remark: Option<Text>,

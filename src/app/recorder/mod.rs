@@ -41,7 +41,7 @@ pub enum RecorderAction {
     Pause,
     Fit,
     Look(SampleTime, SampleTime),
-    /// Set the duration of the view in nanoseconds. Its end stays in place.
+    /// Set the duration of the view in nanoseconds. The end of the view stays in place.
     SetSpan(i64),
     /// Make the view longer (above 1) or shorter (below 1) around a point in time.
     Zoom(SampleTime, f64),
@@ -70,8 +70,7 @@ struct Group {
     longest_pause: Option<i64>,
 }
 
-/// Identifier of the samples of a group. It is unique among all groups, including cleared ones and those of other
-/// recorders.
+/// Identifier of the samples of a group, unique among all groups, including cleared ones and those of other recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleGroupStamp(u64);
 
@@ -127,7 +126,8 @@ impl Recorder {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Marks the recording as complete. A trigger that has not fired is then missed, because no more samples arrive.
+    /// Marks the recording as complete. A trigger that has not fired is marked as missed, because no more samples
+    /// arrive.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
@@ -175,7 +175,7 @@ impl Recorder {
         self.with_line(id, |line| line.remark = remark);
     }
 
-    /// Appends samples to a group. They are ignored if they would displace samples of a held view.
+    /// Appends samples to a group. The whole batch is ignored if it would displace samples of a held view.
     ///
     /// # Errors
     /// Returns an error if the samples do not have the columns of the group, or if a time is earlier than the previous

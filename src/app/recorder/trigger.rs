@@ -61,7 +61,7 @@ pub(super) struct TriggerDetector {
     state: TriggerState,
     /// Range after which the values of the line start again from 0, if any.
     range: Option<i64>,
-    /// Last valid value, which is needed to detect an edge. It is `None` after a gap.
+    /// Last valid value, which is needed to detect an edge, or `None` after a gap.
     last: Option<f64>,
     /// Duration of the view in nanoseconds.
     span: i64,

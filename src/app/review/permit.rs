@@ -1,4 +1,4 @@
-//! Permits that the user can give for a write.
+//! Permissions that the user can grant for a write.
 
 use crate::profile::RestoreOptions;
 
@@ -13,7 +13,7 @@ pub enum Permit {
     Copy(u8),
 }
 
-/// A permit that changes the plan, and whether it is granted.
+/// A permission that changes the plan, with the user's present choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PermitToggle {
     pub permit: Permit,
@@ -21,7 +21,7 @@ pub struct PermitToggle {
 }
 
 impl Permit {
-    /// All permits in display order, except those for individual fields.
+    /// All permissions in display order, except those for individual fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::TypeMismatch, Permit::Mounting, Permit::Recreate];
 
     pub const fn keyword(self) -> &'static str {
@@ -43,7 +43,8 @@ impl Permit {
         }
     }
 
-    /// Returns the restore option for a permit, or `None` if not all kinds of devices have this option.
+    /// Returns the restore option that grants this permission, or `None` if not all kinds of devices have such an
+    /// option.
     pub fn restore_option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),

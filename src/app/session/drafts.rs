@@ -251,7 +251,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Returns whether a search for an earlier draft has been completed. Edits are then restored when the device is
+    /// Returns whether a search for an earlier draft has been completed. If so, edits are restored when the device is
     /// opened again.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded

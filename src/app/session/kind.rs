@@ -13,7 +13,7 @@ use crate::worker::{Device, Event, JobId, OpenError, Session};
 
 /// A kind of device, with everything that its sessions need.
 pub trait Kind: Device + Sized {
-    /// Name of the kind in profiles.
+    /// Name of the kind of device in profiles.
     const KIND: &'static str;
 
     /// Edits that survive a crash.
@@ -22,7 +22,7 @@ pub trait Kind: Device + Sized {
     /// Handle of a session that stays outside its thread.
     type SessionHandle: Send;
 
-    /// Review of a write. It is [`Review`](crate::app::review::Review) for a kind with a memory.
+    /// Review of a write: [`Review`](crate::app::review::Review) for a kind of device with a memory.
     type Review;
 
     /// Whether live values may start automatically on a line that has no other master.

@@ -49,8 +49,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Returns whether a change was made for a device other than the connected one.
     fn is_for_other_device(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for another type of device. This is checked only if it requires a separate
-    /// permit.
+    /// Returns whether a change was made for another type of device. The default is for kinds of devices that require
+    /// no separate permission for this case.
     fn is_for_other_type(&self, _change: &Change<Self>) -> bool {
         false
     }
@@ -124,7 +124,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Requests the plan again after the user has given or withdrawn a permit.
+    /// Requests the plan again after the user has granted or withdrawn a permission for the write.
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if self.session().is_busy() {
             return;
@@ -162,8 +162,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Handles the replacement of the device by another one. The edits for the previous device stay on disk if it has a
-    /// serial number.
+    /// Handles the replacement of the device by another one. The edits for the previous device stay on disk if that
+    /// device has a serial number.
     fn handle_device_replacement(&mut self, serial: &str, services: &mut Services) {
         if self.pending_edits().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());

@@ -161,7 +161,7 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
 
-    /// Returns whether the device is connected and idle. A job may then start.
+    /// Returns whether the device is connected and idle, so that a job may start.
     pub fn is_ready(&self) -> bool {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }

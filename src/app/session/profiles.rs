@@ -82,7 +82,7 @@ impl SessionState {
         });
     }
 
-    /// Starts a task that assigns a device to an asset, and lists what the logbook has then.
+    /// Starts a task that assigns a device to an asset, and then lists the backups and writes of the device again.
     pub(in crate::app) fn assign_asset(&self, of: DeviceKey, asset: AssetName, services: &Services) {
         let (store, id) = (services.world.store.clone(), self.id);
         services.tasks.run("asset", move || {

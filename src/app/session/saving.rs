@@ -26,7 +26,7 @@ impl ProfileFile {
     }
 }
 
-/// Expected state of a file. It is checked before the file is overwritten.
+/// Expected state of a file, which is checked before the file is overwritten.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileSnapshot {
     /// Key of the file, which is the same for every path to it.
@@ -45,7 +45,7 @@ pub struct SaveRequest {
     pub opened: Option<FileSnapshot>,
     /// Whether the user has agreed to the loss of comments.
     pub may_lose: bool,
-    /// Whether the edits were merged with changes made by another program. They are then no longer edits of this
+    /// Whether the edits were merged with changes made by another program. If so, they are no longer edits of this
     /// session.
     pub is_merged: bool,
 }
@@ -84,7 +84,7 @@ impl SaveRequest {
 /// The content of a file that has changed since it was opened.
 #[derive(Debug)]
 pub(in crate::app) struct DivergedFile {
-    /// Text of the file. It is empty if the file cannot be read.
+    /// Text of the file, or an empty string if the file cannot be read.
     pub(in crate::app) text: String,
     /// Text of the file parsed as a profile.
     pub(in crate::app) document: Result<Box<ProfileDocument>, ReadError>,

@@ -33,8 +33,8 @@ pub trait SessionEvents: HasSession {
     /// Records samples. `dropped` samples before them were lost.
     fn handle_samples(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Returns the explanation of a frame for the trace. It is empty if the bytes need none. Called once for each
-    /// frame, in order.
+    /// Returns the explanation of a frame for the trace, which is empty if the bytes need none. This method is called
+    /// once for each frame, in order.
     fn explain_frame(&mut self, _frame: &TraceEntry) -> FrameExplanation {
         FrameExplanation::default()
     }
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.mark_draft_due();
     }
 
-    /// Handles a failed sample, because of which polling has stopped.
+    /// Handles the failure of a sample, which has ended polling.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.on_polling_end();
         match Self::Device::connection_error(error) {

@@ -16,7 +16,7 @@ pub(super) struct PositionTracker {
     last: Option<(SampleTime, i64)>,
     /// Speed between the last two positions in steps per second, without its sign.
     pace: Option<f64>,
-    /// Whether samples without a position have arrived since then.
+    /// Whether samples without a position have arrived since the last position.
     has_missed: bool,
 }
 
@@ -50,8 +50,8 @@ impl PositionTracker {
         self.has_missed = true;
     }
 
-    /// Returns the next position without wrap-around, with its speed and acceleration. Returns `None` if it is outside
-    /// the range.
+    /// Returns the next position without wrap-around, with its speed and acceleration. Returns `None` if `word` is
+    /// outside the range.
     pub(super) fn next(&mut self, time: SampleTime, word: i64) -> Option<(UnwrappedPosition, MotionRates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {

@@ -109,7 +109,7 @@ fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {
 }
 
 /// Calculates DNL and INL against the reference angle. If the number of periods is missing, a remark explains how to
-/// give it.
+/// specify this number.
 fn analyse_revolution(
     output: &Output,
     capture: &Capture,

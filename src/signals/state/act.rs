@@ -23,7 +23,8 @@ use crate::store::ReadCaptureError;
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// Whether the number of periods comes from the virtual encoder. It then does not apply to a capture from a file.
+    /// Whether the number of periods comes from the virtual encoder. If so, the number does not apply to a capture from
+    /// a file.
     periods_of_source: bool,
     pub(crate) source: Source,
     synchronise: SynchroniseState,
@@ -134,8 +135,8 @@ impl Signals {
         self.family
     }
 
-    /// Returns the signal periods per revolution, at least 1. Returns `None` if the number is unknown. Results that
-    /// depend on it are then omitted.
+    /// Returns the signal periods per revolution, at least 1. Returns `None` if the number is unknown. Without the
+    /// number, results that depend on it are omitted.
     pub fn signal_periods(&self) -> Option<u32> {
         self.periods
     }
@@ -162,7 +163,8 @@ impl Signals {
         self.table.as_ref()
     }
 
-    /// Returns the reason why the last table could not be read. The previous capture then remains on display.
+    /// Returns the reason why the last table could not be read. After a failure, the previous capture remains on
+    /// display.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }

@@ -56,7 +56,7 @@ pub(super) enum SignalFeed {
     Virtual(Stream<AnalogueSource>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
-        /// Identity and actual sampling of the adapter. It is empty until the adapter has replied.
+        /// Identity and actual sampling of the adapter, empty until the adapter has replied.
         streaming: Arc<OnceLock<StreamingAdapter>>,
         url: LinkUrl,
     },
@@ -183,7 +183,7 @@ impl SignalFeed {
         }
     }
 
-    /// Stops the feed if it is running. It then appears as a feed that has ended without a request.
+    /// Stops the feed if it is running. A stopped feed appears as one that has ended without a request.
     #[cfg(test)]
     pub(super) fn stop(&self) {
         match self {

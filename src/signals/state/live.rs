@@ -41,7 +41,7 @@ pub enum SourceAction {
     /// Sets whether each pair of wires is terminated by a resistor.
     SetTerminated(bool),
     SetReferences(ReferenceLevel),
-    /// Sets how many of the newest samples are measured, as a duration of 10 to 10 000 milliseconds.
+    /// Sets the length of the measured section, which ends at the newest sample: 10 to 10 000 milliseconds.
     SetWindow(u32),
     Reset,
 }
@@ -59,8 +59,8 @@ pub struct Source {
     /// Link to the adapter, as entered.
     link: String,
     sample_hz: u32,
-    /// Family of the encoder that the adapter supplies. It is never stored in the settings, because another encoder may
-    /// be connected at the next start.
+    /// Family of the encoder that the adapter supplies. The family is never stored in the settings, because another
+    /// encoder may be connected at the next start.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
     /// Kind of the source that was started last.
@@ -81,7 +81,7 @@ struct LiveSource {
     measured: Option<SampleTime>,
 }
 
-/// Range of durations that can be measured, in milliseconds.
+/// Range of lengths of the measured section, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
 /// Link to the virtual adapter. Its shaft turns slowly, which makes single signal periods visible.
 pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
@@ -129,7 +129,7 @@ impl Source {
         self.sample_hz
     }
 
-    /// Returns the family of the encoder that the adapter supplies, or `None` if it supplies none.
+    /// Returns the family of the encoder that the adapter supplies, or `None` if the adapter supplies no encoder.
     pub fn supplied_family(&self) -> Option<Family> {
         self.supply
     }

@@ -100,7 +100,7 @@ const CELLS: usize = 240;
 const FEW_SAMPLES_CELLS: usize = 120;
 /// Number of samples up to which an image has larger cells. Single samples would be invisible in small cells.
 const FEW_SAMPLES: usize = 2_000;
-/// Minimum voltage from the centre of an image to its edge. It is large enough for all rings.
+/// Minimum voltage from the centre of an image to its edge, large enough for all rings.
 const MIN_HALF_V: f64 = 0.75;
 
 impl Measurement {

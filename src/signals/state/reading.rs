@@ -85,7 +85,7 @@ impl Drop for CaptureReading {
     }
 }
 
-/// Reads and measures a capture. This may take long for a large file.
+/// Reads and measures a capture. This may take a long time for a large file.
 pub(super) fn read(
     place: TableSource,
     hints: TableHints,

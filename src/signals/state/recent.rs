@@ -21,7 +21,7 @@ pub(super) struct RecentSamples {
 /// Newest samples of a given duration.
 pub(super) struct Window {
     chunks: Vec<Arc<ChannelSamples>>,
-    /// Number of samples to skip in the first chunk, because they are too old.
+    /// Number of samples at the start of the first chunk that are too old and are skipped.
     skip: usize,
     period_ns: i64,
 }
@@ -61,8 +61,8 @@ impl RecentSamples {
         }
     }
 
-    /// Returns the newest samples of the given duration, at most [`MAX_SAMPLES`]. Returns `None` until enough samples have
-    /// arrived.
+    /// Returns the samples of the last `milliseconds`, but at most [`MAX_SAMPLES`]. Returns `None` until enough samples
+    /// have arrived.
     pub(super) fn latest_window(&self, milliseconds: u32) -> Option<Window> {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
         let count = usize::try_from(wanted).unwrap_or(MAX_SAMPLES).clamp(1, MAX_SAMPLES);

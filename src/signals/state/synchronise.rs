@@ -22,7 +22,7 @@ pub enum SynchroniseAction {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Absolute position in steps, as entered. It is decimal, or hexadecimal with `0x` or `h`.
+    /// Absolute position in steps, as entered: decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
     pub phase_input: PhaseInput,
     /// Phase of the analogue position in periods or degrees, as entered.
@@ -215,7 +215,7 @@ impl SynchroniseState {
         }
     }
 
-    /// Takes the next reading of an encoder at rest, if there is one.
+    /// Adopts the next reading of `source`, or shows why it failed. Has no effect if there is no new reading.
     pub(crate) fn follow_source(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.add_reading(reading, source.origin()),

@@ -84,8 +84,8 @@ impl Table {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Selects a column. Returns `false` if the table cannot be read with it, for example while the other reference
-    /// column is missing.
+    /// Selects a column. Returns `false` if the table cannot be read with this column, for example while the other
+    /// reference column is missing.
     pub(super) fn select_column(&mut self, column: Column, number: Option<usize>) -> bool {
         let mut columns = self.columns().unwrap_or(Columns::TIME_SINE_COSINE);
         match (column, number) {

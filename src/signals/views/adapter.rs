@@ -16,7 +16,7 @@ use crate::ui::{Theme, icons};
 const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
 const LINK_WIDTH: f32 = 280.0;
 
-/// Draws the settings of the adapter. Returns `true` if they can be closed.
+/// Draws the settings of the adapter. Returns `true` if the settings can be closed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) -> bool {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);

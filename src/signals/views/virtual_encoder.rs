@@ -50,7 +50,7 @@ const DISTURBANCES: [SliderSpec; 8] = [
     linear_slider(Quantity::Modulation, 0.0, 20.0, 1),
     slider_spec(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
-/// Durations of the measured samples to choose from, in milliseconds.
+/// Selectable lengths of the measured section, in milliseconds.
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) {

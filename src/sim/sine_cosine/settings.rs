@@ -7,7 +7,7 @@ use crate::analysis::wiring::Wire;
 pub struct Settings {
     /// Number of signal periods per revolution, a whole number.
     pub periods: f64,
-    /// Speed in revolutions per minute, in steps of 0.001. The angle decreases at a negative speed.
+    /// Speed in revolutions per minute, in steps of 0.001. If the speed is negative, the angle decreases.
     pub speed_rpm: f64,
     /// Sample rate in hertz. The sample period is rounded to whole nanoseconds. See [`Settings::period_ns`].
     pub rate_hz: f64,
@@ -138,7 +138,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// Returns the unit symbol, which is the same in every language. It is empty for a plain number.
+    /// Returns the unit symbol, which is the same in every language. The symbol is empty for a plain number.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",

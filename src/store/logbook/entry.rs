@@ -44,10 +44,10 @@ impl fmt::Display for EntryId {
     }
 }
 
-/// What an entry reports.
+/// Type of event that an entry records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EntryKind {
-    /// A device was identified, once for each connection.
+    /// A device was identified. Recorded once for each connection.
     Connected,
     /// The device was assigned to an asset, a motor or an axis.
     Assigned,
@@ -138,11 +138,11 @@ impl Outcome {
 /// Computer, user and program version of an entry.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
-    /// Name of the computer. It is empty in entries of older logbooks.
+    /// Name of the computer, empty in entries of older logbooks.
     pub bench: String,
     /// Name of the user, if known and if the settings allow it.
     pub user: Option<String>,
-    /// Version of the program. It is empty in entries of older logbooks.
+    /// Version of the program, empty in entries of older logbooks.
     pub version: String,
 }
 
@@ -179,7 +179,7 @@ pub struct Event {
 }
 
 impl Event {
-    /// Creates an event that its description explains.
+    /// Creates an event that has a description but no items and no profile.
     pub fn new(kind: EntryKind, description: impl Into<String>) -> Self {
         Event { kind, description: description.into(), items: Vec::new(), backup: None }
     }

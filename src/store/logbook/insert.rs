@@ -9,7 +9,7 @@ use super::entry::{DeviceKey, EntryId, EntryKind, Event, Origin};
 use super::{AssetName, query};
 use crate::profile::ChangedItem;
 
-/// What only some kinds of events have.
+/// Values that only some kinds of events have.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Further<'e> {
     pub planned_cycles: u64,

@@ -45,7 +45,7 @@ impl Logbook {
     ///
     /// # Errors
     /// Returns an error if the file is damaged, not a database, in use for longer than two seconds, not writable, or
-    /// created by a newer version of the program. The file is then left unchanged.
+    /// created by a newer version of the program. In this case, the file is left unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
         Self::open_with_timeout(path, LOCK_TIMEOUT)
     }
@@ -87,7 +87,7 @@ impl Logbook {
         added.map_err(|error| self.database_error(error))
     }
 
-    /// Assigns a device to an asset from now on. Nothing is recorded if it is assigned to this asset already.
+    /// Assigns a device to an asset from now on. Nothing is recorded if the device is already assigned to this asset.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read or written.
@@ -144,7 +144,7 @@ impl Logbook {
             .map_err(|error| self.database_error(error))
     }
 
-    /// Returns the asset to which a device is assigned, or `None` if it never was.
+    /// Returns the asset to which a device is assigned, or `None` if the device was never assigned.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.

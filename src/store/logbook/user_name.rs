@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-/// How the entries of this process name the user.
+/// Form in which the entries of this process name the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UserName {
     /// The user name of the system.
@@ -15,7 +15,7 @@ pub enum UserName {
     Off,
 }
 
-/// The choice for all entries of this process, which belong to one user. It is 0 until the settings are read.
+/// The choice for all entries of this process, which belong to one user. The value is 0 until the settings are read.
 static CHOICE: AtomicU8 = AtomicU8::new(0);
 
 impl UserName {

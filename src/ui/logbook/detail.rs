@@ -82,7 +82,7 @@ fn items_ui(ui: &mut Ui, theme: &Theme, items: &[ChangedItem]) {
     }
 }
 
-/// Draws the actions for the backup. It can be compared and restored while the device is open.
+/// Draws the actions for the backup. The backup can be compared and restored while the device is open.
 fn backup_ui(
     ui: &mut Ui,
     theme: &Theme,

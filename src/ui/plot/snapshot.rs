@@ -11,7 +11,7 @@ use crate::app::{Action, Picture};
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// A picture was requested and waits until the plot is visible. The number counts the frames so far.
+    /// A picture was requested and waits until the plot is visible. Contains the number of frames waited so far.
     Wanted(usize),
     /// The window's pixels were requested. The rectangle is the plot's position in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
@@ -132,8 +132,8 @@ mod tests {
         actions
     }
 
-    /// Issue 22.14: the picture shows the whole plot as it was in the frame of the pixels, without the menu and without
-    /// its surroundings.
+    /// The picture shows the whole plot as it was in the frame of the pixels, without the menu and without its
+    /// surroundings.
     #[test]
     fn the_snapshot_shows_exactly_the_plot_of_its_frame() {
         let ctx = Context::default();
@@ -158,7 +158,7 @@ mod tests {
         assert!(!shot.is_wanted());
     }
 
-    /// Issue 22.14: no picture is taken of a plot that is partly hidden, and this is reported.
+    /// No picture is taken of a plot that is partly hidden, and this is reported.
     #[test]
     fn a_partly_hidden_plot_yields_no_snapshot() {
         let ctx = Context::default();

@@ -101,7 +101,7 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     paint_boundary_handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
-/// Handles the arrow keys before the parts of the map are announced. The focus then moves in memory order instead of to
+/// Handles the arrow keys before the parts of the map are announced. The focus thus moves in memory order instead of to
 /// the nearest widget.
 fn handle_arrow_keys(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };

@@ -26,7 +26,7 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     pub label: &'a str,
     pub enabled: bool,
-    /// Whether the action of the hold has ended without a release. The button then looks released.
+    /// Whether the action of the hold has ended without a release. If so, the button looks released.
     pub has_ended: bool,
 }
 
@@ -60,7 +60,7 @@ pub(in crate::ui) fn set_hold_button_context(ctx: &Context, surroundings: HoldBu
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
-/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. The button then
+/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. If so, the button
 /// receives the keys.
 pub(in crate::ui) fn has_hold_button_focus(ctx: &Context) -> bool {
     let drawn = hold_button_frame(ctx);

@@ -95,8 +95,8 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// Returns a single-colour picture of a sample density. It is brighter where there are more samples, and even a single
-/// sample is visible.
+/// Returns a single-colour picture of a sample density. The picture is brighter where there are more samples, and even
+/// a single sample is visible.
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a fraction of full brightness.
     const MIN_BRIGHTNESS: f32 = 0.4;

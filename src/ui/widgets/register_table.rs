@@ -44,7 +44,7 @@ pub struct RegisterLocation {
 pub struct RegisterTable<'a> {
     pub label: &'a str,
     pub groups: &'a [RegisterGroup],
-    /// Function that returns a register of a group. It is called for visible or unfolded registers only.
+    /// Function that returns a register of a group. The function is called only for visible or unfolded registers.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     pub kind: RegisterKind,
 }
@@ -116,7 +116,7 @@ pub enum RegisterEvent {
 pub struct RegisterTableOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
-    /// Whether columns are hidden or narrower than usual. Parts of a row may then be cut off.
+    /// Whether columns are hidden or narrower than usual. If so, parts of a row may be cut off.
     pub is_narrow: bool,
 }
 

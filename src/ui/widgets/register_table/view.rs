@@ -22,7 +22,7 @@ pub struct RegisterView {
     /// Whether the selection has moved and must be scrolled into view.
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Width of the table at which a name did not fit. All names are then drawn in the small size.
+    /// Width of the table at which a name did not fit. At this width, all names are drawn in the small size.
     pub(super) small_names_at: Option<f32>,
     /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame
     /// determines which of them receives these events.
