@@ -17,7 +17,7 @@ use crate::worker::stream::{Batch, Producer, SampleCount};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// How a stream is configured and how its packets are interpreted.
+/// The configuration of a stream and the interpretation of its packets.
 pub trait StreamFormat: Send + 'static {
     type Samples: SampleCount;
 
@@ -61,8 +61,8 @@ pub struct Bridge<S> {
 }
 
 impl<S: StreamFormat> Bridge<S> {
-    /// Creates a producer for an adapter. `open` opens its connection. A reply may be late by `margin`. The supply of
-    /// the encoder is only switched on if `supply` is given.
+    /// Creates a producer for an adapter. `open` opens its connection. `margin` extends the time limit for replies. The
+    /// encoder supply is switched on only if `supply` is `Some`.
     pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: OpenAdapterFn) -> Self {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: StreamTap::new(margin), streaming: Arc::default() }
     }

@@ -9,7 +9,7 @@ use crate::analysis::SampleTime;
 pub(super) struct ClockDrift {
     /// Offset in nanoseconds that is added to the time of the adapter. It is `None` before the first packet.
     ahead_ns: Option<i128>,
-    /// Minimum offset of the present section and of the previous one, in nanoseconds.
+    /// Minimum offset of the current section and of the previous one, in nanoseconds.
     least: Option<(i128, Option<i128>)>,
     since_ns: i128,
     /// Time of the previous packet in nanoseconds of the adapter's clock.
@@ -45,7 +45,7 @@ impl ClockDrift {
         SampleTime::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// Returns the smaller of the minimum offsets of the present and the previous section, in nanoseconds.
+    /// Returns the smaller of the minimum offsets of the current and the previous section, in nanoseconds.
     fn minimum_offset_ns(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {

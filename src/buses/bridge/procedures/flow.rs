@@ -41,7 +41,7 @@ pub(crate) struct SampleStream {
     period_ns: i64,
     continuity: Continuity,
     next: u64,
-    /// Number of missing samples before the next one.
+    /// Number of samples that are missing before the next sample.
     missing: u64,
     /// Earliest time that a sample can have.
     not_before: SampleTime,

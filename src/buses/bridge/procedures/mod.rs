@@ -67,7 +67,7 @@ pub enum AdapterError {
         /// Requested voltage in millivolts.
         given: u16,
         measured: u16,
-        /// Highest voltage in millivolts that the encoder permits.
+        /// Highest supply voltage of the encoder in millivolts.
         greatest: u16,
     },
     #[error("the adapter no longer sends data")]
@@ -120,7 +120,7 @@ pub(crate) struct TimedReply {
 }
 
 impl AdapterState {
-    /// Returns the identity of the adapter, or `None` if it was not read yet.
+    /// Returns the identity of the adapter, or `None` if it has not been read yet.
     pub const fn identity(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }

@@ -4,7 +4,7 @@ use crate::parameter::Keywords;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfterSession {
-    /// The supply returns to its previous state. If the session has switched it on, it is switched off.
+    /// The supply returns to its previous state. If the session has switched the supply on, the supply is switched off.
     #[default]
     AsFound,
     On,

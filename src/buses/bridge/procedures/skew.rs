@@ -45,7 +45,7 @@ impl SkewCorrection {
     }
 }
 
-/// Returns the value at `place` of the polynomial through points at 0, 1, 2 and so on (Lagrange).
+/// Evaluates, at `place`, the Lagrange polynomial that passes through `points` at 0, 1, 2 and so on.
 fn interpolate(points: &[f64], place: f64) -> f64 {
     let weight = |own: usize| -> f64 {
         let others = (0..points.len()).filter(|other| *other != own);

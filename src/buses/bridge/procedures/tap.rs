@@ -35,9 +35,11 @@ const POWER_UP: Duration = Duration::from_secs(1);
 pub struct StreamingAdapter {
     pub hello: Hello,
     pub period_ns: i64,
-    /// Full scale of sine and cosine, which is the voltage in microvolts at the value 32 767. Other streams have 0.
+    /// Full scale of sine and cosine: the voltage in microvolts that a sample of 32767 represents. The value is 0 for
+    /// other streams.
     pub full_scale_microvolt: u32,
-    /// Time in nanoseconds by which the adapter samples the cosine after the sine. The samples are corrected for it.
+    /// Time in nanoseconds by which the adapter samples the cosine after the sine. The samples are corrected for this
+    /// delay.
     pub skew_ns: u16,
     /// Measured supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
     pub supplied: Option<(u16, u16)>,

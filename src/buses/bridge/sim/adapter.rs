@@ -65,8 +65,8 @@ impl Adapter {
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
 
-    /// Creates the virtual adapter with the given devices. If several of them use one connector, the last one is
-    /// connected.
+    /// Creates the virtual adapter with the given devices. If several devices use the same connector, the last of them
+    /// is connected.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<AttachedDevice>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config, shared, shaft),
@@ -355,7 +355,7 @@ impl Adapter {
         Ok(Reply::Supply { on, millivolt, milliampere })
     }
 
-    /// Reads a register. If a value is given, it is written first.
+    /// Reads a register. If `value` is `Some`, it is written to the register first.
     fn register(&mut self, slave: u8, address: u8, value: Option<u8>) -> Result<u8, ErrorReply> {
         self.biss.ok_or(NOT_CONFIGURED)?;
         let has_address = self.bus.biss.as_ref().is_none_or(|device| device.has_address(address));

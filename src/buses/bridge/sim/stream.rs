@@ -10,7 +10,7 @@ use crate::units::Moment;
 
 /// Maximum time to wait for a packet to fill.
 const FLUSH: Duration = Duration::from_millis(5);
-/// Duration of the samples that the adapter keeps until the host fetches them.
+/// Length of the recording that the adapter buffers until the host fetches the samples.
 const BACKLOG: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,7 +145,7 @@ pub(super) struct SampledStream {
 }
 
 impl SampledStream {
-    /// Voltage in microvolts at the value 32 767.
+    /// Voltage in microvolts that a sample of 32767 represents.
     pub(super) const FULL_SCALE_MICROVOLT: u32 = 1_250_000;
     const HEADER_BYTES: usize = 15;
 

@@ -13,7 +13,7 @@ pub struct PacketTracker {
 pub enum PacketVerdict {
     /// The packet is new.
     New {
-        /// Number of preceding packets that have not arrived. They are stale if they arrive later.
+        /// Number of preceding packets that have not arrived. Such packets are stale if they arrive later.
         missing: u32,
     },
     /// This packet, or a newer one, has already been received.

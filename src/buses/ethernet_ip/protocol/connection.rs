@@ -185,7 +185,7 @@ impl ConnectionTimeout {
         self.0
     }
 
-    /// Returns the multiplier, from 4 to 512 intervals.
+    /// Returns the time-out multiplier, which is 4 to 512 intervals.
     pub const fn interval_multiplier(self) -> u32 {
         4 << self.0
     }

@@ -13,7 +13,7 @@ pub struct Command(u16);
 pub struct Frame {
     /// Command code, repeated in the reply.
     pub command: Command,
-    /// Session handle, assigned by the target in the RegisterSession reply. Before that, it is 0.
+    /// Session handle, assigned by the target in the RegisterSession reply. Before this reply, the handle is 0.
     pub session: u32,
     /// Status. It is 0 in a request.
     pub status: EncapsulationStatus,
@@ -43,7 +43,7 @@ pub enum Body {
     Data {
         /// Interface handle, which is 0 for CIP.
         interface: u32,
-        /// Time-out in seconds. It is 0 if CIP has its own time-out.
+        /// Time-out in seconds. The value is 0 if CIP has its own time-out.
         timeout_s: u16,
         /// Address item and data item.
         items: ItemList,

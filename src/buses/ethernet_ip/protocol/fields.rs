@@ -67,7 +67,7 @@ pub enum PacketField {
 /// The reason why bytes cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
-    /// The bytes end prematurely.
+    /// The data is truncated.
     #[error("{what} is incomplete (bytes received: {got})")]
     Short {
         /// The structure being parsed.

@@ -162,7 +162,7 @@ impl GeneralStatus {
     pub const NO_SERVICE: GeneralStatus = GeneralStatus(0x08);
     /// 09h: the attribute value is out of range.
     pub const INVALID_VALUE: GeneralStatus = GeneralStatus(0x09);
-    /// 0Ch: the request is not possible in the present state.
+    /// 0Ch: the request is not possible in the current state.
     pub const STATE: GeneralStatus = GeneralStatus(0x0C);
     /// 0Eh: the attribute is read-only.
     pub const NOT_SETTABLE: GeneralStatus = GeneralStatus(0x0E);

@@ -59,7 +59,7 @@ pub enum AddressError {
         "the gateway {gateway} is outside the network {network}/{prefix}: choose one inside it, or 0.0.0.0 for none"
     )]
     GatewayOutside {
-        /// The given gateway.
+        /// Gateway address outside the network.
         gateway: Ipv4Addr,
         /// Network of the device.
         network: Ipv4Addr,

@@ -8,7 +8,7 @@ impl PositionWord {
     /// Length of a position word in bytes.
     pub const BYTES: usize = 5;
 
-    /// Creates a position word, or returns `None` if it exceeds 40 bits.
+    /// Creates a position word, or returns `None` if the value exceeds 40 bits.
     pub const fn new(word: u64) -> Option<Self> {
         if word >> 40 == 0 { Some(PositionWord(word)) } else { None }
     }

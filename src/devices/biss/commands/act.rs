@@ -137,7 +137,7 @@ fn run_change(
     }
 }
 
-/// Returns whether an operation is complete and its result is good.
+/// Returns whether an operation was completed and passed.
 fn is_passed(outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Tested(report) => report.result.is_passed(),

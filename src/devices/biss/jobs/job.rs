@@ -63,8 +63,8 @@ pub enum Change {
     /// Writes registers, given as addresses and bytes. Registers of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(PositionFilter),
-    /// Stores the preset value, if given. Then sets the given parts of the position at the current shaft angle to the
-    /// stored value.
+    /// Stores the preset value, if there is one. Then sets the given parts of the position at the current shaft angle
+    /// to the stored value.
     Preset {
         value: Option<PresetValue>,
         parts: Option<PresetParts>,

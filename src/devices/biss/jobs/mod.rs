@@ -71,7 +71,7 @@ impl Biss {
 }
 
 impl Session<Biss> {
-    /// Creates a session on an open connection, with the descriptions of `store`. If a motor is given, the encoder is
+    /// Creates a session on an open connection, with the descriptions of `store`. If `motor` is `Some`, the encoder is
     /// simulated in this process and its writes are counted separately.
     pub fn from_connection(
         wire: Box<dyn ByteLink>,

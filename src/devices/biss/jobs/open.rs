@@ -14,7 +14,7 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, connect_simulated, open_byte_stream, reply_margin, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
-/// Link parameter that selects an adapter for schemes that do not imply one.
+/// Link parameter that selects an adapter, for link schemes that do not imply an adapter.
 const BRIDGE: &str = "bridge";
 /// Checks a link to a BiSS encoder without opening it.
 ///

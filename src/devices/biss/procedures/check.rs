@@ -193,7 +193,7 @@ mod offset {
     pub(super) const MAX_CURRENT: u8 = 0x38;
 }
 
-/// Compares measured values with the limits in the data sheet. Returns `None` if there is nothing to compare.
+/// Compares measured values with the limits in the data sheet. Returns `None` if no value can be compared.
 fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };

@@ -39,7 +39,7 @@ pub enum Error {
     },
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged { requested: RequestedItem, tries: u32, cause: ReplyDamage },
-    /// Bytes keep arriving during a required period of silence.
+    /// Bytes keep arriving although the line must be silent.
     #[error("the line is never silent")]
     NeverSilent,
     #[error(transparent)]
@@ -75,7 +75,7 @@ pub enum Error {
     Refused {
         address: RegisterAddress,
         value: u8,
-        /// Actual value of the register, if the connection reveals it.
+        /// Value read back from the register, or `None` if the connection cannot provide it.
         reads: Option<u8>,
     },
     /// It is unknown whether the value was accepted, because the register cannot be read back or the value read back

@@ -34,7 +34,7 @@ pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> 
     add_error_flags(master, reading)
 }
 
-/// Adds the last known flags to the position. One of the registers is read first if it is due.
+/// Adds the last known flags to the position. If one of the flag registers is due, it is read first.
 pub(super) fn add_error_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
     let now = master.now();
     let flags = match master.station().flags {

@@ -29,7 +29,7 @@ pub struct ConsecutiveFrames {
     pub first: u64,
     pub at: Moment,
     pub period_ns: i64,
-    /// Number of frames missing before the first one.
+    /// Number of frames lost before the first frame in the list.
     pub lost: u64,
     /// The frames, of which there is at least one.
     pub frames: Vec<Frame>,

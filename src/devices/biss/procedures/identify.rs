@@ -19,14 +19,15 @@ use crate::profile::UnknownValues;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub kind: Kind,
-    /// Serial number in decimal, with the bytes taken as big-endian (`U`). Empty if the encoder has no register for it.
+    /// Serial number in decimal, with the bytes taken as big-endian (`U`: not documented). The string is empty if the
+    /// encoder has no register for the serial number.
     pub serial_number: String,
     /// Bytes of the serial number as received.
     pub serial_bytes: Vec<u8>,
-    /// Firmware version, or `None` if the encoder has no registers for it.
+    /// Firmware version, or `None` if the encoder has no registers for the version.
     pub firmware: Option<Firmware>,
     pub description: Arc<Description>,
-    /// Difference from a description of the same manufacturer for another device ID. `None` if there is no such
+    /// Difference from the description of another device of the same manufacturer, or `None` if there is no such
     /// description.
     pub mismatch: Option<IdentityMismatch>,
     /// Data sheet, or `None` if the encoder has none or its profile is not supported.

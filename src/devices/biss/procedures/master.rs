@@ -23,8 +23,8 @@ use crate::link::Ctx;
 use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
-/// Number of missing replies after which a register is considered missing, if another register replies. A single reply
-/// may be lost on a bad line.
+/// Number of missing replies after which a register is considered missing, provided that another register replies. A
+/// disturbed line may lose a single reply.
 const MAX_MISSING_REPLIES: u32 = 3;
 
 /// Host side of the line to a BiSS encoder, over either transport.
@@ -48,7 +48,8 @@ type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
-    /// The encoder rejected the value. Contains the actual register value, if the connection reveals it.
+    /// The encoder rejected the value. Contains the value read back from the register, or `None` if the connection
+    /// cannot provide it.
     No(Option<u8>),
 }
 

@@ -19,10 +19,10 @@ const READING_INTERVAL: Duration = Duration::from_millis(100);
 /// Minimum multiturn width in bits for measuring a speed. During the readings, a motor at 12,000 rpm turns forty times,
 /// which is less than this range.
 const MIN_MULTITURN_BITS: u8 = 7;
-/// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`).
+/// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`: not documented).
 const REST_JITTER_DIVISOR: u64 = 8192;
 
-/// How to treat values that were entered in a device mode but never saved. The encoder shows them as if they were
+/// Treatment of values that were entered in a device mode but never saved. The encoder shows them as if they were
 /// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedValues {
@@ -166,8 +166,8 @@ pub fn save(
     })
 }
 
-/// Runs `read`. If the line damages any data meanwhile, other damage may have gone unnoticed. In that case, everything
-/// is read again until two readings agree.
+/// Runs `read`. If any data was damaged on the line in the meantime, other damage may have gone unnoticed. In this
+/// case, everything is read again until two readings agree.
 fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,

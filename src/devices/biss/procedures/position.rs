@@ -27,7 +27,7 @@ pub struct PositionReading {
     pub multiturn_bits: u8,
     /// Width of the position within a revolution in bits, 0 to 32.
     pub singleturn_bits: u8,
-    /// Whether the multiturn width is known. If it is not, turns and steps are only the upper and lower part of the
+    /// Whether the multiturn width is known. If not, the turns and steps are only the upper and lower parts of the
     /// position.
     pub is_split_known: bool,
     /// Complete frame with flags and CRC, or `None` over the configuration pin.
@@ -126,7 +126,7 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<PolledSample, Error> {
     }
 }
 
-/// Reads watched registers once. It is not an error if registers are missing or belong to a data area.
+/// Reads watched registers once. Registers that are missing or belong to a data area do not cause an error.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

@@ -52,7 +52,7 @@ impl Registers {
     /// Reads consecutive registers and stores their values.
     ///
     /// # Errors
-    /// Returns an error of [`Master::read_consecutive`].
+    /// Returns any error that [`Master::read_consecutive`] returns.
     pub(super) fn read(
         &mut self,
         master: &mut Master<'_>,

@@ -64,7 +64,7 @@ parameters! {
     pub struct FrameParameters: UrlError {
         pub multiturn: Option<u8> = None, "mt" => OptionalValue(WholeNumbers(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
         pub singleturn: Option<u8> = None, "st" => OptionalValue(WholeNumbers(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
-        /// Checksum of the frames, if given. `Some(None)` means that frames have no checksum.
+        /// Checksum of the frames, if specified. `Some(None)` means that frames have no checksum.
         pub crc: Option<Option<Crc>> = None,
             "crc" => OptionalValue(CustomNotation(AllowedValues::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
     }
@@ -114,12 +114,12 @@ pub struct Station {
     pub firmware: Option<Firmware>,
     /// Frame layout from the encoder's data sheet or from the link, if either provides one.
     pub layout: Option<Layout>,
-    /// Frame layout given by the user, for an encoder that does not report it.
+    /// Frame layout that the user has specified for an encoder that does not report its layout.
     pub given: Option<Layout>,
     /// Source of the frame layout, or `None` before identification.
     pub(super) source: Option<FrameSource>,
-    /// Whether each value must be read twice, even on a line without errors. This is the case for values that will be
-    /// stored.
+    /// Whether each value must be read twice, even on a line without errors. Values that will be stored are read in
+    /// this way.
     pub(super) thorough: bool,
     pub(super) noisy: bool,
     pub(super) bus: Option<Bus>,
@@ -253,8 +253,8 @@ impl Station {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that a write succeeded. It does not prove anything for a command
-    /// register, which may still hold the same value from an earlier command.
+    /// Returns whether reading a register back proves that a write succeeded. For a command register, reading back
+    /// proves nothing, because the register may still hold the same value from an earlier command.
     pub(super) fn is_readback_conclusive(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
@@ -263,7 +263,7 @@ impl Station {
         description.access_at(address) == Some(Access::Rw) && !self.is_command_register(address)
     }
 
-    /// Returns whether writing the given register is a command that runs a procedure or saves something.
+    /// Returns whether a write to the given register is a command that runs a procedure or saves values.
     pub(super) fn is_command_register(&self, address: RegisterAddress) -> bool {
         self.description.as_ref().is_some_and(|description| {
             let saves = description.register_at(address).is_some_and(|register| !register.saves.is_empty());
@@ -282,7 +282,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// Returns the frame layout given in the link. The usual checksum is used unless another is given.
+    /// Returns the frame layout specified in the link. Unless the link specifies a checksum, the usual one is used.
     fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, RejectedParameter> {
         let alone = |name: &str, allowed| RejectedParameter::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {

@@ -17,7 +17,7 @@ pub struct EncoderStatus {
     pub warnings: Option<FlagRegister>,
     pub celsius: Option<f64>,
     pub filter: Option<PositionFilter>,
-    /// Position, or `None` if it could not be read. It includes the error and warning bits if available.
+    /// Position, or `None` if it could not be read. The position includes the error and warning bits if available.
     pub position: Option<PositionReading>,
 }
 
@@ -85,7 +85,8 @@ pub fn read_all_registers(
     read_survey(master, identity, registers, progress)
 }
 
-/// Reads everything except the identity. `registers` contains the values that were already read for the identity.
+/// Reads all values of the survey except the identity. `registers` contains the values that were already read for the
+/// identity.
 pub(super) fn read_survey(
     master: &mut Master<'_>,
     identity: Identity,

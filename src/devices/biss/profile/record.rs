@@ -78,7 +78,7 @@ pub struct RecordedValues {
     pub unknown: UnknownValues,
 }
 
-/// A mark on an item that is only valid for one encoder on one motor.
+/// Marks an item as a mounting value, which is valid only for one encoder as mounted on one motor.
 pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 
 /// An item that is only valid for one encoder on one motor.

@@ -96,7 +96,7 @@ pub enum PlanError {
     ByteCount {
         /// Range to be written.
         range: RegisterRange,
-        /// Number of bytes given.
+        /// Number of bytes that were specified.
         count: usize,
     },
     /// The calibration requires the balanced filter, but another filter is active.
@@ -155,8 +155,9 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Checks that a profile was read from this encoder or that the options allow another one. Permission for another
-/// serial number does not include another type, whose registers may have other meanings.
+/// Checks that a profile was read from this encoder, unless the options allow a profile of another encoder. Even if
+/// another serial number is allowed, another encoder type must be allowed separately, because its registers may have
+/// other meanings.
 ///
 /// # Errors
 /// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder is not allowed.
@@ -202,7 +203,7 @@ pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity)
     Ok(())
 }
 
-/// How to treat values that are only valid for one encoder on its motor.
+/// Treatment of mounting values, which are valid only for one encoder as mounted on its motor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum MountingPolicy {
     /// The values belong to this encoder.

@@ -22,7 +22,7 @@ pub use host::{Host, Step};
 
 /// Number of consecutive cycles with CDM = 0 that return host and encoder to the idle state.
 pub const REST_CYCLES: u8 = 14;
-/// Maximum number of cycles by which an encoder may delay its start bit S (`U`).
+/// Maximum number of cycles by which an encoder may delay its start bit S (`U`: not documented).
 pub const MAX_WAIT_CYCLES: u8 = 50;
 /// Number of registers that a control frame can address.
 const REGISTERS: u8 = 0x80;

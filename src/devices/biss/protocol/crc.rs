@@ -64,7 +64,7 @@ impl Crc {
     /// means no checksum. The notation omits the lowest term, so that 21h stands for 43h.
     ///
     /// # Errors
-    /// Returns an error of [`new`](Self::new) if the parameters are invalid.
+    /// Returns an error from [`new`](Self::new) if the parameters are invalid.
     pub fn from_data_sheet(polynomial: u32, start: u32) -> Result<Option<Self>, CrcError> {
         match polynomial {
             0 => Ok(None),

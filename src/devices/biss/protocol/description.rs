@@ -190,7 +190,7 @@ impl Description {
     /// Checks whether an encoder is of the described kind.
     ///
     /// # Errors
-    /// Returns an [`IdentityMismatch`] with both identities if it is not.
+    /// Returns an [`IdentityMismatch`] with both identities if the encoder is of another kind.
     pub fn check_identity(&self, found: &Identity) -> Result<(), IdentityMismatch> {
         match &self.identity {
             Some(expected) if expected != found => {

@@ -52,7 +52,7 @@ pub enum EdsValue {
     Bank(u8),
     /// A bank that is not available, encoded as FFh.
     NotAvailable,
-    /// Time in a unit that the manual does not define. No unit matches all values in the manual's tables (`U`).
+    /// Time in an unknown unit. The manual does not define the unit, and no unit matches all values in its tables.
     Ticks(u8),
     /// Adaptive time-out, which is encoded as 0.
     Adaptive,

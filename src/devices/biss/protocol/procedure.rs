@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// A procedure that takes an encoder through a device mode.
+/// A procedure that runs in a device mode of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProcedureKind {
@@ -101,7 +101,7 @@ codes! {
         Counterclockwise = 0x04 "pulse collection active, counterclockwise",
         /// The test is complete in both directions.
         Complete = 0x06 "test complete",
-        /// The test failed for the reason given by the error code (bank 0, 08h).
+        /// The test failed. The error code in bank 0, register 08h, states the reason.
         Failed = 0x07 "test failed",
         /// The encoder has detected that the motor turns in the wrong direction.
         WrongDirection = 0x30 "wrong motor rotation direction",

@@ -44,9 +44,9 @@ pub struct PositionData {
     /// Position within the revolution, in steps. The number of steps per revolution is 2 to the power of the layout's
     /// singleturn bits.
     pub singleturn: u32,
-    /// Whether the encoder reports that the position is invalid. The bit on the line is then 0.
+    /// Whether the encoder reports that the position is invalid. If so, the bit on the line is 0.
     pub error: bool,
-    /// Whether the encoder reports a warning. The bit on the line is then 0, but the position remains valid.
+    /// Whether the encoder reports a warning. If so, the bit on the line is 0, but the position remains valid.
     pub warning: bool,
 }
 

@@ -217,7 +217,8 @@ impl fmt::Display for Firmware {
     }
 }
 
-/// The profile ID, which identifies the type of electronic data sheet. It is stored in 42h and 43h, high byte first.
+/// The profile ID, which identifies the type of electronic data sheet. It is stored in registers 42h and 43h, high byte
+/// first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ProfileId(u16);
 

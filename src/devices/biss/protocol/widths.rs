@@ -3,10 +3,10 @@
 
 use super::crc::Crc;
 
-/// Range of data widths to try, in bits (`U`).
+/// Range of data widths to try, in bits (`U`: not documented).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
 /// Required number of consecutive frames with a matching checksum. Frames that repeat the previous data are not counted
-/// (`U`).
+/// (`U`: not documented).
 const REQUIRED_FRAMES: usize = 8;
 
 /// Returns the data width without the checksum, or `None` if no length fits or too few frames differ.

@@ -62,7 +62,7 @@ impl Calibration {
         self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
-    /// Handles a command. Returns `false` if it is rejected.
+    /// Handles a command. Returns `false` if the command is rejected.
     pub(super) fn write(&mut self, now: Moment, value: u8, conditions: CalibrationConditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,

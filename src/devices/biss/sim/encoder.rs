@@ -182,8 +182,8 @@ impl Encoder {
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
-    /// Returns the shaft position at `now` and the number of steps per revolution. The position is available even if
-    /// the encoder reports none.
+    /// Returns the shaft position at `now` and the number of steps per revolution. The function returns a position even
+    /// if the encoder does not report one.
     pub fn shaft_position(&mut self, now: Moment) -> (u64, u64) {
         self.update(now);
         (self.shaft.fractional_position_at(now), 1 << (self.shaft.layout().singleturn_bits() + FRACTIONAL_BITS))

@@ -1,5 +1,6 @@
 //! Procedures in which values are entered and then saved: data, filter and preset. They hold the entered values, and
-//! the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected (`U`). See manual 6.5 to 6.7.
+//! the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected (`U`: not documented). See manual
+//! 6.5 to 6.7.
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, FilterCommand, FilterStatus, Layout, PositionFilter, PresetCommand, PresetStatus,
@@ -29,7 +30,7 @@ impl Area {
 pub(super) enum EntryEffect {
     Refused,
     Nothing,
-    /// A data area is opened. Its content must then be passed to [`DataEntry::open`].
+    /// A data area is opened. As a result, its content must be passed to [`DataEntry::open`].
     Open(Area),
     SaveData(Area, Vec<u8>),
     /// The filter is written to the flash. A restart follows.

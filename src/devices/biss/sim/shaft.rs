@@ -55,7 +55,8 @@ impl Shaft {
         whole << FRACTIONAL_BITS | parts
     }
 
-    /// Presets singleturn, multiturn or both to the given values, effective from `at`. `None` leaves a part unchanged.
+    /// Presets singleturn, multiturn or both to the given values, effective from `at`. A part that is `None` remains
+    /// unchanged.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.position_at(at);
         let wanted = PositionData {

@@ -16,7 +16,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{LineConditions, TransitQueue, VirtualLine};
 use crate::units::Moment;
 
-/// A line with a virtual encoder, as seen by the host. It is created from a [`Config`].
+/// A line with a virtual encoder, from the perspective of the host. The line is created from a [`Config`].
 #[derive(Clone)]
 pub struct UbicomPort {
     encoder: Encoder,

@@ -45,7 +45,7 @@ impl WiegandState {
         }
     }
 
-    /// Handles a command. Returns `false` if it is rejected. The [`Encoder`](super::Encoder) saves the result.
+    /// Handles a command. Returns `false` if the command is rejected. The [`Encoder`](super::Encoder) saves the result.
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
@@ -69,8 +69,7 @@ impl WiegandState {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Adds the revolutions since the previous call at a constant speed. A run ends when it has collected enough
-    /// revolutions.
+    /// Adds the revolutions since the previous call at a constant speed. A run ends after enough revolutions.
     pub(super) fn update(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
         if !self.is_running() {
             return;

@@ -107,7 +107,7 @@ impl Encoder {
         if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
     }
 
-    /// Returns the reason why an area cannot be edited now, or `None` if it can be.
+    /// Returns the reason why an area cannot be edited now, or `None` if it can be edited.
     pub fn not_editable_reason(&self, area: &Area) -> Option<Text> {
         if !area.access.is_writable() {
             return Some(TEXTS.text("data.read_only"));

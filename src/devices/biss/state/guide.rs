@@ -15,7 +15,7 @@ pub struct ProcedureRun {
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, OperatorTask)>,
-    /// How the procedure ended, or `None` while it is running.
+    /// Result of the procedure, or `None` while it is running.
     pub end: Option<ProcedureEnd>,
 }
 

@@ -12,7 +12,8 @@ pub enum ValidityMark {
 }
 
 impl Encoder {
-    /// Returns the mark on the last position, or `None` if there is no position or it is valid without a warning.
+    /// Returns the mark on the last position, or `None` if there is no position, or the position is valid without a
+    /// warning.
     pub fn position_mark(&self) -> Option<ValidityMark> {
         let reading = self.record.last()?;
         let status = self.status.as_ref();

@@ -104,7 +104,8 @@ impl HasMemory for Encoder {
         commit_job(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
-    /// Starts a write. If the write needs an operator at the motor, it is displayed step by step.
+    /// Writes the displayed plan. If the plan needs an operator at the motor, its steps are displayed one after
+    /// another.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.approve_plan(shown) else { return };
         let ops = &agreed.prepared.plan.ops;

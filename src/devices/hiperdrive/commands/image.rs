@@ -9,8 +9,8 @@ use crate::devices::hiperdrive::protocol::{
     ParameterRow, Pkw, Task, Value, split_turns,
 };
 
-/// Returns the meanings of process data: one per possible layout, restricted to the direction if known. The result is
-/// empty if no layout has this length.
+/// Decodes process data and returns one meaning for each layout of this length. If the direction is known, only layouts
+/// of that direction are used. The result is empty if no layout matches.
 ///
 /// # Errors
 /// Returns an error with the reason if the data cannot have been sent in the known direction.

@@ -246,7 +246,7 @@ fn number_text(item: Item, number: i64) -> String {
     }
 }
 
-/// Reads the speed scale of a drive (162, 164), or returns `None` if either part is 0.
+/// Reads the speed scale of a drive (parameters 162 and 164), or returns `None` if either part is 0.
 fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
     let mut part = |base| match ParameterNumber::for_drive(base, drive).map(|number| value(runner, number)) {
         Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),

@@ -93,7 +93,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     Err(Failure::Failed(lines))
 }
 
-/// Reads the error that stopped the drive, if it is still reported.
+/// Reads the error that stopped the drive, if the drive still reports the error.
 fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     let newest = value(runner, ParameterNumber::for_drive(NEWEST_ERROR, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
@@ -109,7 +109,8 @@ fn describe_range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scal
     format!("drive {} moves to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
 }
 
-/// Returns a drive's motion permit according to its present parameters, along with its scale.
+/// Reads the parameters of a drive and returns the resulting motion permit (locks and limits) along with the position
+/// scale.
 fn read_permit(
     runner: &mut Runner,
     identity: &Identity,
@@ -133,7 +134,7 @@ fn read_permit(
     Ok((limits.motion_permit(now, false), limits.scale()))
 }
 
-/// Checks that a target fits into 32 bits. Any other target is outside all limits.
+/// Checks that a target fits into 32 bits.
 fn check_target(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {

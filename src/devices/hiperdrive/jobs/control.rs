@@ -80,7 +80,7 @@ impl CyclicControl {
         }
     }
 
-    /// Updates the motion permits of the drives from a survey that began at the given moment.
+    /// Updates the motion permits (locks and limits) of the drives from a survey that began at the given moment.
     pub(super) fn update_permits(&mut self, survey: &Survey, began: Moment) {
         for drive in &survey.identity.drives {
             let read = |base| match survey.values.get(&ParameterNumber::for_drive(base, drive.number)?)? {
@@ -165,7 +165,8 @@ impl Hiperdrive {
         closed
     }
 
-    /// Ends the session: stops and releases drives under control, and unregisters from the device if it was controlled.
+    /// Ends the session: stops and releases drives under control, and unregisters from the device if the session
+    /// controlled it.
     pub(super) fn end_session(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
         if let Err(why) = self.release(context) {
@@ -202,7 +203,7 @@ impl Hiperdrive {
         }
     }
 
-    /// Executes a plan and reads the limits of the drives again. No drive may move until its limits are known.
+    /// Executes a plan and reads the limits of the drives again. A drive must not move until its limits are known.
     pub(super) fn commit_plan(
         &mut self,
         context: &mut SessionContext,

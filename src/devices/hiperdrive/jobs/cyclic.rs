@@ -85,8 +85,8 @@ impl Cyclic {
         Ok(Cyclic { motion: motion.clone(), commands, ended })
     }
 
-    /// Returns the reason for the loss if the connection was lost. The owner must then close it through the session's
-    /// own connection.
+    /// Returns the reason for the loss if the connection was lost. In this case, the owner must close it through the
+    /// session's own connection.
     pub fn connection_loss(&self) -> Option<ConnectionLoss> {
         self.motion.connection_loss()
     }

@@ -39,7 +39,7 @@ struct Cell {
     session: ReplyMonitor,
     punctual: bool,
     view: MotionSnapshot,
-    /// Whether the program is shutting down. No motion is allowed then.
+    /// Whether the program is shutting down. While it is, no motion is allowed.
     is_shutting_down: bool,
     /// Whether the target holds a cyclic connection that this session opened.
     connected: bool,
@@ -101,7 +101,7 @@ impl Motion {
     }
 
     /// Requests a motion of a drive and returns the number of this action. The new action replaces the previous one and
-    /// stops its motion. It must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
+    /// stops its motion. The request must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
     pub fn request_motion(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
@@ -190,7 +190,7 @@ impl Motion {
     }
 
     /// Reads a parameter for some time through the parameter words of the cyclic connection. Returns the latest
-    /// reading, or `None` if that reading is old or there is no such connection.
+    /// reading, or `None` if the reading is outdated or the connection has no parameter words.
     pub fn watch_parameter(&self, number: ParameterNumber) -> Option<ParameterReading> {
         let now = self.0.clock.now();
         let mut cell = self.lock();

@@ -40,8 +40,8 @@ fn turns_begun(group: usize, at: Moment, turn: Duration) -> u128 {
 }
 
 impl Hiperdrive {
-    /// Reads the limit parameters if they are due while drives may be moved. If reading fails, nothing moves until it
-    /// succeeds, and the failure is reported once.
+    /// Reads the limit parameters if they are due while drives may be moved. If reading fails, no drive may move until
+    /// reading succeeds, and the failure is reported once.
     pub(super) fn refresh_rules(&mut self, context: &mut SessionContext) {
         let Some(identity) = self.control.controlled_device() else { return };
         if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {

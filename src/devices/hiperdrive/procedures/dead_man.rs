@@ -58,7 +58,7 @@ pub struct DeadMan {
     effort: SpeedTorque,
     /// Whether speed mode was entered. The drive may remember the run and must first leave the operational state.
     after_run: bool,
-    /// Whether reports are currently missing. No motion may start then.
+    /// Whether reports are currently missing. While they are, no motion may start.
     is_out_of_contact: bool,
     ended: Option<(u64, ActionEnd)>,
 }
@@ -86,10 +86,10 @@ const STEP: Duration = Duration::from_secs(2);
 const START: Duration = Duration::from_secs(1);
 /// Time without a report after which no drive may move, more than three times the longest interval.
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
-/// Maximum delay of a report between a hub and its drives (`U`).
+/// Maximum delay of a report between a hub and its drives (`U`: not documented).
 pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);
 /// Time for which positions must have arrived before they are taken as those of the drive. A hub first queries all its
-/// drives (`U`).
+/// drives (`U`: not documented).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
 /// Time at standstill after which a drive is considered to have missed its target.
 const NOT_REACHED_TIME: Duration = Duration::from_millis(500);
@@ -181,8 +181,8 @@ impl DeadMan {
         }
     }
 
-    /// Returns whether every level of the stop sequence has failed. The connection must then be closed, so that the
-    /// watchdog of the drives stops them.
+    /// Returns whether every level of the stop sequence has failed. In this case, the connection must be closed, so
+    /// that the watchdog of the drives stops them.
     pub const fn has_exhausted_stop_levels(&self) -> bool {
         matches!(self.stage, Stage::Stop { level: StopLevel::Close, .. })
     }

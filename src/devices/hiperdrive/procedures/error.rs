@@ -109,7 +109,7 @@ pub enum Error {
     Link(LinkError),
     #[error("cancelled")]
     Cancelled,
-    /// Bytes that are not frames keep arriving.
+    /// Bytes that do not form frames keep arriving.
     #[error("bytes keep arriving that are not EtherNet/IP frames")]
     NeverSilent,
     #[error("no reply: {requested} (attempts: {tries})")]
@@ -163,7 +163,7 @@ pub enum Error {
     /// The value is out of range; no data was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The device rejected the value. The error contains the present range.
+    /// The device rejected the value. The error contains the current range.
     #[error("{0}")]
     Refuses(OutOfRange),
     /// The length of a number differs from the type of its parameter.

@@ -74,8 +74,8 @@ pub struct DriveStatus {
     pub status: StatusWord,
     /// Errors stored in parameters 108 to 115, newest first. After power-up, they may be old (reference 4).
     pub buffer: Vec<ErrorCode>,
-    /// Drive error word, motion status and communication error, parameters 116 to 118. 0 means no error, and FFFFh
-    /// means no drive.
+    /// Drive error word, motion status and communication error, parameters 116 to 118. The value 0 means no error, and
+    /// FFFFh means no drive.
     pub words: [u16; 3],
     /// Number of faults since the last acknowledgement, parameter 197.
     pub faults: u8,
@@ -169,7 +169,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
 }
 
 /// Reads a string of a drive. Returns an empty string if the drive does not provide it, which may be the case while the
-/// drive is not requested (`U`).
+/// drive is not requested (`U`: not documented).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(drive_parameter(base, drive)?) {
         Err(error) if error.is_unavailable() => Ok(String::new()),
@@ -177,7 +177,7 @@ pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber)
     }
 }
 
-/// Reads the category, or the device name if there is no such parameter.
+/// Reads the category of the device, or its name if the device has no category parameter.
 fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(device_parameter(13)?) {
         Err(Error::Refused { .. }) => {
@@ -191,7 +191,7 @@ fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
 /// Reads identity and status of a device.
 ///
 /// # Errors
-/// Returns an error of [`identify`] if the identity or the status cannot be read.
+/// Returns an error from [`identify`] if the identity or the status cannot be read.
 pub fn read_survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
     let identity = identify(master, progress)?;
     let numbers: Vec<ParameterNumber> = readable_parameters(&identity).collect();
@@ -228,7 +228,7 @@ const OF_STATUS: u64 = 15;
 /// Reads the errors and states of all drives.
 ///
 /// # Errors
-/// Returns an error of [`identify`] if the status cannot be read.
+/// Returns an error from [`identify`] if the status cannot be read.
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = read_topology(master)?;
     // For each port, one read shows whether a drive is present. The other reads are those of its status.
@@ -312,7 +312,7 @@ pub(super) fn device_parameter(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
-/// Returns a drive's parameter number, given the corresponding number of drive 1.
+/// Converts a parameter number of drive 1 to the corresponding number of another drive.
 pub(super) fn drive_parameter(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::for_drive(base, drive).ok_or(Error::NoNumber(base))
 }

@@ -158,8 +158,8 @@ impl DriveLimits {
         .collect()
     }
 
-    /// Returns the permit of the drive at the given time. `expert` specifies whether the user has allowed an endless
-    /// run.
+    /// Returns the motion permit (limits, locks and exceptions) of the drive at the given time. `expert` specifies
+    /// whether the user has allowed an endless run.
     pub fn motion_permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.motion_locks();
         locks.extend((!locks.contains(&MotionLock::Unread) && !self.is_fresh(now)).then_some(MotionLock::Outdated));

@@ -54,7 +54,7 @@ impl<D: Into<ReplyDamage>> From<D> for ExchangeError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RetryPolicy {
     Always,
-    /// The request is sent once. `takes` is the time limit of the reply if it is longer than usual.
+    /// The request is sent once. `takes` is the time limit for the reply, or `None` for the usual limit.
     Never {
         takes: Option<Duration>,
     },
@@ -97,7 +97,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Runs `work` to its end and ignores cancellation meanwhile. `work` must result in a safe state.
+    /// Runs `work` to its end and ignores any cancellation until then. `work` must result in a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -131,7 +131,7 @@ impl<'a> Master<'a> {
     /// Reads a numeric parameter.
     ///
     /// # Errors
-    /// Returns an error of [`read`](Self::read).
+    /// Returns any error that [`read`](Self::read) returns.
     pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
         match self.read(number)? {
             Value::Number(value) => Ok(value),
@@ -142,7 +142,7 @@ impl<'a> Master<'a> {
     /// Reads a string parameter.
     ///
     /// # Errors
-    /// Returns an error of [`read`](Self::read).
+    /// Returns any error that [`read`](Self::read) returns.
     pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
         match self.read(number)? {
             Value::Text(text) => Ok(text),

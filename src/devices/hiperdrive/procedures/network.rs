@@ -14,7 +14,7 @@ pub struct Network {
     pub switch: i64,
     /// Attribute 3 of the TCP/IP object: source of the address when the switches are at 0.
     pub control: Option<ConfigurationControl>,
-    /// Attribute 5 of the TCP/IP object: address, mask, gateway, name servers and domain.
+    /// Attribute 5 of the TCP/IP object, which contains the address, mask, gateway, name servers and domain.
     pub interface: Option<InterfaceConfiguration>,
     pub mac: Option<[u8; 6]>,
 }

@@ -31,7 +31,7 @@ impl Temperature {
     /// Returns the number of the temperature parameter.
     ///
     /// # Errors
-    /// Returns [`Error::NoNumber`] if there is no such parameter.
+    /// Returns [`Error::NoNumber`] if the parameter does not exist.
     pub fn parameter(self) -> Result<ParameterNumber, Error> {
         match self {
             Temperature::Device => device_parameter(11),

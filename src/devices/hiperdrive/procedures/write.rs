@@ -47,7 +47,7 @@ impl Write for DeviceWriter<'_, '_> {
     type Written = WrittenChanges;
     type EndState = ();
 
-    /// Checks that the drives are unchanged and none of them is moving.
+    /// Checks that the drives are unchanged and that no drive is moving.
     fn confirm_base(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let changed = |item: String| Err(Error::Changed { item });
@@ -96,7 +96,7 @@ impl Write for DeviceWriter<'_, '_> {
     fn end_state(&mut self, _: &Error) {}
 }
 
-/// Returns the drives affected by a plan: all if it affects the device as a whole.
+/// Returns the drives affected by a plan. These are all drives if the plan affects the device as a whole.
 fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     let of_op = |op: &Op| match op {
         Op::Write { number, .. } => number.drive(),
@@ -114,7 +114,7 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
 }
 
 /// Returns whether the scale or limits of a drive are only partly written before this operation. A write must not stop
-/// there, because the same limits denote other positions under another scale.
+/// in this state, because the same limits denote other positions under another scale.
 fn are_scale_or_limits_incomplete(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. }
@@ -144,8 +144,7 @@ fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
     Ok(())
 }
 
-/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4) and then becomes the
-/// position.
+/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4) and becomes the position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set_parameter(number, wanted)?;
     let reads = master.read_number(number)?;
@@ -186,7 +185,7 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
     await_idle(master, service, patience)
 }
 
-/// Waits until parameter 47 is 0. The device may reply before it has finished.
+/// Waits until parameter 47 is 0. The device may reply to the request before the service is complete.
 fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
@@ -236,7 +235,8 @@ pub fn find_remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultR
     })
 }
 
-/// Clears a drive's fault by writing 197 = 0. If a reset is required first, it is a separate operation.
+/// Clears the fault of a drive by writing 0 to parameter 197. A reset that is required beforehand is a separate
+/// operation.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = drive_parameter(ACKNOWLEDGE, drive)?;
     master.set_parameter(number, 0)?;
@@ -247,7 +247,7 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
 }
 
 /// Writes the address source, then the addresses. The order matters because setting the source to *stored* stores the
-/// present address (reference 1).
+/// current address (reference 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

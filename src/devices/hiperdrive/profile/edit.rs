@@ -16,15 +16,15 @@ use crate::devices::hiperdrive::protocol::{
 /// Positions of the drives in scaled steps, parameter 107.
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
-/// Plans the changes that give a device the wanted values. Only differences are written, and they are saved where
-/// possible. Values missing from the wanted image stay unchanged.
+/// Plans the changes that bring a device to the values of the wanted image. Only differences are written, and they are
+/// saved where possible. Values missing from the wanted image stay unchanged.
 ///
 /// `device` must contain all values of the wanted image. For each drive whose scale or limits change, it must contain
 /// all four of them (154 to 160). The position is checked if it is known, and the travel if the variant is known.
 ///
 /// A drive is requested before anything else is written, because requesting resets it. Its request is removed last. In
 /// between, the values are written drive by drive. The position scale, the speed scale and the maximum speed come
-/// first. The limits follow in an order that the drive accepts at its present position, then all other values. The
+/// first. The limits follow in an order that the drive accepts at its current position, then all other values. The
 /// position in a new scale is calculated.
 ///
 /// # Errors
@@ -70,7 +70,7 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans to set the present position to a value, rounded to 64 steps, and to save it. Parameter 198 is written even if
+/// Plans to set the current position to a value, rounded to 64 steps, and to save it. Parameter 198 is written even if
 /// its value is unchanged, since writing it sets the position.
 ///
 /// # Errors

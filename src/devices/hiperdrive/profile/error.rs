@@ -81,7 +81,7 @@ pub enum PlanError {
         /// Parameter that triggers an action.
         item: Item,
     },
-    /// The present value is unknown because it has not been read or its drive is missing.
+    /// The current value is unknown because it has not been read or its drive is missing.
     #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
     NotRead {
         /// Parameter whose present value is unknown.
@@ -129,15 +129,16 @@ pub enum PlanError {
         position: i32,
         /// Position rounded to 64 steps, which may exceed 32 bits.
         becomes: i64,
-        /// Present lower limit.
+        /// Current lower limit.
         lower: i64,
-        /// Present upper limit.
+        /// Current upper limit.
         upper: i64,
     },
     /// The device would be unreachable with these addresses.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// The address source is unknown. An existing value is preserved, but this value is never set.
+    /// The requested address source is unknown and therefore not written. Contains its number. An unknown source that
+    /// the device already uses is preserved.
     #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
     Source(u8),
 }

@@ -26,7 +26,7 @@ impl Image {
         self.values.get(&number).copied()
     }
 
-    /// Returns the value of a parameter of a drive, given the parameter number for drive 1.
+    /// Returns the value of a drive parameter. `number` is the parameter number for drive 1.
     pub fn for_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         self.get(ParameterNumber::for_drive(number, drive)?)
     }
@@ -39,13 +39,13 @@ impl Image {
         drives
     }
 
-    /// Returns the position scale of a drive (154, 156), or `None` if the scale is unknown or invalid.
+    /// Returns the position scale of a drive (parameters 154 and 156), or `None` if the scale is unknown or invalid.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let part = |number| self.for_drive(drive, number).and_then(|value| u16::try_from(value).ok());
         PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
     }
 
-    /// Returns the lower and upper limits of a drive (158, 160), in scaled steps.
+    /// Returns the lower and upper limits of a drive (parameters 158 and 160), in scaled steps.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
         Some((self.for_drive(drive, LOWER_LIMIT)?, self.for_drive(drive, UPPER_LIMIT)?))
     }

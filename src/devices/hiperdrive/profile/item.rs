@@ -24,9 +24,9 @@ pub enum ItemError {
          device"
     )]
     NoDrive {
-        /// The given parameter number.
+        /// Parameter number in the string.
         number: u16,
-        /// The given drive number.
+        /// Drive number in the string.
         drive: u8,
     },
 }

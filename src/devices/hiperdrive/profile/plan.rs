@@ -51,10 +51,10 @@ pub enum Op {
     },
     /// Executes a service.
     Service(Service),
-    /// Writes the TCP/IP object, attribute 3 before attribute 5, because setting attribute 3 to 0 stores the present
+    /// Writes the TCP/IP object, attribute 3 before attribute 5, because setting attribute 3 to 0 stores the current
     /// address.
     Network {
-        /// Present settings.
+        /// Current settings.
         from: NetworkSettings,
         /// New settings.
         to: NetworkSettings,
@@ -64,16 +64,16 @@ pub enum Op {
 /// A service of a device, requested through parameter 47 or 197 (reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
-    /// 47 = 1: saves the present values of all saved parameters.
+    /// Parameter 47 = 1: saves the current values of all saved parameters.
     Save,
-    /// 47 = −2: restores the last saved parameters of the adapter or hub itself; those of its drives stay unchanged.
+    /// Parameter 47 = −2: restores the last saved parameters of the adapter or hub, but not of its drives.
     Recall,
-    /// 47 = −1: restores the factory values of the adapter or hub itself without saving them; those of its drives stay
-    /// unchanged.
+    /// Parameter 47 = −1: restores the factory values of the adapter or hub itself without saving them; those of its
+    /// drives stay unchanged.
     Factory,
-    /// 47 = −3: restores and saves the factory values of all parameters, and DHCP.
+    /// Parameter 47 = −3: restores and saves the factory values of all parameters, and DHCP.
     FactoryAll,
-    /// 47 = −4: tests for the presence of the drives and resets them.
+    /// Parameter 47 = −4: tests for the presence of the drives and resets them.
     Reset,
     /// Clears the fault of a drive by writing 197 = 0. If this alone is not sufficient, a reset (47 = −4) is performed
     /// first.
@@ -107,7 +107,8 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// Removes the final save from the plan. Written values are then lost at power-off unless they are saved later.
+    /// Removes the final save from the plan. Without the save, the written values are lost at power-off unless they are
+    /// saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();

@@ -74,7 +74,8 @@ impl HiperdriveProfile {
         profile
     }
 
-    /// Marks the reference of each drive (198), since it depends on how the drive is mounted. Existing marks are kept.
+    /// Marks the reference of each drive (parameter 198), since it depends on how the drive is mounted. Existing marks
+    /// are kept.
     pub fn mark_mounting_dependent_values(&mut self) {
         let references =
             self.image.values.keys().copied().filter(|number| number.drive1_number() == REFERENCE).map(Item);
@@ -86,8 +87,8 @@ impl HiperdriveProfile {
         }
     }
 
-    /// Returns whether an item depends on how the drive is mounted. It does if it is marked or is the reference of a
-    /// drive.
+    /// Returns whether an item depends on the mounting of the drive, which is the case for marked items and the
+    /// reference of each drive.
     pub fn depends_on_mounting(&self, item: Item) -> bool {
         item.0.drive1_number() == REFERENCE || self.is_marked(item)
     }
@@ -108,7 +109,7 @@ impl HiperdriveProfile {
 }
 
 impl ProfileIdentity {
-    /// Returns whether nothing is known about the adapter or hub itself.
+    /// Returns whether the profile contains no data about the adapter or hub itself.
     pub fn is_device_unknown(&self) -> bool {
         *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
     }

@@ -10,7 +10,7 @@ use super::{
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 
-/// Present state of a device, to the extent that planning requires it.
+/// Current state of a device, to the extent that planning requires it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the device.
@@ -33,8 +33,8 @@ impl DeviceState {
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
 /// Plans a restore for the ports that profile and device have in common. On another device, values that depend on the
-/// mounting are omitted. These are the items marked by the user and the reference of each drive (198), which is never
-/// written.
+/// mounting are omitted. These are the items marked by the user and the reference of each drive (parameter 198), which
+/// is never written.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if the restore is not possible. In this case, nothing has been written.

@@ -15,7 +15,7 @@ pub enum Warning {
     LimitsMove {
         /// Number of the drive.
         drive: DriveNumber,
-        /// Present lower and upper limits.
+        /// Current lower and upper limits.
         now: (f64, f64),
         /// Lower and upper limits after the plan.
         then: (f64, f64),

@@ -24,7 +24,8 @@ const fn row(code: ErrorCode, name: &'static str, cause: &'static str, remedy: &
     ErrorCodeRow { code, name, cause, remedy }
 }
 
-/// All known errors, numbered as in the manual: 8200 to 8603 in hexadecimal digits (`U`).
+/// All known errors, numbered as in the manual. The numbers 8200 to 8603 are assumed to be hexadecimal, which the
+/// manual does not state (`U`).
 pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     row(
         ErrorCode::OVER_CURRENT,
@@ -155,7 +156,7 @@ impl ErrorCode {
     pub const SINCOS: ErrorCode = ErrorCode(0x8502);
     /// Invalid target.
     pub const INVALID_TARGET: ErrorCode = ErrorCode(0x8503);
-    /// Timeout, because the drive has received nothing.
+    /// Time-out, because the drive has received no data.
     pub const CONNECTION_TIMEOUT: ErrorCode = ErrorCode(0x8601);
     /// No reply from the drive over RS-485.
     pub const RS485: ErrorCode = ErrorCode(0x8603);

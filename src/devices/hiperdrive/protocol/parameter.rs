@@ -24,7 +24,7 @@ pub struct ParameterRow {
     pub number: u16,
     /// Name of the parameter.
     pub name: &'static str,
-    /// Unit of the value, or an empty string if it has none.
+    /// Unit of the value, or an empty string if the value has no unit.
     pub unit: &'static str,
     /// Type of the value.
     pub kind: Kind,
@@ -64,7 +64,7 @@ pub enum ParameterAccess {
     Read,
     /// Read and write.
     ReadWrite,
-    /// Write-only access; a read returns nothing useful.
+    /// Write-only access. A read returns no meaningful value.
     Write,
 }
 
@@ -217,8 +217,9 @@ impl ParameterRow {
         })
     }
 
-    /// Checks a value against the range of a parameter. The drive itself checks dependencies between parameters: 160 is
-    /// above 158, and position, target and 198 lie between them.
+    /// Checks a value against the range of a parameter. The drive itself checks dependencies between parameters:
+    /// parameter 160 must be above parameter 158, and the position, the target and parameter 198 must lie between the
+    /// two.
     ///
     /// # Errors
     /// Returns [`OutOfRange`] with the allowed values. Strings accept no number.

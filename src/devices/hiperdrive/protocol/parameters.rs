@@ -38,8 +38,8 @@ impl ParameterRow {
         ParameterRow { access: ParameterAccess::ReadWrite, range, factory, ..self }
     }
 
-    /// Marks a drive parameter whose value the adapter or hub stores. See the manual, sections 3.4 and 4.5 for 152, and
-    /// the table row of 190.
+    /// Marks a drive parameter whose value the adapter or hub stores. See sections 3.4 and 4.5 of the manual for
+    /// parameter 152, and the table row of parameter 190.
     const fn with_device_storage(self) -> Self {
         ParameterRow { kept_by_device: true, ..self }
     }

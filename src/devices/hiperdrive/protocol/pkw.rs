@@ -149,8 +149,8 @@ impl Pkw {
         }
     }
 
-    /// Returns the answer if this reply belongs to `request`. The request must be repeated until then. Before the same
-    /// request is sent again, [`Task::None`] must be sent and answered.
+    /// Returns the answer if this reply belongs to `request`. The request must be repeated until its answer arrives.
+    /// Before the same request is sent again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();

@@ -52,9 +52,9 @@ pub struct Percent(u8);
 pub struct Setpoint {
     /// Control word (STW).
     pub control: ControlWord,
-    /// Speed as a percentage of the maximum speed (parameter 166). No motion starts at 0.
+    /// Speed as a percentage of the maximum speed (parameter 166). At a speed of 0 %, no motion starts.
     pub speed: Percent,
-    /// Torque as a percentage of the nominal torque, in steps of 25 %. No motion starts at 0.
+    /// Torque as a percentage of the nominal torque, in steps of 25 %. At a torque of 0 %, no motion starts.
     pub torque: Percent,
     /// Target in scaled steps.
     pub target: i32,
@@ -78,7 +78,7 @@ pub struct OutputData {
 pub struct ActualValues {
     /// Status word (ZSW).
     pub status: StatusWord,
-    /// Speed as scaled by parameters 162 and 164, which is tenths of rpm with factory settings.
+    /// Speed as scaled by parameters 162 and 164. With factory settings, the unit is 0.1 rpm.
     pub speed: i16,
     /// Position in scaled steps.
     pub position: i32,
@@ -208,9 +208,9 @@ impl Layout {
 }
 
 impl Percent {
-    /// 0 %.
+    /// A percentage of 0 %, the minimum.
     pub const NONE: Percent = Percent(0);
-    /// 100 %.
+    /// A percentage of 100 %, the maximum.
     pub const FULL: Percent = Percent(100);
 
     /// Creates a percentage, or returns `None` above 100.

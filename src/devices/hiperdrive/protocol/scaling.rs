@@ -190,8 +190,8 @@ pub const fn split_turns(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
-/// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`). Returns `None`
-/// if the result exceeds 32 bits.
+/// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`: not
+/// documented). Returns `None` if the result exceeds 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
     const REFERENCE_GRID: i64 = 64;
     let position = i64::from(position);

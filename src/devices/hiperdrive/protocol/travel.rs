@@ -15,10 +15,10 @@ pub struct Travel {
 /// Limit on a number of steps, relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepLimit {
-    /// Limit of a position: the number of turns of the drive in either direction (158, 160, 198).
+    /// Limit of a position: the number of turns of the drive in either direction (parameters 158, 160 and 198).
     Position,
-    /// Limit of a step, which is no longer than the whole travel (170, 176). The manual gives only 32 bits, but a
-    /// longer step ends outside the travel from any start (`D`).
+    /// Limit of a step, which is no longer than the whole travel (parameters 170 and 176). The manual gives only 32
+    /// bits, but a longer step ends outside the travel from any start (`D`).
     Step,
 }
 

@@ -82,8 +82,8 @@ impl Kind {
         Some(limits)
     }
 
-    /// Parses a value. A string may be preceded by its length (`U`). Trailing zeros and blanks are removed, and
-    /// non-ASCII bytes become question marks.
+    /// Parses a value. A string may be preceded by its length (`U`: not documented). Trailing zeros and blanks are
+    /// removed, and non-ASCII bytes become question marks.
     ///
     /// # Errors
     /// Returns [`ValueError::Length`] if the data of a number have the wrong length.

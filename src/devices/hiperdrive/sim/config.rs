@@ -43,7 +43,7 @@ parameters! {
         ]));
         /// Ambient temperature of the drives in degrees Celsius. Drives fail from 80 degrees.
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => DecimalNumbers(Quantity::Celsius, -40.0..=120.0);
-        /// Position of switch S3. Nothing can be moved over the bus unless it is 0.
+        /// Position of switch S3. Drives can be moved over the bus only if the switch is at 0.
         pub(super) s3: u8 = 0, "s3" => WholeNumbers(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => CustomNotation(AllowedValues::SwitchDigits, parse_switches);
         pub(super) volts: f64 = 24.0, "supply" => DecimalNumbers(Quantity::Volts, 0.0..=100.0);
@@ -53,9 +53,9 @@ parameters! {
         pub(super) serial_number: u16 = 4711, "serial" => WholeNumbers(Quantity::Number, 0..=u16::MAX);
         /// Product name, parameter 15.
         pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => CustomNotation(AllowedValues::Ascii { most: 32 }, name);
-        /// Byte order of numbers in process data (`U`).
+        /// Byte order of numbers in process data (`U`: not documented).
         pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::KEYWORDS;
-        /// Whether parameter strings are preceded by their length (`U`).
+        /// Whether parameter strings are preceded by their length (`U`: not documented).
         pub(super) counted_texts: bool = false, "text" => Keywords(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
         /// Injected faults. `drop` is the fraction of replies, and of packets in both directions, that are lost. `flip`

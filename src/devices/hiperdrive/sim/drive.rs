@@ -1,6 +1,6 @@
 //! A virtual drive: effects of control words, motion and faults (reference 2 to 5).
 //!
-//! Assumptions (`U`):
+//! Assumptions (`U`: not documented):
 //! - Words with reserved bits are ignored.
 //! - At 0 % speed or torque nothing starts, and there is no error.
 //! - A drive never leaves "not ready" if it is not requested (152 = 0) or if S3 selects it.

@@ -16,7 +16,8 @@ pub(super) struct Memory {
 const COMPLETE_TIME_MS: i64 = 5;
 
 impl Memory {
-    /// Creates a memory with factory settings for the parameters selected by `holds`.
+    /// Creates the memory of a virtual device. It contains the factory settings of the parameters for which `holds`
+    /// returns `true`.
     pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
         let value = |row: &ParameterRow| {
             let found = (row.number == RS485_COMPLETE).then_some(COMPLETE_TIME_MS);
@@ -66,8 +67,8 @@ impl Memory {
         copy_device_parameters(&self.kept, &mut self.now);
     }
 
-    /// Handles 47 = −1, which restores the factory settings of the values that the adapter or hub itself stores,
-    /// without saving them.
+    /// Handles a write of −1 to parameter 47, which restores the factory settings of the values that the adapter or hub
+    /// itself stores, without saving them.
     pub(super) fn reset_device_values(&mut self) {
         copy_device_parameters(&self.factory, &mut self.now);
     }

@@ -1,7 +1,7 @@
 //! Reading and writing of the parameters of a drive.
 //!
-//! Assumptions (`U`): A rejected value is stored as error 8501, as in the manual, and is a fault if the drive is
-//! operational. Parameter 198 can only be written at standstill.
+//! Assumptions (`U`: not documented): A rejected value is stored as error 8501, as in the manual, and is a fault if the
+//! drive is operational. Parameter 198 can only be written at standstill.
 
 use super::axis::TURN;
 use super::drive::Drive;
@@ -77,8 +77,8 @@ impl Drive {
         Some(Value::Number(value))
     }
 
-    /// Returns whether writing this value restarts the drive. A change of 152 from 0 to 1 does, and so does any write
-    /// to 199.
+    /// Returns whether writing this value restarts the drive. The drive restarts when parameter 152 changes from 0 to
+    /// 1, and on every write to parameter 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
         number == RESET || (number, value) == (REQUESTED_BY_BUS, 1) && self.memory.get(REQUESTED_BY_BUS) == Some(0)
     }
@@ -121,7 +121,8 @@ impl Drive {
         Ok(())
     }
 
-    /// Writes a limit. Limit 160 must be above limit 158, with the position between them.
+    /// Writes a limit. The upper limit (parameter 160) must be above the lower limit (parameter 158), and the position
+    /// must lie between them.
     fn write_limit(&mut self, number: u16, value: i64) -> Result<(), ParameterError> {
         let (low, high) = self.limits();
         let (low, high) = if number == LOWER_LIMIT { (value, high.into()) } else { (low.into(), value) };

@@ -1,6 +1,6 @@
 //! All drives of an adapter or a hub: process data, parameters, saving, loss of the master.
 //!
-//! Assumptions (`U`):
+//! Assumptions (`U`: not documented):
 //! - A connection that ends for any reason is treated as a loss of the master.
 //! - A packet with an idle header stops the drives, as control words of 0 do.
 //! - During a save or a reset, 47 is 1 and nothing is written.
@@ -220,7 +220,7 @@ impl Station {
         InputImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
 
-    /// Sets switch S3. Nothing can be moved over the bus unless it is at 0.
+    /// Sets switch S3. Drives can be moved over the bus only if the switch is at 0.
     pub fn set_s3(&mut self, now: Moment, position: u8) {
         self.advance_to(now);
         self.present_drives().for_each(|drive| drive.set_motion_allowed(position == 0));

@@ -133,7 +133,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Opens the cyclic connection. The selected drive is then read continuously.
+    /// Opens the cyclic connection. From then on, the selected drive is read continuously.
     fn take_control(&mut self, services: &mut Services) {
         if let Err(why) = self.check_can_take_control() {
             services.notify(Severity::Warning, vec![why], Some(&self.session.name()));

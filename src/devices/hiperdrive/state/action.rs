@@ -47,12 +47,12 @@ pub enum MotorCommand {
         /// Whether the press is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Allows the next jog in this direction to move the drive further outside the limits.
+    /// Allows the next jog in this direction, although it moves the drive further outside its limits.
     FreeOutward(Direction),
     /// Confirms that the jog is still held. It is sent in every frame.
     JogHold,
     JogRelease,
-    /// Moves by this number of steps from the present position and stops there.
+    /// Moves by the given number of steps from the current position and stops there.
     Step {
         /// Signed distance in scaled steps.
         by: i32,
@@ -74,7 +74,7 @@ pub enum MotorCommand {
     RunEffort(SpeedTorque),
     /// Confirms or revokes the warning about endless runs.
     Expert(bool),
-    /// Confirms the limits after the user has checked them in the user's own unit.
+    /// Records that the user has checked the limits in the displayed unit and confirmed them.
     ConfirmLimits(DriveNumber),
 }
 

@@ -48,7 +48,7 @@ pub enum AxisStep {
     Confirm,
     /// The axis is moved slowly to find out which direction is positive.
     Jog,
-    /// The present position is assigned a number (parameter 198).
+    /// The current position is assigned a number (parameter 198).
     Reference,
     Lower,
     /// The upper limit is taught, and both limits are written (parameters 158 and 160).
@@ -98,7 +98,7 @@ struct ConfirmedLimits {
     seen: (i32, i32),
     /// Limits that the user has seen, or the taught limits that a reviewed plan has written since then.
     agreed: (i32, i32),
-    /// Taught limits of an interrupted plan. Each of them may have been written.
+    /// Taught limits of an interrupted plan. Each limit may have been written.
     begun: Option<(i32, i32)>,
 }
 
@@ -110,7 +110,7 @@ pub struct Axis {
     chain: StepOutcomes,
     confirmed: Option<ConfirmedLimits>,
     travel: JogTravel,
-    /// Position that was set, and the origin of positions since then.
+    /// Position that was last set, and the origin from which positions have been counted since.
     reference: Option<(i32, PositionOrigin)>,
     sets: Option<i32>,
     standstill: StandstillMonitor,
@@ -207,7 +207,7 @@ impl Axis {
         &self.entries
     }
 
-    /// Returns how the set-up ended, or `None` while it is running.
+    /// Returns the result of the set-up, or `None` while the set-up is running.
     pub fn setup_end(&self) -> Option<SetupEnd> {
         self.over.as_ref().map(|over| over.end)
     }
@@ -216,7 +216,7 @@ impl Axis {
         self.over.as_ref()
     }
 
-    /// Returns the facts known when the set-up ended, or the present facts while it is running.
+    /// Returns the drive data at the end of the set-up, or the current drive data while the set-up is running.
     pub fn displayed_facts<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
@@ -259,7 +259,7 @@ impl Axis {
         self.power
     }
 
-    /// Returns the earliest step whose result the drive no longer has, if it is before the current step. That step and
+    /// Returns the earliest step whose result the drive no longer has, if it is before the current step. This step and
     /// all later steps must be repeated.
     pub fn invalidated_step(&self) -> Option<AxisStep> {
         self.chain.first_open_step().filter(|step| *step < self.step)
@@ -288,7 +288,7 @@ impl Axis {
         PositionOrigin::from_facts(seen, self.jumps)
     }
 
-    /// Returns the present facts on which results depend.
+    /// Returns the current drive data on which the results of the steps depend.
     fn preconditions(&self, seen: &DriveFacts) -> Preconditions {
         Preconditions {
             requested: seen.requested,

@@ -40,7 +40,7 @@ pub struct HiperdriveForm {
     /// Whether process data have the high byte first.
     pub big_endian: bool,
     pub typed: EnteredValues,
-    /// Link parameters that have no entry in the form.
+    /// Link parameters for which the form has no input field.
     pub rest: Vec<(String, String)>,
 }
 
@@ -108,19 +108,19 @@ impl HiperdriveForm {
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entry for the setpoint interval, and the rarely used entries.
+    /// Returns the input field for the setpoint interval, and the rarely used input fields.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
 
-    /// Returns the entries of the virtual device. An adapter has a single drive, so it has no entry for the plugged
-    /// ports.
+    /// Returns the input fields for the virtual device. An adapter has a single drive, so there is no input field for
+    /// the plugged ports.
     pub fn virtual_device_entries(&self) -> Vec<Entry> {
         let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
         Config::entries().into_iter().filter(has).collect()
     }
 
-    /// Fills in the entry for a parameter. Returns `false` if no entry can show the value.
+    /// Fills in the input field for a parameter. Returns `false` if no input field can show the value.
     fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::from_word(value);

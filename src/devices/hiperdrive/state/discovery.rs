@@ -93,7 +93,7 @@ pub struct DiscoveryFinder {
 
 pub enum DiscoveryAction {
     Discover,
-    /// Fills in the address of a device that replied. The Connect button then connects to it.
+    /// Fills in the address of a device that replied. Afterwards, the Connect button connects to this device.
     Choose(usize),
 }
 

@@ -54,7 +54,7 @@ struct ActiveAction {
     is_reported: bool,
 }
 
-/// Kind of an action, which determines how it is refreshed.
+/// Kind of an action, which determines how the action is refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Held,
@@ -196,7 +196,8 @@ impl DriveMotion {
         }
     }
 
-    /// Returns whether the jog of the held button has ended by itself. The button then has no effect until its release.
+    /// Returns whether the jog has ended although its button is still pressed. In this case, the button has no effect
+    /// until it is released.
     pub fn has_held_jog_ended(&self) -> bool {
         self.act.is_some_and(|act| act.kind == Kind::Held && self.has_ended(act.number, act.drive))
     }
@@ -399,7 +400,8 @@ impl DriveMotion {
         self.drive(drive).is_some_and(is_moving) || self.moving_drive() == Some(drive)
     }
 
-    /// Returns the drive that this window is moving or whose job is paused. Any other request ends that motion.
+    /// Returns the drive that this window is moving or whose job is paused. Any other request ends the motion or the
+    /// job.
     pub fn moving_drive(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_motion_active()).map(|act| act.drive);
         let has_job =

@@ -62,7 +62,7 @@ impl Form {
         self.source == AddressSource::Stored
     }
 
-    /// Returns the edited settings. If a server assigns the addresses, the present addresses are kept.
+    /// Returns the edited settings. If a server assigns the addresses, the current addresses are kept.
     ///
     /// # Errors
     /// Returns an error with the reason if an entry is invalid.
@@ -162,7 +162,7 @@ impl PowerUpAddress {
 }
 
 /// Describes the effect of the settings after the next power-up and the consequences for the link. `host` is the
-/// present address of the device, if it is numeric.
+/// current address of the device, if it is numeric.
 pub fn consequence_texts(
     switch: Option<AddressSwitch>,
     now: &NetworkSettings,

@@ -17,8 +17,8 @@ pub struct OutOfRangePosition {
     pub position: i32,
     /// Lower and upper limit in scaled steps, parameters 158 and 160.
     pub limits: (i32, i32),
-    /// Whether the drive is outside its limits by more than its repeatability. Otherwise it is merely at the end of its
-    /// range.
+    /// Whether the drive is outside its limits by more than its repeatability. Otherwise, the drive is merely at the
+    /// end of its range.
     pub is_far: bool,
 }
 
@@ -54,13 +54,14 @@ impl HiperdriveDevice {
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward })
     }
 
-    /// Returns whether this direction may move the drive further outside the limits and has not been enabled.
+    /// Returns whether jogging in this direction is blocked, because it may move the drive further outside the limits
+    /// and has not been enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.out_of_range_position(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_outward_jog_enabled(drive, direction)
     }
 
-    /// Returns whether this direction is blocked but can be enabled for one press.
+    /// Returns whether jogging in this direction is blocked but can be enabled for a single press of the button.
     pub fn can_enable_outward_jog(&self, drive: DriveNumber, direction: Direction) -> bool {
         self.may_move_until_stopped(drive).is_ok() && self.is_blocked(drive, direction)
     }
@@ -73,7 +74,7 @@ impl HiperdriveDevice {
         self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 
-    /// Returns the change that assigns a position in scaled steps to the present location of a drive and saves it.
+    /// Returns the change that assigns a position in scaled steps to the current location of a drive and saves it.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive would not accept a position outside the limits.

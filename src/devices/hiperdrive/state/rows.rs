@@ -23,9 +23,9 @@ pub struct Row {
     pub name: Text,
     /// Row of the manual's parameter table.
     pub kind: &'static ParameterRow,
-    /// Value of the parameter, or `None` if it was not read or is not in the profile.
+    /// Value of the parameter, or `None` if it has not been read or is not in the profile.
     pub value: Option<Value>,
-    /// Value as shown in the table, or empty if there is none.
+    /// Text that the table shows as the value. It is empty if there is no value.
     pub shown: String,
     /// Meaning of the value, if the number is not self-explanatory.
     pub meaning: Option<Text>,
@@ -47,7 +47,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns why the parameter cannot be edited as a value, or `None` if it can.
+    /// Returns the reason why the parameter cannot be edited as a value, or `None` if it can be edited.
     pub fn not_editable_reason(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,

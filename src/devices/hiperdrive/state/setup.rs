@@ -83,7 +83,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Returns the settings in the TCP/IP object, or `None` if they were not read or are not provided.
+    /// Returns the settings in the TCP/IP object, or `None` if they have not been read or are not provided.
     pub fn network_settings(&self) -> Option<NetworkSettings> {
         let own = self.network()?;
         Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })

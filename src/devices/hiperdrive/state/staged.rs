@@ -58,7 +58,7 @@ pub struct SavedEdit(pub u16, pub Option<i64>);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValueDifference {
     pub number: ParameterNumber,
-    /// Present value, or `None` if it is not in the profile.
+    /// Current value, or `None` if it is not in the profile.
     pub from: Option<i64>,
     /// Edited value, or `None` if the parameter is to be removed from the profile.
     pub to: Option<i64>,
@@ -192,7 +192,7 @@ impl StagedEdits {
         self.wanted.as_mut().is_some_and(|wanted| self.history.apply_step(wanted, after))
     }
 
-    /// Returns the edits for a draft on disk, including those of parameters that have not been read yet.
+    /// Returns the edits to save as a draft, including the edits of parameters that have not been read yet.
     pub fn saved_edits(&self) -> Vec<SavedEdit> {
         let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()

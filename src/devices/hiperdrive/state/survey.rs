@@ -90,7 +90,8 @@ impl HiperdriveDevice {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Returns why the known parameters of a drive are not sufficient to move it, or `None` if they are.
+    /// Returns the reason why the known parameters of a drive are not sufficient to move it, or `None` if they are
+    /// sufficient.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock_text(MotionLock::Unread))

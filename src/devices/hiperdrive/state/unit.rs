@@ -259,13 +259,13 @@ impl HiperdriveDevice {
         self.moves.limits(drive)
     }
 
-    /// Returns the position scale of a drive, or `None` if it was not read.
+    /// Returns the position scale of a drive, or `None` if it has not been read.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let as_read = || self.staged.base()?.scale(drive);
         self.drive_limits(drive).and_then(DriveLimits::scale).or_else(as_read)
     }
 
-    /// Returns the limits of a drive in scaled steps, or `None` if they were not read.
+    /// Returns the limits of a drive in scaled steps, or `None` if they have not been read.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i32, i32)> {
         let as_read = || {
             let (lower, upper) = self.staged.base()?.limits(drive)?;

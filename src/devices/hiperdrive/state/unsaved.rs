@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 pub(super) struct UnsavedChanges {
     /// Saved values, by number, of the parameters written since the last save.
     before: BTreeMap<u16, i64>,
-    /// Number of times this program has set the position of each drive.
+    /// Number of times that this program has set the position of each drive.
     set: BTreeMap<DriveNumber, u32>,
     sets: Vec<DriveNumber>,
 }

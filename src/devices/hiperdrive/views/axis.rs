@@ -44,7 +44,7 @@ pub(crate) struct AxisPanel<'a> {
     unit: &'a HiperdriveDevice,
     axis: &'a Axis,
     seen: &'a DriveFacts,
-    /// Time for which the current step has been shown.
+    /// Time for which the current step has been displayed.
     looked_at: Duration,
 }
 

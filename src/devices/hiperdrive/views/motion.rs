@@ -190,7 +190,8 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: MotorCommand) {
     actions.push(Action::device(id, Hiperdrive::Drive(motor)));
 }
 
-/// Draws the controls for a move to a position. Returns whether the drive may be moved with the entered effort.
+/// Draws the controls for a move to a position. Returns whether the drive may be moved with the entered speed and
+/// torque.
 fn move_to_position_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -377,7 +378,8 @@ pub(super) fn move_speed_torque_text(theme: &Theme, unit: &HiperdriveDevice, id:
     theme.format_text(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
-/// Draws the entry of a position or distance with its unit. The entry is marked if `problem` finds an error in it.
+/// Draws an input field for a position or distance, along with its unit. The field is marked if `problem` finds an
+/// error in it.
 pub(super) fn position_entry_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -25,7 +25,8 @@ pub(super) struct DriveParametersUiState {
     table: RegisterView,
     /// Rows of the table when it was last drawn.
     lines: Vec<Vec<ParameterNumber>>,
-    /// Whether the table hid or cut columns when it was last drawn. The details of the selected row are then shown below.
+    /// Whether the table hid or cut columns when it was last drawn. In this case, the details of the selected row are
+    /// displayed below the table.
     is_narrow: bool,
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }

@@ -44,7 +44,7 @@ pub(super) fn run_ui(
     paragraph(ui, theme.caption(translate(theme, "hd_run.expert_words")));
 }
 
-/// Draws the condition of an endless run, whether it is met, and the parameters that do not meet it.
+/// Draws the condition for an endless run, with its state and the parameters that do not meet the condition.
 fn condition_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, is_met: bool) {
     let (icon, ink) =
         if is_met { (icons::CHECK_CIRCLE, theme.palette.good) } else { (icons::X_CIRCLE, theme.palette.warn) };

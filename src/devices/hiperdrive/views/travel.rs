@@ -66,7 +66,7 @@ struct BarValues {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
     target: Option<i32>,
-    /// How the drive is outside its limits. `None` if it is inside or at the end of its range.
+    /// Position of the drive relative to its limits, or `None` if the drive is inside or at the end of its range.
     outside: Option<OutsideLimits>,
     is_moving: bool,
 }

@@ -87,8 +87,8 @@ pub enum Change {
     },
     SetPosition {
         wanted: u32,
-        /// Whether to set exactly this value, even if it breaks the phase relation to the sine signal. Otherwise, the
-        /// nearest value that preserves the phase is set.
+        /// Whether to set exactly the requested value, even if it breaks the phase relation to the sine signal.
+        /// Otherwise, the nearest value that preserves the phase is set.
         exact: bool,
         /// Whether to align the code tracks as well (63h).
         synchronise: bool,

@@ -17,8 +17,8 @@ const REPEAT_INTERVAL: Duration = Duration::from_secs(60);
 pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 
 impl RecentStatusCodes {
-    /// Returns whether any of these codes was not recorded in the last minute. All of them are then considered
-    /// recorded.
+    /// Returns whether any of these codes was not recorded in the last minute. Afterwards, all of the codes are
+    /// considered recorded.
     pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.duration_since(*kept) < REPEAT_INTERVAL);
         let mut is_new = false;

@@ -23,7 +23,7 @@ pub enum CheckStep {
     Position,
     /// Analogue channels (44h) for which the extended label contains a limit.
     Limits,
-    /// Status and content (4Ch and 4Ah) of every data field.
+    /// Status and content (commands 4Ch and 4Ah) of every data field.
     DataFields,
     /// Repeated requests and damaged or late replies, during this check and earlier in the session.
     Line,

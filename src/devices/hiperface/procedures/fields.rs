@@ -40,7 +40,7 @@ pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Err
 /// Reads all fields except the extended label. `progress` receives the number of fields read and the total.
 ///
 /// # Errors
-/// Returns an error of [`read_field`] if a field cannot be read.
+/// Returns an error from [`read_field`] if a field cannot be read.
 pub fn read_all_fields(
     master: &mut Master<'_>,
     count: u8,

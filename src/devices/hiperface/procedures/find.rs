@@ -18,9 +18,11 @@ pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
-    /// Whether the user states that exactly one encoder is connected. If no address replies, broadcast is then tried.
+    /// Whether the user states that exactly one encoder is connected. If no address replies, the broadcast address is
+    /// tried as well.
     pub one_encoder: bool,
-    /// Maximum wait for the user to switch the encoder off and on. The search then finds it in its default window.
+    /// Maximum wait for the user to switch the encoder off and on. After the restart, the search finds the encoder with
+    /// its default settings.
     pub power_cycle: Option<Duration>,
 }
 

@@ -104,7 +104,7 @@ impl<'a> Master<'a> {
     /// received twice.
     ///
     /// # Errors
-    /// Returns an error of [`request`](Self::request) if the exchange fails.
+    /// Returns an error from [`request`](Self::request) if the exchange fails.
     pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.request(request)?;
         for _ in 0..MAX_ATTEMPTS {

@@ -53,8 +53,8 @@ pub enum PolledSample {
 /// Value that can be polled in addition to the position. All other values of an encoder change only when written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WatchedQuantity {
-    /// Analogue channel (44h). 48h is the temperature in °C. 00h and 01h are usually the sine and cosine signals in
-    /// counts of 10 bits for 5 V. The data sheet defines all other channels.
+    /// Analogue channel (command 44h). Channel 48h is the temperature in °C. Channels 00h and 01h are usually the sine
+    /// and cosine signals in counts of 10 bits for 5 V. The data sheet defines all other channels.
     Analogue(u8),
     /// The counter (46h), 0…FFFFFFh.
     Counter,

@@ -45,7 +45,7 @@ pub fn read_all_values(
     Ok(survey)
 }
 
-/// How to treat data fields that cannot be read.
+/// Treatment of data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadPolicy {
     AsFarAsPossible,

@@ -69,7 +69,7 @@ pub enum Op {
     },
     /// Sets the position with command 43h, or 63h if `synchronise` is set.
     SetPosition {
-        /// Position before the change, at the present shaft angle.
+        /// Position before the change, at the current shaft angle.
         from: u32,
         /// New position.
         to: u32,
@@ -78,7 +78,7 @@ pub enum Op {
     },
     /// Sets the address with command 55h.
     SetAddress {
-        /// Present address.
+        /// Current address.
         from: u8,
         /// New address.
         to: DeviceAddress,

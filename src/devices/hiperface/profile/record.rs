@@ -71,7 +71,7 @@ pub struct RecordedValues {
     pub unknown: UnknownValues,
 }
 
-/// Mark on a part of a data field that contains a mounting value.
+/// Marks a range of a data field as a mounting value, which is valid only for one encoder as mounted on its motor.
 pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
 /// A data field.

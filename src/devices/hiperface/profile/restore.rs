@@ -39,7 +39,7 @@ pub struct RestoreOptions {
     pub copy: BTreeMap<u8, bool>,
 }
 
-/// Present content of an encoder's memory.
+/// Current content of an encoder's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceState {
     /// Serial number, or an empty string if the encoder has none.

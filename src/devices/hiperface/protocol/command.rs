@@ -40,7 +40,7 @@ pub struct CommandRow {
     pub code0: bool,
     /// Maximum processing time, without the transfer and the protocol time-out. It is zero if the command has no reply.
     pub max_time: Duration,
-    /// Number of bytes between the command byte and the checksum of the request. For 4Bh, this is the minimum.
+    /// Number of bytes between the command byte and the checksum of the request. For command 4Bh, this is the minimum.
     pub request_payload: usize,
     /// Whether the command changes data that the encoder keeps without power.
     pub persistent: bool,
@@ -84,7 +84,7 @@ pub const COMMANDS: [CommandRow; 20] = [
 ];
 
 impl Command {
-    /// Returns the command with this byte, or `None` if there is none. The error bit is ignored.
+    /// Returns the command with this command byte, or `None` if the byte is not assigned. The error bit is ignored.
     pub fn from_byte(byte: u8) -> Option<Self> {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }

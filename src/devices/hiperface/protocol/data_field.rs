@@ -5,7 +5,7 @@ use std::fmt;
 /// Number of the read-only field that contains the extended type label.
 pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 
-/// Maximum number of data bytes in a 4Ah or 4Bh command.
+/// Maximum number of data bytes in a request with command 4Ah or 4Bh.
 pub const MAX_TRANSFER: usize = 128;
 
 /// Number of one of the encoder's four access codes, 0 to 3.
@@ -173,7 +173,7 @@ impl DataFieldStatus {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
     }
 
-    /// Returns a copy of the status with bit E cleared. Command 4Dh deletes the field if it receives this status.
+    /// Returns a copy of the status with bit E cleared. A request with command 4Dh and this status deletes the field.
     #[must_use]
     pub const fn as_deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)

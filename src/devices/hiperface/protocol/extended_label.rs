@@ -20,8 +20,8 @@ pub struct ExtendedLabel {
     pub parameters: Vec<LabelParameter>,
 }
 
-/// Limit value on the extended label. The data sheet of the encoder defines the meaning of each number (`U`). If 44h
-/// can read a quantity, the first word of the quantity is its analogue channel.
+/// Limit value on the extended label. Only the data sheet of the encoder defines the meaning of each number (`U`). If
+/// command 44h can read a quantity, the first word of the quantity is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
     /// Number of the limit: 0 to 14 in the first set, 15 to 29 in the second, 30 to 44 in the third.
@@ -96,9 +96,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Returns pairs of an analogue channel and its maximum reading, for quantities that 44h can read. Only the data
-    /// sheet defines the pairs (`U`), so any two parameters with consecutive numbers are assumed to form one. Such a
-    /// pair is used only for a remark, and only if its channel replies.
+    /// Returns pairs of an analogue channel and its maximum reading, for quantities that command 44h can read. Only the
+    /// data sheet defines the pairs (`U`), so any two parameters with consecutive numbers are assumed to form one. Such
+    /// a pair is used only for a remark, and only if its channel replies.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();

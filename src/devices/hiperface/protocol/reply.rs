@@ -39,7 +39,7 @@ pub enum Reply {
 pub enum Answer {
     /// The command was executed.
     Reply {
-        /// Whether the error bit is set, which means that 50h can read more codes from the status queue.
+        /// Whether the error bit is set, which means that command 50h can read more codes from the status queue.
         pending: bool,
         /// Reply data.
         reply: Reply,

@@ -190,8 +190,8 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// Returns a [`RequestError`] for the first check that fails. As in an encoder (`U`), the command is checked first,
-    /// then the number of arguments, then their ranges.
+    /// Returns a [`RequestError`] for the first check that fails. As in an encoder (`U`: not documented), the command
+    /// is checked first, then the number of arguments, then their ranges.
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)

@@ -13,7 +13,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{LineConditions, SerialCharacter, TransitQueue, VirtualLine};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// Line with one or several encoders, as the host sees it. It is created from a [`Config`].
+/// Line with one or several encoders, from the perspective of the host. The line is created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
@@ -47,7 +47,7 @@ struct LineDrivePeriod {
     end: Moment,
 }
 
-/// Next event on the line. Of simultaneous events, the first in this list takes precedence.
+/// Next event on the line. If several events are simultaneous, the one listed first takes precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),

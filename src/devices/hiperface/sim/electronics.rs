@@ -31,8 +31,8 @@ impl Wear {
     }
 }
 
-/// Status codes waiting to be read with 50h, oldest first. The queue holds four codes. Further codes are lost while it
-/// is full.
+/// Status codes waiting to be read with command 50h, oldest first. The queue holds four codes. Further codes are lost
+/// while it is full.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusQueue(VecDeque<StatusCode>);
 

@@ -37,7 +37,7 @@ impl ResponseTimes {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the processing time of a frame. If the frame is rejected, this is the time of a status reply.
+    /// Returns the processing time of a frame. For a rejected frame, this is the time that a status reply takes.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -360,7 +360,7 @@ impl Encoder {
         Some(Transmission { start: at, settings, bytes })
     }
 
-    /// Returns whether power was lost during this store. Only half of its bytes are then written.
+    /// Returns whether power was lost during this store. In this case, only half of its bytes are written.
     fn is_power_lost_during(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
         if self.electronics.memory.check_store_request(*field, *address, data.len(), *code).is_err() {

@@ -23,7 +23,8 @@ impl Memory {
     /// Status of the extended label: E set, WE clear, code 0, no code required, 64 bytes.
     const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
 
-    /// Creates a memory of `blocks` blocks of 16 bytes, without fields and with all access codes at factory values.
+    /// Creates the memory of an encoder with the given number of 16-byte blocks. It contains no fields, and all access
+    /// codes have their factory values.
     pub fn new(blocks: u8) -> Self {
         Memory {
             bytes: vec![0xFF; usize::from(blocks) * FieldSize::BLOCK],
@@ -116,7 +117,8 @@ impl Memory {
     /// Writes bytes of a field (4Bh).
     ///
     /// # Errors
-    /// Returns an error of [`check_store_request`](Self::check_store_request). In this case, no data is written.
+    /// Returns any error that [`check_store_request`](Self::check_store_request) returns. In this case, no data is
+    /// written.
     pub fn store_bytes(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
         self.check_store_request(field, address, data.len(), code)?;
         let start = self.field_range(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
@@ -190,8 +192,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the status of a field if it is not the encoder's own and `code` is its access code. The code is required
-    /// even if CE is 0.
+    /// Returns the status of a field if the field is not reserved for the encoder and `code` is the access code of the
+    /// field. The code is required even if CE is 0.
     fn check_field_access(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;

@@ -17,7 +17,7 @@ pub struct Model {
     pub firmware_version: &'static str,
     /// Firmware date in the format `DD.MM.YY`.
     pub firmware_date: &'static str,
-    /// EEPROM size in units of 16 bytes, as reported by 52h. The encoder itself uses part of it.
+    /// EEPROM size in units of 16 bytes, as reported by command 52h. The encoder itself uses part of it.
     pub eeprom_units: u8,
     /// Number of 16-byte blocks available for data fields.
     pub user_blocks: u8,

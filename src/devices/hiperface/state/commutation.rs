@@ -44,8 +44,8 @@ pub struct Commutation {
     asked: Option<PendingReading>,
 }
 
-/// Reading in progress. It keeps the form's source and phase from when it was requested, because the user may edit the
-/// form meanwhile.
+/// Reading in progress. It contains the source and the phase from the form at the time of the request, because the user
+/// may edit the form in the meantime.
 #[derive(Debug)]
 struct PendingReading {
     slot: VectorSlot,

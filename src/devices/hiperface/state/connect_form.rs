@@ -26,8 +26,8 @@ pub enum LinkKind {
     Replay,
 }
 
-/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are kept, but
-/// are not part of the link.
+/// Input fields of the connection form. An empty field selects the default. Fields of other connection types keep their
+/// content, which is not part of the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -134,7 +134,7 @@ impl LinkForm {
         [own, Self::link_entries()].concat()
     }
 
-    /// Fills in the form entry for a parameter. Returns `false` if no entry can show the value.
+    /// Fills in the input field for a parameter. Returns `false` if no input field can show the value.
     fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);

@@ -89,8 +89,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// Updates the session after a write with a new address, new access codes and the position offset. The offset is
-    /// stored only here, because the encoder does not report it.
+    /// Updates the session after a write with a new address, new access codes and the position offset. Only this
+    /// program stores the offset, because the encoder does not report it.
     pub(super) fn apply_operations(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -232,8 +232,8 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether the error means that the encoder does not respond. Invalid bytes have this meaning only right
-    /// after connecting.
+    /// Returns whether the error means that the encoder does not respond. Invalid bytes are interpreted in this way
+    /// only right after connecting.
     fn is_no_response(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,

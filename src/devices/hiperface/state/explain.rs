@@ -86,14 +86,14 @@ pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns the message for a completed write. If no value was read back, it says that the encoder has acknowledged the
-/// write.
+/// Returns the message for a completed write. If no value was read back, the message says that the encoder has
+/// acknowledged the write.
 pub fn written_text(written: &WrittenChanges) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
-/// Returns the message for a completed write, as shown at the end of a review.
+/// Returns the message for a completed write, as displayed at the end of a review.
 pub fn verified_text(written: &WrittenChanges) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),

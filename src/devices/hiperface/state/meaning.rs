@@ -79,8 +79,8 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::clear(bytes) }
     }
 
-    /// Issue 22.11: a damaged reply is marked and has an explanation that names the error. The frames are those of the
-    /// manual's commands, damaged by hand.
+    /// Damaged replies are marked, and their explanation names the error (issue 22.11). The frames belong to commands
+    /// in the manual and were corrupted deliberately.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let position = [0x40, 0x42, 0x02];

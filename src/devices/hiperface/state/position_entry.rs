@@ -1,5 +1,5 @@
-//! The entry of a position in steps, degrees, turns and degrees, or millimetres. Conversions are exact: a position that
-//! is shown in a unit and read back in the same unit is the same number of steps.
+//! Input of a position in steps, degrees, turns and degrees, or millimetres. Conversions are exact: a position that is
+//! shown in a unit and read back in the same unit is the same number of steps.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
@@ -55,7 +55,7 @@ impl PositionUnit {
 }
 
 impl PositionEntry {
-    /// Creates the entry of a position. Numbers have a decimal point.
+    /// Creates an input field that contains a position in the given unit. A decimal point separates the decimals.
     pub fn of(steps: u32, unit: PositionUnit, geometry: Option<Geometry>) -> Self {
         let own = |value: String| PositionEntry { unit, turns: String::new(), value };
         match (unit, geometry.and_then(|geometry| Some((geometry, geometry.steps_per_turn()?)))) {

@@ -34,7 +34,8 @@ impl Encoder {
         self.commutation.accept_position(rest, geometry);
     }
 
-    /// Handles a failed job. Returns whether the job was a reading at rest, whose error is then shown with the request.
+    /// Handles a failed job. Returns whether the job was a reading at rest. The error of such a reading is displayed
+    /// next to the request.
     pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));

@@ -25,7 +25,7 @@ pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &
     plan_permission(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
-/// Checks whether the size of the field can be changed. The encoder permits this for the last field only.
+/// Checks whether the size of the field can be changed. The encoder allows this only for the last field.
 pub fn check_resizable(memory: FreeMemory, field: &FieldImage) -> ActionPermission {
     status(field)?;
     plan_permission(plan_delete(memory, field))
@@ -36,8 +36,8 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &StagedEdits) -> A
     check_edits_preserved(staged, field.number, 0)
 }
 
-/// Checks whether the protection and access code of the field can be changed. The encoder requires the field's access
-/// code for this.
+/// Checks whether the protection and access code of the field can be changed. For such a change, the encoder requires
+/// the access code of the field.
 pub fn status(field: &FieldImage) -> ActionPermission {
     match field.bytes {
         Some(_) => Ok(()),

@@ -28,7 +28,7 @@ pub struct Search {
     /// Receiver that is disconnected when the attempt to open the link has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub found: Vec<FoundEncoder>,
-    /// Message about the end of the search, or `None` until it has ended.
+    /// Message about the result of the search, or `None` while the search is running.
     pub end: Option<Text>,
 }
 

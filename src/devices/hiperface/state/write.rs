@@ -122,7 +122,7 @@ impl HasProfile for Encoder {
     }
 }
 
-/// Returns the change with other options if it is a restore. Any other change stays the same.
+/// Returns a restore with other options, or any other change as it is.
 pub(super) fn with_options(change: &Change, options: RestoreOptions) -> Change {
     match change {
         Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },

@@ -231,7 +231,7 @@ pub(super) fn fixed_height_message_ui(ui: &mut Ui, theme: &Theme, message: RichT
     });
 }
 
-/// Draws the controls for one reading: a button to read the position and an entry to type it.
+/// Draws the controls for one reading: a button to read the position, and an input field to type it.
 fn slot_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -72,7 +72,8 @@ pub(super) fn card_ui(
     });
 }
 
-/// Draws the entry of the new position with its unit. If the unit is changed, the typed position is converted.
+/// Draws the input field for the new position, along with its unit. If the unit is changed, the typed position is
+/// converted.
 fn entry_ui(ui: &mut Ui, theme: &Theme, geometry: Option<Geometry>, own: &mut PositionEntry) {
     let units = PositionUnit::available(geometry);
     if !units.contains(&own.unit) {

@@ -16,7 +16,7 @@ pub(super) struct WordContext {
 
 pub(super) struct WordMeaning {
     direction: &'static str,
-    /// Modes in which the word has this meaning. If there are none, it applies to all modes.
+    /// Modes in which the word has this meaning. If the list is empty, the meaning applies to all modes.
     modes: Vec<EncoderMode>,
     words: String,
     value: Option<u32>,

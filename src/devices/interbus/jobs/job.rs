@@ -23,8 +23,8 @@ pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
 /// Number of stores from which the EEPROM is considered worn.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// Returns the limit of the stores at which a plan may still start without being forced. A plan with a cost of 0 causes
-/// no wear, so it has no limit.
+/// Returns the number of stores up to which a plan may start without being forced. A plan with a cost of 0 causes no
+/// wear, so there is no limit for this plan.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
@@ -71,7 +71,7 @@ pub enum Change {
     /// Writes the values of the image. Items that are missing in the image are neither read nor changed.
     Write(Box<Image>),
     Item(Item, ItemValue),
-    /// Stores the preset and sets the position at the present shaft angle to it. This requires a standstill.
+    /// Stores the preset and sets the position at the current shaft angle to it. The shaft must be at standstill.
     Preset {
         value: u32,
     },
@@ -146,7 +146,7 @@ pub enum WearAfterPlan {
 }
 
 impl WearAfterPlan {
-    /// Returns the wear after the given number of stores, or `None` if it is too low for a message.
+    /// Returns the wear after the given number of stores, or `None` if the wear is too low for a message.
     pub const fn from_stores(stores: u64) -> Option<Self> {
         match stores {
             WEAR_LIMIT.. => Some(WearAfterPlan::Worn(stores)),
@@ -158,7 +158,7 @@ impl WearAfterPlan {
 }
 
 impl Prepared {
-    /// Returns the wear after the plan, or `None` if it is too low for a message.
+    /// Returns the wear after the plan, or `None` if the wear is too low for a message.
     pub fn wear_to_report(&self) -> Option<WearAfterPlan> {
         let cost = self.plan.write_cycles();
         let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(WearAfterPlan::Unknown) };

@@ -53,7 +53,7 @@ impl WriteJournal {
     }
 }
 
-/// Logs an error of recording and returns `None` in this case. The job continues.
+/// Logs an error that occurred while the job was being recorded, and returns `None` for it. The job continues.
 fn log_error<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }

@@ -60,7 +60,7 @@ impl Interbus {
 }
 
 impl Session<Interbus> {
-    /// Creates a session from an open connection. `motor` is given for a virtual encoder in this process, whose stores
+    /// Creates a session from an open connection. `motor` is `Some` for a virtual encoder in this process. Its stores
     /// are counted separately.
     pub fn for_gateway(
         wire: Box<dyn ByteLink>,
@@ -194,7 +194,7 @@ impl Device for Interbus {
     }
 }
 
-/// Progress callback with the number of completed steps, the total number of steps and the present step.
+/// Progress callback with the number of completed steps, the total number of steps and the current step.
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {

@@ -16,13 +16,13 @@ pub trait ProcessData {
     /// Reads the IN word. The OUT word remains unchanged.
     ///
     /// # Errors
-    /// Returns an error of [`run_cycle`](Self::run_cycle).
+    /// Returns any error that [`run_cycle`](Self::run_cycle) returns.
     fn input(&mut self) -> Result<u32, Error>;
 
     /// Reads the present OUT word. Returns `None` if the gateway cannot read it.
     ///
     /// # Errors
-    /// Returns an error of [`run_cycle`](Self::run_cycle).
+    /// Returns any error that [`run_cycle`](Self::run_cycle) returns.
     fn output(&mut self) -> Result<Option<u32>, Error>;
 
     fn now(&self) -> Moment;

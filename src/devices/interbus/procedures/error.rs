@@ -14,7 +14,7 @@ pub enum RequestedItem {
     Input { register: u16 },
     /// Read of the OUT word from two holding registers with function 3.
     Output { register: u16 },
-    /// Write of an OUT word to two holding registers with function 16.
+    /// Write of an OUT word to two holding registers (Modbus function 16).
     Write { register: u16, word: u32 },
 }
 
@@ -140,7 +140,7 @@ pub enum ImplausibleValue {
     Gear(#[from] GearError),
     #[error("{0} is not a direction")]
     Direction(u32),
-    /// A preset, a cam edge or a shift exceeds its range.
+    /// A preset, a cam edge or a shift is out of range.
     #[error("{value} for OUT {read:08X} is too large")]
     Value { read: u32, value: u32 },
 }
@@ -165,7 +165,7 @@ pub enum Error {
     Exception { requested: RequestedItem, exception: Exception },
     #[error("cancelled")]
     Cancelled,
-    /// The word was not sent. In its present mode, the encoder would interpret it as another command.
+    /// The word was not sent. In its current mode, the encoder would interpret it as another command.
     #[error(transparent)]
     Illegal(#[from] ForbiddenCommandError),
     /// The encoder rejected the command with an error word.
@@ -206,10 +206,10 @@ pub enum Error {
     /// words is unknown.
     #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
     UnknownMode { mode: StartupMode },
-    /// The shaft is turning although it must stand still.
+    /// The shaft is turning, although it must be at standstill.
     #[error("the shaft is moving: from position {from} to {to}")]
     Moving { from: u32, to: u32 },
-    /// A value differs from the written one when it is read back.
+    /// The value read back differs from the value written.
     #[error("{item} is {reads} after {wanted} was written")]
     NotTaken { item: String, wanted: u32, reads: u32 },
     #[error("{item} has changed since the plan was made")]

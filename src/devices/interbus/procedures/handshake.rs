@@ -21,7 +21,7 @@ pub enum WordReply {
     Runs,
     Busy,
     Echoed,
-    /// Late echo of an earlier word. It is out of date unless it persists.
+    /// Echo of an earlier word that arrived late. The echo is outdated unless it persists.
     OldEcho,
     Value(Value),
     Error(ErrorWord),
@@ -59,9 +59,9 @@ pub struct LeftState {
     pub out: u32,
     /// Whether parameters or cams were being set. If so, the encoder sends no position until it receives 80000000h.
     pub parameterising: bool,
-    /// Mode before the job, or `None` if it was not read.
+    /// Mode before the job, or `None` if it has not been read.
     pub found: Option<StartupMode>,
-    /// Present mode, or `None` if it was not read.
+    /// Current mode, or `None` if it has not been read.
     pub is: Option<StartupMode>,
 }
 

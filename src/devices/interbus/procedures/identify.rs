@@ -78,7 +78,7 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
 /// Reads all values that are available without selecting a cam program.
 ///
 /// # Errors
-/// Returns an error of [`identify`].
+/// Returns any error that [`identify`] returns.
 pub fn read_all_values(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
@@ -89,7 +89,7 @@ pub fn read_all_values(
 /// Reads the status of the encoder.
 ///
 /// # Errors
-/// Returns an error of [`identify`].
+/// Returns any error that [`identify`] returns.
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     // This is the word that a machine receives, since nothing has been requested yet.
     let mut reading = master.read_in_word()?;

@@ -31,13 +31,13 @@ pub struct Master<'a> {
     patience: Duration,
     recorded: bool,
     tell: Option<StepListener<'a>>,
-    /// Mode of the encoder, or `None` if it was not read in this job.
+    /// Mode of the encoder, or `None` if it has not been read in this job.
     is: Option<StartupMode>,
     /// Whether the encoder still has to confirm a mode switch.
     unsure: bool,
     /// Whether the encoder was switched to other modes in this job.
     switched: bool,
-    /// Mode before this job, or `None` if it was not read.
+    /// Mode before this job, or `None` if it has not been read.
     found: Option<StartupMode>,
     /// Error word that the encoder already sent before this job. It replaces the position until the cause is removed.
     found_error: Option<u32>,
@@ -178,7 +178,7 @@ impl<'a> Master<'a> {
     /// Reads a value from the encoder.
     ///
     /// # Errors
-    /// Returns an error of [`request_value`](Self::request_value).
+    /// Returns any error that [`request_value`](Self::request_value) returns.
     pub(super) fn read_out(&mut self, read_out: ReadOutNumber) -> Result<Value, Error> {
         let value = self.request_value(Command::ReadOut(read_out))?;
         if read_out == ReadOutNumber::SERIAL_NUMBER {
@@ -201,7 +201,7 @@ impl<'a> Master<'a> {
     /// Sends 00000000h until the encoder is running.
     ///
     /// # Errors
-    /// Returns an error of [`run`](Self::run).
+    /// Returns any error that [`run`](Self::run) returns.
     pub(super) fn return_to_operation(&mut self) -> Result<(), Error> {
         self.return_to_running(Command::Normal, self.patience)
     }

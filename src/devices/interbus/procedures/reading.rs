@@ -9,12 +9,12 @@ pub struct WordReading {
     pub at: Moment,
     /// IN word as received.
     pub word: u32,
-    /// Mode of the encoder, or `None` if it was not read yet. Without a mode, the word of a running encoder is
+    /// Mode of the encoder, or `None` if it has not been read yet. Without a mode, the word of a running encoder is
     /// interpreted as a position.
     pub mode: Option<StartupMode>,
-    /// Gear of the encoder, or `None` if it was not read yet.
+    /// Gear of the encoder, or `None` if it has not been read yet.
     pub gear: Option<Gear>,
-    /// Window shift in cam mode, or `None` if it was not read yet.
+    /// Window shift in cam mode, or `None` if it has not been read yet.
     pub shift: Option<WindowShift>,
 }
 
@@ -56,7 +56,7 @@ impl WordReading {
     }
 
     /// Returns the speed in revolutions per minute if the encoder is in velocity mode. The value is read as a signed
-    /// number of 25 bits (`U`). See reference 6.13.
+    /// number of 25 bits (`U`: not documented). See reference 6.13.
     pub fn rpm(&self) -> Option<i32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), Reply::Run { value, .. }) => {

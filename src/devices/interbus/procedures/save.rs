@@ -78,7 +78,7 @@ pub fn read_state(
     })
 }
 
-/// Reads one item. If it belongs to a cam program, the program is selected first.
+/// Reads one item. If the item belongs to a cam program, the program is selected first.
 ///
 /// # Errors
 /// Returns an error if the handshake or the exchange fails.

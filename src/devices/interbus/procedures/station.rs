@@ -19,7 +19,7 @@ parameters! {
         /// First of the two holding registers that contain the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
-        /// Time limit for an echo, a value or a position (`U`). See reference 4.
+        /// Time limit for an echo, a value or a position (`U`: not documented). See reference 4.
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
         /// Pause before each reading of the IN word, which is about the cycle time of a gateway.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
@@ -62,7 +62,8 @@ impl Station {
         self.known.serial_number
     }
 
-    /// Creates the state of an unused gateway with default parameters. `margin` extends the time limit for replies.
+    /// Creates the state for a gateway that has not been used in this session, with default parameters. `margin`
+    /// extends the time limit for replies.
     pub fn new(margin: Duration) -> Self {
         Station {
             link: LinkParameters::default(),

@@ -24,7 +24,7 @@ pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenC
 /// The state of an encoder after a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EndState {
-    /// The encoder is running in the mode that it had before.
+    /// The encoder is running in its previous mode.
     AsFound,
     /// The encoder could not be returned to its original mode.
     Unknown(LeftState),

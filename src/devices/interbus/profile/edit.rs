@@ -55,8 +55,8 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Plans to set the position at the current shaft angle. The preset is always programmed before it is fired, since it
-/// can be used only once each time it is programmed. See reference 4.
+/// Plans to set the position at the current shaft angle. The preset is always programmed before it is executed, since
+/// it can be used only once each time it is programmed. See reference 4.
 ///
 /// # Errors
 /// Returns an error if the value exceeds the measuring range.

@@ -55,10 +55,10 @@ pub enum PlanError {
         edge: Edge,
         /// Planned position.
         position: u32,
-        /// Last position of the measuring range.
+        /// Largest position in the measuring range.
         last: u32,
     },
-    /// The present value of an item is unknown, so the item cannot be changed.
+    /// The current value of an item is unknown, so the item cannot be changed.
     #[error("{item} was not read before it is to be changed")]
     NotRead {
         /// The item.

@@ -25,7 +25,7 @@ pub struct Parameters {
     pub revolutions: u32,
     /// Counting direction.
     pub direction: Direction,
-    /// Position assigned to the present shaft angle when the preset is fired. It depends on the mounting.
+    /// Position assigned to the current shaft angle when the preset is executed. It depends on the mounting.
     pub preset: u32,
     /// Zero shift, which depends on the mounting.
     pub zero_shift: u32,

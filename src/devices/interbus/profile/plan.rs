@@ -17,7 +17,7 @@ pub struct Base {
     pub parameters: Option<Parameters>,
     /// Window shift, or `None` if the plan does not change it.
     pub shift: Option<WindowShift>,
-    /// Present content of the affected programs.
+    /// Current content of the affected programs.
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
@@ -25,12 +25,12 @@ pub struct Base {
 /// the EEPROM.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Sets parameters in the given order in a single parameterisation. Word 80000000h then stores them. See reference
-    /// 4.
+    /// Sets parameters in the given order in a single parameterisation. Afterwards, word 80000000h stores the
+    /// parameters. See reference 4.
     Parameterise(Vec<ParameterChange>),
     /// Selects and changes a cam program. Leaving the program stores the changes. See reference 5.
     Program(ProgramChange),
-    /// Sets the position at the present shaft angle to the preset value (word 40000000h). The preset must have been
+    /// Sets the position at the current shaft angle to the preset value (word 40000000h). The preset must have been
     /// programmed before. See reference 4.
     FirePreset {
         /// Preset value.
@@ -46,9 +46,9 @@ pub enum Op {
 pub struct ParameterChange {
     /// Parameter to change.
     pub parameter: Parameter,
-    /// Present value.
+    /// Current value.
     pub from: u32,
-    /// New value. It equals the current value if a preset must be programmed again before it can be fired.
+    /// New value. It equals the current value if a preset must be programmed again before it can be executed.
     pub to: u32,
 }
 
@@ -59,9 +59,9 @@ pub struct ProgramChange {
     pub program: ProgramNumber,
     /// Changed cam edges in the order of the cams. The start of a cam precedes its stop.
     pub cams: Vec<CamChange>,
-    /// Present and new activation mask, or `None` if the mask does not change.
+    /// Current and new activation mask, or `None` if the mask does not change.
     pub mask: Option<(u8, u8)>,
-    /// Present and new window shift, or `None` if it does not change. The shift is common to all programs but can only
+    /// Current and new window shift, or `None` if it does not change. The shift is common to all programs but can only
     /// be set together with a program.
     pub shift: Option<(WindowShift, WindowShift)>,
 }
@@ -98,8 +98,8 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the changed items. A cam is listed once even if both edges change. Firing the preset and restoring the
-    /// factory settings return no items.
+    /// Returns the changed items. A cam is listed once even if both edges change. Executing the preset and restoring
+    /// the factory settings return no items.
     pub fn affected_items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
@@ -110,7 +110,7 @@ impl Op {
         }
     }
 
-    /// Returns the names of the changed items. The command `read` accepts them if they are readable.
+    /// Returns the names of the changed items. The command `read` accepts the names of readable items.
     pub fn item_names(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -119,7 +119,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes as a comparison counts them.
+    /// Returns the number of changes that a comparison would count.
     pub fn change_count(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,

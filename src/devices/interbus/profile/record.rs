@@ -116,7 +116,7 @@ impl CamNames {
         self.cams.get(&(program, cam)).map_or("", String::as_str)
     }
 
-    /// Sets the name of a program. An empty string removes it.
+    /// Sets the name of a program. An empty string removes the name.
     pub fn set_program(&mut self, program: ProgramNumber, name: String) {
         if name.is_empty() {
             self.programs.remove(&program)
@@ -125,7 +125,7 @@ impl CamNames {
         };
     }
 
-    /// Sets the name of a cam. An empty string removes it.
+    /// Sets the name of a cam. An empty string removes the name.
     pub fn set_cam(&mut self, program: ProgramNumber, cam: CamNumber, name: String) {
         let place = (program, cam);
         if name.is_empty() {

@@ -1,12 +1,12 @@
 //! Planning of a restore. Only differences are written, in as few store cycles as possible. Values that depend on the
-//! mounting of another encoder are omitted. A preset is stored but never fired.
+//! mounting of another encoder are omitted. A preset is stored but never executed.
 
 pub use crate::profile::RestoreOptions;
 
 use super::{Image, InterbusPlan, InterbusProfile, Item, PlanError, ProfileIdentity, TypeMismatch, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
-/// Present state of an encoder, which is the basis for planning.
+/// Current state of an encoder, which is the basis for planning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
@@ -88,7 +88,7 @@ pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option
 /// Checks that an encoder matches the profile, unless the options allow a mismatch.
 ///
 /// # Errors
-/// Returns an error of [`check_device`] if the encoder does not match.
+/// Returns an error from [`check_device`] if the encoder does not match.
 pub fn check_allowed(
     profile: &InterbusProfile,
     device: &ProfileIdentity,

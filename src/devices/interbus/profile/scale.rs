@@ -1,4 +1,4 @@
-//! Conversion of encoder steps to degrees of the machine's rotation or millimetres of its travel.
+//! Conversion of encoder steps to the position of a machine in degrees or millimetres.
 
 /// Unit of a machine position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -6,9 +6,9 @@ pub enum Unit {
     /// Encoder steps.
     #[default]
     Steps,
-    /// Degrees of the machine's rotation.
+    /// Degrees, for a machine that rotates.
     Degrees,
-    /// Millimetres of the machine's travel.
+    /// Millimetres, for a machine with linear travel.
     Millimetres,
 }
 
@@ -36,9 +36,9 @@ pub struct RoundedPosition {
 pub struct OutsideRangeError {
     /// Requested position in the unit of the scale.
     pub value: f64,
-    /// First position of the measuring range in the unit of the scale.
+    /// Smallest position in the measuring range, in the unit of the scale.
     pub least: f64,
-    /// Last position of the measuring range in the unit of the scale.
+    /// Largest position in the measuring range, in the unit of the scale.
     pub most: f64,
 }
 
@@ -149,7 +149,7 @@ impl Scale {
     }
 
     /// Returns the encoder step nearest to a machine position. If degrees wrap, the position may be beyond the
-    /// measuring range. Positions in steps must always be within it.
+    /// measuring range. Positions in steps must always be within the measuring range.
     ///
     /// # Errors
     /// Returns [`OutsideRangeError`] with the limits if the position is outside the measuring range.

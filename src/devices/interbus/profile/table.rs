@@ -92,7 +92,7 @@ pub enum TableProblemKind {
     /// The header has no column for the start or stop.
     #[error("the header names no column for the {0}")]
     NoColumn(Column),
-    /// The line ends before this column.
+    /// The line has no value in this column.
     #[error("the {0} is missing")]
     Missing(Column),
     /// The text is not a number.
@@ -238,7 +238,7 @@ impl CamTable {
         self.rows.iter().filter(|row| row.start.is_rounded() || row.stop.is_rounded())
     }
 
-    /// Returns the largest rounding error of an edge in the unit of the scale.
+    /// Returns the largest rounding error of any edge in the unit of the scale.
     pub fn max_rounding_error(&self) -> f64 {
         let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
         edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)

@@ -68,7 +68,7 @@ pub(super) fn profile(serial_number: &str) -> InterbusProfile {
     InterbusProfile::new(identity(serial_number), image(), recorded)
 }
 
-/// Returns the changes of an operation as the logbook describes them.
+/// Returns the description of the changes of an operation in the logbook.
 pub(super) fn logbook_note(op: &Op) -> String {
     op.changed_items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

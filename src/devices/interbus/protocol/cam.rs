@@ -11,8 +11,8 @@ pub struct CamNumber(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
-/// A cam, which is on from one position to another, including both (`U`). If the start is after the stop, the range
-/// wraps around the end of the measuring range.
+/// A cam, which is on from one position to another, including both (`U`: not documented). If the start is after the
+/// stop, the range wraps around the end of the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cam {
     /// First position at which the cam is on.
@@ -116,7 +116,7 @@ impl Program {
         self.cams.get(usize::from(number.0)).copied().flatten()
     }
 
-    /// Sets a cam, or removes it with `None`. The mask is left unchanged.
+    /// Sets a cam, or removes the cam if `cam` is `None`. The activation mask is left unchanged.
     pub fn set_cam(&mut self, number: CamNumber, cam: Option<Cam>) {
         if let Some(place) = self.cams.get_mut(usize::from(number.0)) {
             *place = cam;

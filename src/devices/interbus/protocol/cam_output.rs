@@ -81,7 +81,7 @@ impl CamOutput {
         })
     }
 
-    /// Returns the word. Window and stray bits that do not fit are dropped.
+    /// Returns the word. Bits of the window and stray bits that do not fit into the word are dropped.
     pub const fn emit(self) -> u32 {
         let window = self.window & ((1 << WINDOW_BITS) - 1);
         ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32

@@ -6,18 +6,18 @@ use super::value::Value;
 /// Class of the process data that an encoder exchanges with its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
-    /// 16 bits IN, containing the position.
+    /// An IN word of 16 bits, which contains the position.
     K1,
-    /// 32 bits IN, containing the position.
+    /// An IN word of 32 bits, which contains the position.
     K2,
-    /// 32 bits IN and OUT. Each word has seven bits of status or command and 25 data bits.
+    /// An IN word and an OUT word of 32 bits. Each word has seven bits of status or command and 25 data bits.
     K3,
 }
 
 /// Physical layer of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interface {
-    /// Copper.
+    /// Copper cable.
     Standard,
     /// Optical fibre (*LWL*).
     OpticalFibre,
@@ -34,7 +34,7 @@ impl Class {
     /// All classes.
     pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
 
-    /// Returns the number of bytes from the encoder and the number of bytes to it.
+    /// Returns the number of bytes that the encoder sends and the number of bytes that it receives.
     pub const fn bytes(self) -> (usize, usize) {
         match self {
             Class::K1 => (2, 0),
@@ -45,7 +45,7 @@ impl Class {
 }
 
 /// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h (55), although the manual
-/// prints 36h next to 55. See manual 5.1 and reference 6.1.
+/// gives it as 36h (55). See manual 5.1 and reference 6.1.
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {
         (Class::K1 | Class::K2, Interface::Standard | Interface::OpticalFibre) => 0x36,

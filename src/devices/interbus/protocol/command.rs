@@ -56,7 +56,7 @@ pub enum Command {
 pub struct ForbiddenCommandError {
     /// The intended command.
     pub command: Command,
-    /// Present mode of the encoder.
+    /// Current mode of the encoder.
     pub mode: EncoderMode,
 }
 
@@ -138,9 +138,9 @@ impl Command {
         if self.is_legal_in(mode) { Ok(()) } else { Err(ForbiddenCommandError { command: self, mode }) }
     }
 
-    /// Returns whether the command may be sent in a mode. A word remains on the process data until the next one, so a
-    /// word that enters a mode is also legal in that mode. Read-outs are allowed while the outputs are valid, since one
-    /// of them reveals the mode (`U`).
+    /// Returns whether the command may be sent in a mode. A word remains in the process data until the next word is
+    /// written, so a word that enters a mode is also legal in that mode. Read-outs are allowed while the outputs are
+    /// valid, since one of them reveals the mode (`U`: not documented).
     pub const fn is_legal_in(self, mode: EncoderMode) -> bool {
         use EncoderMode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {

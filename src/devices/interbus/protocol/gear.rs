@@ -24,7 +24,7 @@ pub enum GearError {
         /// Given number of turns.
         turns: u32,
     },
-    /// The number of steps exceeds 25 bits or the resolution of the disc over these turns.
+    /// The number of steps exceeds 25 bits, or the resolution of the disc over the given number of turns.
     #[error("{steps} steps are not within 1 to {most}, which is what {turns} turns have")]
     Steps {
         /// Given number of steps.
@@ -81,7 +81,7 @@ impl Gear {
     }
 
     /// Returns the position that the encoder sends for a disc position. This is the
-    /// [`scaled_value`](Self::scaled_value) within the range (`U`).
+    /// [`scaled_value`](Self::scaled_value) within the range (`U`: not documented).
     pub const fn position(self, raw: u32) -> Value {
         // The result is less than `steps`, which has 25 bits.
         Value::from_word(self.scaled_value(raw % self.total_disc_steps()) as u32)

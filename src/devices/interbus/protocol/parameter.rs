@@ -14,7 +14,7 @@ pub enum Parameter {
     Turns,
     /// Counting direction: 3 clockwise, 4 counterclockwise.
     Direction,
-    /// Position that the encoder adopts when the preset is fired.
+    /// Position that the encoder adopts when the preset is executed.
     Preset,
     /// Zero shift. It does not apply the preset, contrary to manual 5.4.1. See reference 6.2.
     ZeroShift,

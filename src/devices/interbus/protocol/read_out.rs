@@ -45,7 +45,7 @@ const CHIP: u16 = 0xD;
 /// Value of a read-out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadOutValue {
-    /// A number in the unit of its table row. Unknown read-outs and chip registers also yield this variant.
+    /// A number in the unit of its table row. This variant is also used for unknown read-outs and chip registers.
     Plain(u32),
     /// Operating time in minutes.
     Minutes(u32),
@@ -57,7 +57,7 @@ pub enum ReadOutValue {
     Flags(Flags),
 }
 
-/// Present mode and start-up mode of the encoder, read-out 9. The manual prints `3h to 10h` for the programs but means
+/// Current mode and start-up mode of the encoder, read-out 9. The manual prints `3h to 10h` for the programs but means
 /// decimal 3 to 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
@@ -65,9 +65,9 @@ pub enum StartupMode {
     K2,
     /// 1: the encoder operates like a K3 encoder.
     K3,
-    /// 2: velocity mode.
+    /// Code 2: velocity mode.
     Velocity,
-    /// 3 to 0Ah: cam programs 1 to 8.
+    /// Codes 3 to 0Ah: cam programs 1 to 8.
     Cams(ProgramNumber),
     /// A value that the manual does not define.
     Unknown(Value),

@@ -77,7 +77,7 @@ impl Reply {
         }
     }
 
-    /// Returns the word. Stray bits that do not fit are dropped.
+    /// Returns the word. Stray bits that do not fit into the word are dropped.
     pub fn emit(self) -> u32 {
         let echo = |manufacturer: bool| if manufacturer { ECHO | MANUFACTURER } else { ECHO };
         match self {
@@ -130,7 +130,7 @@ impl ErrorWord {
         }
     }
 
-    /// Returns a remedy for the error. Most of them are not in the manual (`U`).
+    /// Returns a remedy for the error. Most remedies are not in the manual (`U`).
     pub const fn remedy(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "send a number within its limits, then run",

@@ -24,7 +24,8 @@ impl Value {
         self.0
     }
 
-    /// Returns the value as a signed number with the sign in bit 24. Speeds use this form (`U`). See reference 6.13.
+    /// Returns the value as a signed number with the sign in bit 24. Speeds use this form (`U`: not documented). See
+    /// reference 6.13.
     pub const fn to_signed(self) -> i32 {
         let above = u32::BITS - Value::BITS;
         (self.0 << above) as i32 >> above

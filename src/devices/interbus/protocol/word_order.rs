@@ -15,7 +15,7 @@ const LAST: u16 = u16::MAX - 1;
 /// Word order, named by the half of the word that the first register contains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
-    /// Bits 31..16 come first, which is the usual order in INTERBUS (`U`).
+    /// Bits 31..16 come first, which is the usual order in INTERBUS (`U`: not documented).
     #[default]
     HighFirst,
     /// Bits 15..0 come first.

@@ -17,14 +17,14 @@ use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice,
 
 parameters! {
     /// Settings of a virtual gateway and its encoders. The default is one K3 encoder with factory settings, at
-    /// standstill and without faults. The gateway then has unit 1, registers from 0 and the high word first.
+    /// standstill and without faults. By default, the gateway has unit 1, registers from 0 and the high word first.
     pub struct Config: ConfigError {
         // The gear and the values within its range are checked together and then stored in `memory`.
         steps: Option<String> = None, "steps" => OptionalValue(ANY);
         revolutions: Option<String> = None, "revolutions" => OptionalValue(ANY);
         pub(super) memory: Memory = Memory::factory_default();
         counterclockwise: bool = false, "direction" => Keywords(&[("cw", false), ("ccw", true)]);
-        /// Preset in steps within the range. It is programmed but was not fired.
+        /// Preset in steps within the range. It is programmed but has not been executed.
         preset: Option<String> = None, "preset" => OptionalValue(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
@@ -34,9 +34,9 @@ parameters! {
         /// Operating time in units of ten minutes.
         pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
         pub(super) celsius: f64 = 25.3, "temperature" => DecimalNumbers(Quantity::Celsius, -273.0..=1000.0);
-        /// Whether a negative temperature has 16 bits instead of 25 (`U`). See reference 3.
+        /// Whether a negative temperature has 16 bits instead of 25 (`U`: not documented). See reference 3.
         pub(super) narrow_temperature: bool = false, "temperature-bits" => Keywords(&[("25", false), ("16", true)]);
-        /// Whether read-out 3 returns 0 or 1 instead of the parameter value (`U`).
+        /// Whether read-out 3 returns 0 or 1 instead of the parameter value (`U`: not documented).
         pub(super) complement_bit: bool = false, "complement" => Keywords(&[("code", false), ("bit", true)]);
         /// Selected cam program, or normal operation.
         pub(super) mode: StartupMode = StartupMode::K3, "program" => CustomNotation(AllowedValues::Program, mode);
@@ -48,7 +48,7 @@ parameters! {
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
         /// Number of cycles for which the old IN word remains after a new OUT word.
         pub(super) stale: u32 = 1, "stale" => WholeNumbers(Quantity::Cycles, 0..=1000);
-        /// Whether the echo of a program selection precedes the outputs of the program (`U`).
+        /// Whether the echo of a program selection precedes the outputs of the program (`U`: not documented).
         pub(super) acknowledges_selection: bool = true, "selection" => Keywords(&[("echo", true), ("output", false)]);
         pub(super) class: Class = Class::K3, "class" => Keywords(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
         /// Number of encoders. Each has two registers, starting at `input` and `output`.

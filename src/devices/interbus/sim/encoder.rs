@@ -6,7 +6,7 @@
 //!   ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
 //!   └── 2080000ph ──▶ cam program; of a changed one before it a store
 //! ```
-//! Assumptions (`U`):
+//! Assumptions (`U`: not documented):
 //! - Every parameterisation and every program with a write uses a store cycle, even if no value has changed.
 //! - A parameter in a mode that does not allow it is reported as unknown (84000000h).
 //! - Any other word without a meaning in the mode has no effect.
@@ -156,7 +156,7 @@ impl Encoder {
         self.motor.clone()
     }
 
-    /// Sets the shaft position in disc steps. A turn has 8192 of them.
+    /// Sets the shaft position in disc steps. A turn has 8192 disc steps.
     pub fn set_shaft_position(&mut self, now: Moment, place: i32) {
         self.update(now);
         self.shaft.set_position(now, place);
@@ -300,7 +300,7 @@ impl Encoder {
         }
     }
 
-    /// Completes a word that sets a value. The IN word is then its echo or an error.
+    /// Completes a word that sets a value. Afterwards, the IN word is the echo of this word or an error.
     fn complete_setting(&mut self, now: Moment, taken: Result<StoredSettings, WordFault>) {
         let word = match taken {
             Ok(_) => self.out | ECHO,
@@ -368,7 +368,7 @@ impl Encoder {
         }
     }
 
-    /// Selects the given cam program, or position mode for `None`. If the present program was changed, it is stored
+    /// Selects the given cam program, or position mode for `None`. If the current program was changed, it is stored
     /// first.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
         self.store_memory();

@@ -11,7 +11,7 @@ pub struct Memory {
     pub(super) gear: Gear,
     pub(super) counterclockwise: bool,
     pub(super) preset: u32,
-    /// Whether a preset was programmed but not fired yet.
+    /// Whether a preset has been programmed but not yet executed.
     pub(super) armed: bool,
     pub(super) zero_shift: u32,
     pub(super) shift: WindowShift,
@@ -45,7 +45,7 @@ impl Memory {
         self.preset
     }
 
-    /// Returns whether a preset was programmed but not fired yet.
+    /// Returns whether a preset has been programmed but not yet executed.
     pub const fn is_preset_armed(&self) -> bool {
         self.armed
     }
@@ -149,7 +149,7 @@ impl Eeprom {
     }
 
     /// Stores the settings. If a store fails, the settings that it would have written are reset to the factory settings
-    /// (`U`).
+    /// (`U`: not documented).
     pub(super) fn store(&mut self, memory: &Memory, what: StoredSettings) -> StoreOutcome {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);

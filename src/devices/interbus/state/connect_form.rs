@@ -99,7 +99,7 @@ impl InterbusForm {
         Config::entries()
     }
 
-    /// Sets the entry of a parameter. Returns `false` if no entry can show the value.
+    /// Fills in the input field for a parameter. Returns `false` if no input field can show the value.
     fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;

@@ -65,7 +65,7 @@ impl Kind for Interbus {
 }
 
 impl Encoder {
-    /// Reads the present word, unless polling already does.
+    /// Reads the current word, unless polling already does.
     fn refresh_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(InterbusJob::Position, services);

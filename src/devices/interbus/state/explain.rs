@@ -34,7 +34,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection was lost, or `None` if it can still be used.
+/// Returns the reason why the connection was lost, or `None` if it can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     lost_link(error.device()?).map(link_error_text)
 }

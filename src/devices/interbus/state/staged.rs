@@ -174,7 +174,7 @@ impl StagedEdits {
         self.wanted.as_ref()
     }
 
-    /// Returns an edited program, or `None` if it was not read or is not in the profile.
+    /// Returns an edited program, or `None` if it has not been read or is not in the profile.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.wanted.as_ref()?.image.program(number)
     }

@@ -16,7 +16,7 @@ use crate::store::{read_file, write_atomically};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub origin: Text,
-    /// Content of the table. Its positions are read in the present unit of the scale.
+    /// Content of the table. Its positions are read in the current unit of the scale.
     pub table: CamTable,
     text: String,
     /// Program of the rows that do not name one.

@@ -1,4 +1,4 @@
-//! The encoder page with the identity, the present word and the wiring.
+//! The encoder page with the identity, the current word and the wiring.
 
 use egui::{RichText, Ui};
 

@@ -75,7 +75,7 @@ impl Ssi {
 }
 
 impl Session<Ssi> {
-    /// Creates a session on an open connection. `motor` is given for a virtual encoder in this process.
+    /// Creates a session on an open connection. `motor` is `Some` for a virtual encoder in this process.
     pub fn for_adapter(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,

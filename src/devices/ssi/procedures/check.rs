@@ -67,7 +67,7 @@ pub enum CheckFinding {
 /// Reads a series of words and checks them.
 ///
 /// # Errors
-/// Returns an error of the adapter if no words arrive.
+/// Returns an error from the adapter if no words arrive.
 pub fn check_encoder(
     master: &mut Master<'_>,
     layout: &Layout,

@@ -53,7 +53,7 @@ impl<'a> Master<'a> {
     /// Changes the settings for reading words.
     ///
     /// # Errors
-    /// Returns an error of [`identify`](Self::identify). In this case, the previous settings stay in effect.
+    /// Returns any error that [`identify`](Self::identify) returns. In this case, the previous settings stay in effect.
     pub fn apply_settings(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
@@ -65,7 +65,7 @@ impl<'a> Master<'a> {
     /// Reads a single word.
     ///
     /// # Errors
-    /// Returns an error of [`identify`](Self::identify).
+    /// Returns any error that [`identify`](Self::identify) returns.
     pub fn read_word(&mut self) -> Result<Words, Error> {
         match self.read_configured_word() {
             // The adapter was reset and has lost its settings. The word is requested once more after the adapter has
@@ -82,7 +82,7 @@ impl<'a> Master<'a> {
     /// Reads the next word of a series of single requests.
     ///
     /// # Errors
-    /// Returns an error of [`identify`](Self::identify).
+    /// Returns any error that [`identify`](Self::identify) returns.
     pub fn next_word(&mut self) -> Result<Words, Error> {
         let word = self.read_word()?;
         Ok(Words { first: self.station.count(), ..word })
@@ -94,8 +94,8 @@ impl<'a> Master<'a> {
     /// interval is used.
     ///
     /// # Errors
-    /// Returns an error of [`identify`](Self::identify) if the stream cannot be started. Later, an error of the adapter
-    /// ends the stream, but the stream continues after a cancellation.
+    /// Returns an error from [`identify`](Self::identify) if the stream cannot be started. Later, an error of the
+    /// adapter ends the stream, but the stream continues after a cancellation.
     pub fn next_words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = StreamKind::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {

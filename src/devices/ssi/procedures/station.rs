@@ -82,7 +82,7 @@ pub struct Supply {
 }
 
 impl Supply {
-    /// Time from power-up until words are valid. The manual does not specify it (`U`).
+    /// Time from power-up until words are valid. The manual does not specify this time (`U`).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
     /// Supply voltages of SSI encoders in millivolts, from 5 V minus 10 % to 30 V. See SICK SSI description, TTK70.
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
@@ -123,7 +123,7 @@ impl Station {
         Ok(station)
     }
 
-    /// Discards all data about the adapter. It is then identified and configured again.
+    /// Discards all data about the adapter. Before the next use, the adapter is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget_identity();
         self.flow = None;

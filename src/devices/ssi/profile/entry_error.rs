@@ -16,7 +16,7 @@ pub enum EntryError {
         /// Last position of the frame.
         last: u64,
     },
-    /// The entry cannot be combined with the named one.
+    /// The entry cannot be combined with another entry. Contains the name of the other entry.
     #[error("this entry cannot be combined with {0}")]
     NotWith(&'static str),
     /// The range of positions is missing.

@@ -12,7 +12,7 @@ pub struct SsiProfile {
     pub name: String,
     /// Key of the family that defines timing and other limits, or `None` if the family is unknown.
     pub family: Option<String>,
-    /// Description of the frame. It has been validated if it was read from a file.
+    /// Description of the frame. A description from a file has been validated.
     pub descriptor: FrameDescriptor,
     /// Counting direction.
     pub direction: Direction,
@@ -33,7 +33,7 @@ pub struct ReadingSettings {
     pub pause_us: u16,
     /// Cable length in metres, or `None` if the cable is not checked.
     pub cable_metres: Option<u16>,
-    /// Whether the encoder is in synchronous mode, in which the clock of the host makes it take a position.
+    /// Whether the encoder is in synchronous mode, in which the clock of the host triggers the sampling of a position.
     pub synchronous: bool,
 }
 
@@ -71,7 +71,7 @@ impl SsiProfile {
         }
     }
 
-    /// Returns the conditions of reading, which are needed to check the timing of the frame.
+    /// Returns the conditions for reading the encoder, which are needed to check the timing of the frame.
     pub fn read_conditions(&self) -> ReadConditions {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         ReadConditions {

@@ -21,7 +21,8 @@ pub struct FrameDescriptor {
     pub area: u8,
     /// Number of zeros before the position.
     pub lead: u8,
-    /// Number of zeros between multiturn and singleturn. It must be 0 if the range has no separate bits for them.
+    /// Number of zeros between multiturn and singleturn. The number must be 0 if the range has no separate bits for
+    /// turns and steps.
     pub between: u8,
     /// Whether the area is delayed by one clock. A zero is sent first, and the last bit of the area is lost. See SICK
     /// SSI description 3.4, SSI-SHIFT-RIGHT.

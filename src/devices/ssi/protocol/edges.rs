@@ -48,9 +48,9 @@ pub enum BurstError {
 }
 
 /// Minimum monoflop time tm in seconds. The encoder considers a burst finished once the clock has stayed at one level
-/// for this long.
+/// for this time.
 const MIN_MONOFLOP: f64 = 15e-6;
-/// Minimum pause between bursts in half periods, for a slow clock.
+/// Minimum pause between bursts at a slow clock, in half clock periods.
 const MIN_PAUSE_HALF_PERIODS: f64 = 3.0;
 /// Sampling point of the last bit as a fraction of a half period. The data line falls after the full half period.
 const SAMPLING_POINT: f64 = 0.9;
@@ -96,8 +96,8 @@ fn find_edges(levels: &[LineLevels]) -> Vec<Edge> {
     changes.collect()
 }
 
-/// Returns whether the clock idles high, or `None` if it never pauses. The idle level is the level with the longer
-/// total pause.
+/// Returns whether the clock line is high when idle, or `None` if the clock never pauses. The idle level is the level
+/// with the longer total pause.
 fn is_idle_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<bool> {
     let (first, last) = (levels.first()?, levels.last()?);
     let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));

@@ -39,7 +39,8 @@ pub struct Family {
     pub multiturn: Option<(u8, u8, u8)>,
     /// Minimum, factory and maximum width of the singleturn part, or of a linear position, in bits.
     pub singleturn: (u8, u8, u8),
-    /// Maximum width of the position in bits, if it is less than the sum of both parts.
+    /// Maximum width of the position in bits, if this width is less than the sum of the multiturn and singleturn
+    /// widths.
     #[serde(default)]
     pub together: Option<u8>,
     /// Limits for a number of steps that is not a power of two.
@@ -52,7 +53,7 @@ pub struct Family {
     /// Whether the position can be delayed by one clock.
     #[serde(default)]
     pub shift: bool,
-    /// Frames in the order of the width of the position. The first one with enough room for the position is used.
+    /// Frames in the order of the width of the position. The first frame with enough room for the position is used.
     pub frames: Vec<Frame>,
     /// Words that have a special meaning and are not a position.
     #[serde(default)]
@@ -93,7 +94,7 @@ pub struct Frame {
     /// Number of clocks for the position and the zeros around it. `None` means one clock per bit of the position.
     #[serde(default)]
     pub area: Option<u8>,
-    /// Error bits in the order sent. The `clock` of the first one is used if the bits have a fixed location.
+    /// Error bits in the order sent. The `clock` of the first error bit is used if the bits have a fixed location.
     #[serde(default)]
     pub errors: Vec<ErrorBit>,
     /// Possible locations of the error bits, starting with the factory setting.

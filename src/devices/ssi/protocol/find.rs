@@ -52,7 +52,8 @@ pub struct Search {
     pub frames: usize,
     /// Number of different frames.
     pub different: usize,
-    /// Reason why the first class is uncertain. It is `None` if every bit is explained and no other class fits as well.
+    /// Reason why the first class is uncertain. It is `None` if every bit is explained and no other class fits equally
+    /// well.
     pub doubt: Option<SearchUncertainty>,
     /// Classes of possible layouts, with the best first. The list may be empty.
     pub classes: Vec<Class>,
@@ -68,7 +69,8 @@ pub enum SearchUncertainty {
         /// Whether the value is 1.
         high: bool,
     },
-    /// No reading yields an even motion. The data are not SSI, the line is disturbed, or the shaft turns too fast.
+    /// No interpretation of the frames yields steady motion. The data are not SSI, the line is disturbed, or the shaft
+    /// turns too fast.
     Nothing,
     /// Two classes fit equally well.
     Close,
@@ -82,7 +84,7 @@ pub struct Class {
     /// Members of the class, with the most probable first. Factory settings come before changed ones, and usual widths
     /// before unusual ones.
     pub members: Vec<LayoutProposal>,
-    /// The evidence.
+    /// Evidence for the class.
     pub evidence: ClassEvidence,
     /// Motions of the shaft that would distinguish or confirm the members.
     pub open: Vec<OpenQuestion>,
@@ -122,33 +124,35 @@ pub struct ClassEvidence {
     pub steps_a_frame: i64,
     /// Information per frame in bits that cannot be predicted from the previous frames.
     pub bits_a_frame: f64,
-    /// Number of frames that jump from the previous one.
+    /// Number of frames whose position jumps relative to the previous frame.
     pub jumps: usize,
     /// Number of frames in which a constant bit has another value or the code word is invalid.
     pub misfits: usize,
-    /// Number of position bits from the highest one that changed to the lowest one.
+    /// Number of position bits from the highest bit that changed to the lowest bit.
     pub bits_seen: u8,
 }
 
 /// Open question about a class, with the motion of the shaft that answers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OpenQuestion {
-    /// Boundary between turns and steps. To find it, turn exactly once, and note how much the position increases.
+    /// Boundary between turns and steps. To find the boundary, turn the shaft exactly once and note the increase of the
+    /// position.
     TurnOnce,
-    /// Meaning of clocks that never changed. To find it, turn until they change or the position wraps.
+    /// Meaning of clocks that never changed. To find the meaning, turn the shaft until these clocks change or the
+    /// position wraps.
     TurnFarther {
-        /// First of these clocks.
+        /// First clock that never changed.
         from: u8,
-        /// Last of these clocks.
+        /// Last clock that never changed.
         to: u8,
     },
-    /// End of the range. To find it, turn until the position wraps.
+    /// End of the range. To find the end, turn the shaft until the position wraps.
     PassAnEnd,
     /// Swapped wires or reversed counting. To decide, turn clockwise, and check whether the position increases.
     Direction,
-    /// Lowest bit. To find it, turn at a different and uneven speed.
+    /// Lowest bit of the position. To find the bit, turn the shaft at a different and uneven speed.
     OtherSpeed,
-    /// Number of steps. To find it, turn slowly across the end of the range.
+    /// Number of steps. To find the number, turn the shaft slowly across the end of the range.
     PassTheEnd {
         /// Minimum number of steps.
         least: u32,
@@ -160,13 +164,13 @@ pub enum OpenQuestion {
         /// The first such clock.
         clock: u8,
     },
-    /// Error bits. To find them, cause an error, for example by turning too fast.
+    /// Error bits. To find the bits, cause an error, for example by turning the shaft too fast.
     SeeAnError,
     /// The family, if several families send the same frame. To decide, check the type label.
     TypeLabel,
 }
 
-/// A reading of the frames with all layouts that result in it.
+/// An interpretation of the frames, with all layouts that result in this interpretation.
 struct Group {
     read: FrameNumbers,
     members: Vec<LayoutCandidate>,

@@ -33,7 +33,7 @@ pub struct Layout {
     pub(super) errors: Vec<u64>,
     /// Mask of the error bits that are active at 0.
     pub(super) low: u64,
-    /// Masks of the parity bit and of the bits before it, both in a word. They are 0 without parity.
+    /// Masks of the parity bit and of the bits before it, both in a word. Both masks are 0 if there is no parity bit.
     pub(super) parity: (u64, u64),
     pub(super) patterns: Vec<u64>,
     pub(super) invalid: Flags,

@@ -48,8 +48,8 @@ pub struct Fraction {
     pub denominator: u32,
 }
 
-/// Direction in which positions increase, seen when looking at the shaft. For a linear encoder, `Clockwise` is its
-/// normal direction.
+/// Direction of rotation in which positions increase, as seen facing the shaft. For a linear encoder, `Clockwise` is
+/// its normal direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Clockwise, the factory setting.

@@ -89,8 +89,8 @@ impl FindingCounts {
     }
 }
 
-/// Returns whether a finding concerns a single transfer. Such a finding is counted again if the next frame has it as
-/// well.
+/// Returns whether a finding concerns a single transfer. Such a finding is counted again if the next frame has the same
+/// finding.
 fn is_single_transfer_finding(finding: &FrameFinding) -> bool {
     matches!(
         finding,

@@ -34,13 +34,13 @@ pub struct Times {
 pub struct AsynchronousTimes {
     /// Time from one position to the next, in microseconds.
     pub update: f64,
-    /// Minimum age of a position when it is read, in microseconds.
+    /// Minimum age of a position at the time of reading, in microseconds.
     #[serde(default)]
     pub least_age: f64,
     /// Maximum pause between bursts in microseconds, if there is a limit.
     #[serde(default)]
     pub most_pause: Option<f64>,
-    /// Allowed variation of the pauses in percent, if it is specified.
+    /// Allowed variation of the pauses in percent, or `None` if not specified.
     #[serde(default)]
     pub pause_varies: Option<f64>,
 }
@@ -95,7 +95,7 @@ pub struct ReadConditions {
     pub clock_hz: f64,
     /// Pause from the last clock of a burst to the first clock of the next one.
     pub pause: Duration,
-    /// Cable length in metres, if it is known.
+    /// Cable length in metres, or `None` if unknown.
     pub cable_metres: Option<f64>,
     /// Whether the encoder is in synchronous mode.
     pub synchronous: bool,
@@ -156,7 +156,7 @@ pub enum Warning {
         /// Maximum pause.
         most: Duration,
     },
-    /// Frames are read faster than the encoder takes positions, so some positions are read several times.
+    /// Frames are read faster than the encoder samples positions, so some positions are read several times.
     Repeats {
         /// Time from one position to the next.
         update: Duration,

@@ -150,7 +150,7 @@ impl Encoder {
         !matches!(self.session.source, Source::Link(_))
     }
 
-    /// Returns why the adapter cannot read the present layout.
+    /// Returns the reason why the adapter cannot read the current layout.
     pub fn layout_rejection(&self) -> Option<&Text> {
         self.designer.problem()
     }

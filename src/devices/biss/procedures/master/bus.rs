@@ -21,7 +21,7 @@ const SLAVE: u8 = 0;
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Pause between two attempts, since the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
-/// Number of consecutive frames with wrong checksums that rules out noise as the cause (`U`).
+/// Number of consecutive frames with wrong checksums that rules out noise as the cause (`U`: not documented).
 const WRONG_FRAMES: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

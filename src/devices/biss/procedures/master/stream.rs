@@ -58,7 +58,7 @@ impl Master<'_> {
     /// Ends a running stream, even after a cancellation.
     ///
     /// # Errors
-    /// Returns an error if the adapter fails. The stream is then ended before the next request.
+    /// Returns an error if the adapter fails. In this case, the stream is ended before the next request.
     pub fn stop_frame_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);

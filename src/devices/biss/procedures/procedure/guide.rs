@@ -36,8 +36,8 @@ const STANDSTILL_MEASUREMENT_TIME: Duration = Duration::from_millis(250);
 const MODE: Duration = Duration::from_millis(500);
 /// Time limit for an expected status.
 const STATUS: Duration = Duration::from_secs(5);
-/// Duration of silence after which an encoder is considered to have started calibrating (`U`). A damaged reply causes a
-/// shorter silence.
+/// Duration of silence after which an encoder is considered to have started calibrating (`U`: not documented). A
+/// damaged reply causes a shorter silence.
 const START_SILENCE: Duration = Duration::from_secs(1);
 
 pub(in crate::devices::biss::procedures) struct ProcedureContext<'g, 'm> {
@@ -176,8 +176,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends a command. No error is returned if it is uncertain whether the encoder received the command. The next
-    /// exchange must then check the status or the written values.
+    /// Sends a command. No error is returned if it is uncertain whether the encoder received the command. In this case,
+    /// the next exchange must check the status or the written values.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),

@@ -81,7 +81,7 @@ impl MotorRun {
         }
     }
 
-    /// Speed variation, relative to the speed, above which a motor is not steady (`U`).
+    /// Speed variation, relative to the speed, above which a motor is not steady (`U`: not documented).
     const MAX_FLUCTUATION: f64 = 0.05;
 }
 

@@ -27,7 +27,7 @@ pub struct ShaftMotion {
 }
 
 impl ShaftMotion {
-    /// Allowed jitter of a shaft at rest, in revolutions (`U`).
+    /// Allowed jitter of a shaft at rest, in revolutions (`U`: not documented).
     const REST_JITTER: f64 = 1.0 / 8192.0;
 
     pub fn is_still(&self) -> bool {
@@ -64,7 +64,7 @@ impl SpeedMonitor {
         }
     }
 
-    /// Returns the measurement, or `None` until there are positions for the whole window.
+    /// Returns the measured motion, or `None` until positions for the whole measuring window have arrived.
     pub(super) fn motion(&self) -> Option<ShaftMotion> {
         let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
         if last.nanoseconds_since(*first) < self.window {

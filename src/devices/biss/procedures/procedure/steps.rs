@@ -46,8 +46,8 @@ pub enum StepDetail {
     Demand(OperatorPrompt),
 }
 
-/// Returns the steps of an operation. A restart also returns the encoder to operation, which is then not a separate
-/// step.
+/// Returns the steps of an operation. A restart also returns the encoder to operation, so the return is not a separate
+/// step after a restart.
 pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

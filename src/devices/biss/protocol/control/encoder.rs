@@ -37,7 +37,8 @@ enum State {
     Rest,
     /// Ignoring a frame that is unintelligible or addressed to another encoder.
     Ignoring,
-    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first one highest.
+    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first one in the
+    /// highest bit.
     Head { bits: u32, cycle: u8 },
     /// About to send the start bit S. For a read, the value must be known first.
     Start { address: u8, access: Access },

@@ -22,7 +22,7 @@ pub struct Register {
     pub order: ByteOrder,
     /// Factory settings of the bytes. The list is empty if they are unknown.
     pub default: Vec<u8>,
-    /// How the value is decoded.
+    /// Method by which the value is decoded.
     pub decoding: ValueDecoding,
     /// Unit symbol, which may be empty.
     pub unit: String,

@@ -97,8 +97,8 @@ fn preset_text(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Tex
         .with("multiturn", value.multiturn())
 }
 
-/// Returns the warning about the limited write cycles of the flash. Returns `None` if the plan does not come near the
-/// limit.
+/// Returns the warning about the limited write cycles of the flash. Returns `None` if the plan leaves enough write
+/// cycles.
 pub fn wear_warning(prepared: &Prepared) -> Option<Text> {
     let cycles = prepared.wear_to_report()?;
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))

@@ -71,7 +71,8 @@ impl Connection {
         self.next
     }
 
-    /// Returns whether no packet has arrived for three intervals. The positions of the drives are then unknown.
+    /// Returns whether no packet has arrived for three intervals. In this case, the positions of the drives are
+    /// unknown.
     pub fn has_timed_out(&self, now: Moment) -> bool {
         self.began && now.duration_since(self.last_received) > self.come_interval * MAX_MISSED_PACKETS
     }

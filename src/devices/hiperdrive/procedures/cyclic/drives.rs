@@ -26,7 +26,7 @@ struct ControlledDrive {
     received: Option<ActualValues>,
 }
 
-/// Shutdown of the connection: the drives are stopped, then switched off, and then nothing more is sent.
+/// Shutdown of the connection: the drives are stopped, then switched off, and finally the transmission ends.
 #[derive(Clone, Copy, Debug)]
 struct ShutdownProgress {
     since: Moment,
@@ -85,7 +85,7 @@ impl Drives {
         self.ending.is_some()
     }
 
-    /// Returns whether there is nothing more to send, so that the connection can be closed.
+    /// Returns whether the transmission has ended, so that the connection can be closed.
     pub fn is_finished(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= SWITCH_OFF_PACKETS);
         off || matches!(self.lost, Some(ConnectionLoss::DoesNotStand(_) | ConnectionLoss::Port(_)))

@@ -11,7 +11,7 @@ pub struct LinkStatistics {
     pub interval: Duration,
     pub sent: u64,
     pub received: u64,
-    /// Number of packets that were missing when a later one arrived.
+    /// Number of packets that had not arrived when a later packet arrived.
     pub missed: u64,
     /// Number of packets that were overtaken by a newer one, or received twice.
     pub stale: u64,
@@ -59,7 +59,7 @@ pub struct Bucket {
 }
 
 impl Histogram {
-    /// Counts an interval that took `took` instead of the nominal `wanted`.
+    /// Counts an interval with the actual duration `took` and the nominal duration `wanted`.
     pub fn count(&mut self, wanted: Duration, took: Duration) {
         let nanoseconds = |duration: Duration| i64::try_from(duration.as_nanos()).unwrap_or(i64::MAX);
         let off = nanoseconds(took).saturating_sub(nanoseconds(wanted)) / 1000;

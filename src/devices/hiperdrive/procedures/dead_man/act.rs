@@ -27,7 +27,7 @@ pub enum MotionRequest {
         target: i32,
         effort: SpeedTorque,
     },
-    /// Moves by a number of scaled steps from the present position. The motion is a positioning job, which a stop ends.
+    /// Moves by a number of scaled steps from the current position. The motion is a positioning job, which a stop ends.
     Step {
         /// Signed number of steps.
         by: i32,
@@ -130,7 +130,7 @@ pub enum StopLevel {
     Operational,
     /// Switches the drive off by sending 0000h.
     Off,
-    /// Closes the cyclic connection. The watchdogs of the drives then stop them.
+    /// Closes the cyclic connection. As a result, the watchdogs of the drives stop the drives.
     Close,
 }
 
@@ -204,7 +204,7 @@ pub enum MotionRefusal {
     Endless,
     /// The drive has a fault, which must be acknowledged first.
     Fault,
-    /// The drive is in the switch-on lock, which it must leave first.
+    /// The drive is in the switch-on lock and must leave this state first.
     SwitchOnLock,
     /// No job is running.
     NothingToPause,
@@ -309,20 +309,21 @@ const fn percent(percent: u8) -> Percent {
 }
 
 impl Default for Permit {
-    /// Returns the permit that applies before a drive's parameters have been read, which allows no motion.
+    /// Returns the motion permit that applies before the parameters of a drive have been read. It allows no motion.
     fn default() -> Self {
         Permit { limits: None, locks: vec![MotionLock::Unread], endless: false, doubted: false, degree: 1 }
     }
 }
 
 impl Permit {
-    /// Creates a permit for motion within the given limits. It has no locks and the factory scale of 65536 steps per
-    /// turn.
+    /// Creates a motion permit for positions within the given limits. It has no locks and the factory scale of 65536
+    /// steps per turn.
     pub const fn for_range(low: i32, high: i32) -> Self {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
-    /// Checks whether a motion may begin or continue. `target` is its final position, if it has one.
+    /// Checks whether a motion may begin or continue. `target` is the final position of the motion, if the motion has
+    /// one.
     ///
     /// # Errors
     /// Returns the [`MotionRefusal`] if the motion is not permitted.

@@ -104,7 +104,8 @@ impl DeadMan {
         }
     }
 
-    /// Returns how the motion ends if the intent no longer requests it, or `None` if it still does.
+    /// Returns the end of a motion that the intent no longer requests, or `None` if the intent still requests the
+    /// motion.
     fn superseded_end(
         &self,
         number: u64,

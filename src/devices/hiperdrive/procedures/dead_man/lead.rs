@@ -11,7 +11,7 @@ use crate::units::Moment;
 pub(super) struct StateSequencer {
     goal: TargetState,
     acknowledges: bool,
-    /// The control word being sent, and the mark at which sending began.
+    /// Control word that is being sent, with the point in time at which sending began.
     word: Option<(ControlWord, ReportMark)>,
 }
 
@@ -58,7 +58,7 @@ impl StateSequencer {
         self.goal
     }
 
-    /// Returns whether the sequence only removes torque or keeps it off. It then needs no refresh.
+    /// Returns whether the sequence only removes torque or keeps it off. If so, the sequence needs no refresh.
     pub(super) fn only_removes_torque(&self, state: State) -> bool {
         self.goal <= TargetState::from_state(state) || self.goal == TargetState::Off
     }
@@ -158,7 +158,7 @@ impl DeadMan {
         self.stage = Stage::Arm { since: self.mark_now(now), acknowledged };
     }
 
-    /// Holds the present state or a lower one after a sequence was abandoned.
+    /// Holds the current state or a lower one after a sequence was abandoned.
     pub(super) fn hold_state(&mut self, state: State) {
         let highest = if self.after_run { TargetState::Ready } else { TargetState::Enabled };
         self.level = match state {

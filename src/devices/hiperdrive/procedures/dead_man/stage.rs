@@ -14,7 +14,7 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Rest {
-        /// Time since which the drive has been moving although it should be at rest.
+        /// Time from which the drive has been moving, although it should be at rest.
         moves: Option<Moment>,
     },
     Lead(StateSequencer),
@@ -31,7 +31,7 @@ pub(super) enum Stage {
     Go {
         since: ReportMark,
         acknowledged: bool,
-        /// Mark since which the drive has been at rest.
+        /// Point in time from which the drive has been at rest.
         standing_since: Option<ReportMark>,
     },
     Paused {
@@ -53,7 +53,7 @@ pub(super) struct ReportMark {
     pub(super) report: u64,
 }
 
-/// Number of reports to wait for after a mark. The last of them certainly describes the time after the mark.
+/// Number of reports to wait for after a mark. The last of these reports certainly describes the time after the mark.
 const REPORTS: u64 = 2;
 
 impl ReportMark {

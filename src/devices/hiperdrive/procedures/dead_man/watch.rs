@@ -34,7 +34,8 @@ pub enum OutsideLimits {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ActionMonitor {
-    /// How the drive was outside its limits at the start, or `None` once it has been inside.
+    /// Position of the drive relative to its limits if it was outside them at the start, or `None` once it has been
+    /// inside.
     outside: Option<OutsideLimits>,
     /// Smallest distance so far: to the target of a job, or in the direction of a run.
     best: i64,
@@ -139,7 +140,8 @@ impl ActionMonitor {
         ActionMonitor { outside, best, waits_at: None, freed, at_end }
     }
 
-    /// Compares a report with the limits and the target, and returns how the motion must end, if it must.
+    /// Compares a report with the limits and the target, and returns the required end of the motion, or `None` if the
+    /// motion may continue.
     pub(super) fn check_report(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance_to_target(actual);

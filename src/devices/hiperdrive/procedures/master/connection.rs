@@ -38,7 +38,7 @@ const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
 /// Shortest interval that is treated as long.
 const LONG_INTERVAL: Duration = Duration::from_millis(35);
-/// Factor by which a device may extend the requested interval, up to the longest that may be requested.
+/// Factor by which a device may extend the requested interval, up to the longest interval that may be requested.
 const MAX_INTERVAL_FACTOR: u32 = 2;
 const MAX_INTERVAL: Duration = Duration::from_millis(100);
 

@@ -1,5 +1,5 @@
 //! Diagnosis of a rejected parameter. It determines, as far as possible, whether the drive exists and is requested, and
-//! the present range of the value.
+//! the current range of the value.
 
 use super::{Master, RetryPolicy, writable_parameter};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
@@ -75,8 +75,9 @@ impl Master<'_> {
         }
     }
 
-    /// Returns the present range of a parameter. Limit 160 is above limit 158, and position and reference lie between
-    /// them (reference 4). No limit is farther from 0 than the turns of the drive (reference 5).
+    /// Returns the current range of a parameter. The upper limit (parameter 160) is above the lower limit (parameter
+    /// 158), and the position and the reference lie between them (reference 4). No limit is farther from 0 than the
+    /// turns of the drive (reference 5).
     fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<ParameterRange>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,

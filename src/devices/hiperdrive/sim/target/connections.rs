@@ -1,6 +1,6 @@
 //! The connection manager: opening and closing cyclic and explicit connections, and unwrapping requests.
 //!
-//! Assumptions (`U`):
+//! Assumptions (`U`: not documented):
 //! - There is one cyclic connection, to one master.
 //! - It has sizes with and without parameter words, intervals from 5 to 100 ms, no configuration data and no multicast.
 //! - Explicit connections (class 3) are available, and end with their session.

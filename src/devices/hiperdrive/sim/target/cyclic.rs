@@ -1,6 +1,6 @@
 //! The cyclic connection of class 1: packets received and sent, each at its time.
 //!
-//! Assumptions (`U`):
+//! Assumptions (`U`: not documented):
 //! - The first packet is sent one interval after the connection was opened.
 //! - Every packet in sequence is accepted, regardless of its data count.
 //! - A packet that is old, has a wrong length or belongs to another connection is dropped and counted. It does not keep

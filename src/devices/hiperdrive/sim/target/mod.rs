@@ -1,6 +1,6 @@
 //! An EtherNet/IP target in front of a station (reference 7): TCP connections, and the datagrams of all of them.
 //!
-//! Assumptions (`U`):
+//! Assumptions (`U`: not documented):
 //! - A session ends with its TCP connection. A cyclic connection ends only by its own time-out, since its packets show
 //!   that the master is alive.
 //! - Bytes that are not frames, and UnRegisterSession, end the TCP connection.

@@ -1,7 +1,7 @@
 //! TCP/IP object (class F5h) and Ethernet link object (F6h) as specified by ODVA (`P`).
 //!
-//! Assumptions (`U`): Attribute 5 can be set only while attribute 3 selects stored addresses, and takes effect
-//! immediately. The virtual device remains reachable at its old address.
+//! Assumptions (`U`: not documented): Attribute 5 can be set only while attribute 3 selects stored addresses, and takes
+//! effect immediately. The virtual device remains reachable at its old address.
 
 use std::net::Ipv4Addr;
 

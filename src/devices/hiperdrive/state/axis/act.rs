@@ -7,19 +7,19 @@ use crate::app::Language;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriveRequest {
-    /// Writes parameters, by their numbers for drive 1, through a plan that does not save.
+    /// Writes parameters without saving them. Their numbers are those of drive 1.
     Try(Vec<(u16, i64)>),
-    /// Assigns a position to the present location of the drive, without saving.
+    /// Assigns a position to the current location of the drive without saving it.
     SetPosition(i32),
     ConfirmLimits,
     Move(i32),
     Take,
     Give,
     Save,
-    /// Writes the previous values back, without saving.
+    /// Writes the previous values back without saving them.
     Restore(Vec<(u16, i64)>),
     Acknowledge,
-    /// Records the user's statement that the supply was off.
+    /// Accepts the statement of the user that the supply was switched off.
     BelieveRestart,
     PowerCycle,
 }
@@ -45,13 +45,13 @@ pub enum AxisAction {
     Begin,
     Edit(Box<LengthEntries>),
     Press(AxisButton),
-    /// Adopts the present position as the limit that the current step sets.
+    /// Adopts the current position as the limit that the current step sets.
     TakePlace,
     Next,
     Skip,
     Back,
     Cancel,
-    /// Asks where to save the report of a completed set-up.
+    /// Asks the user where to save the report of a completed set-up.
     AskReport,
     SaveReport(PathBuf, Language),
 }

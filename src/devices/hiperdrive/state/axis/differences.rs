@@ -29,7 +29,7 @@ pub(super) fn is_position_different(seen: &DriveFacts) -> bool {
 }
 
 /// Returns the values to write in order to restore the previous state. The reference is left to the user, because
-/// writing it assigns the number to the present location of the axis (manual, 198). At any other location, this would
+/// writing it assigns the number to the current location of the axis (manual, 198). At any other location, this would
 /// set a wrong zero.
 pub(super) fn values_to_restore(seen: &DriveFacts) -> Vec<(u16, i64)> {
     let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);

@@ -27,7 +27,7 @@ pub struct DriveFacts {
     pub values: BTreeMap<u16, i64>,
     /// Saved values known to differ from those written since, by their numbers for drive 1.
     pub unsaved: BTreeMap<u16, i64>,
-    /// Number of times this program has set the position.
+    /// Number of times that this program has set the position.
     pub times_set: u32,
     /// Whether the drive is requested, parameter 152.
     pub requested: Option<bool>,

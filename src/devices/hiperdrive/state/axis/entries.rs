@@ -29,13 +29,13 @@ pub struct LimitsPreview {
     pub lower: i32,
     /// Upper limit for the set-up, given by the travel of the drive.
     pub upper: i32,
-    /// Present limits in millimetres under the new scale, if their step numbers do not change.
+    /// Current limits in millimetres under the new scale, if their step numbers do not change.
     pub unchanged: Option<(f64, f64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReferencePosition {
-    /// Position as entered.
+    /// Position that the user entered.
     pub asked: i32,
     /// Position as accepted by the drive, a multiple of 64 steps.
     pub becomes: i32,
@@ -92,7 +92,7 @@ impl LengthEntries {
         Ok(LimitsPreview { scale, ruler, lower, upper, unchanged })
     }
 
-    /// Returns the number to assign to the present location of the axis.
+    /// Returns the number to assign to the current location of the axis.
     ///
     /// # Errors
     /// Returns an error with the reason if the number is invalid or outside the limits.
@@ -129,7 +129,7 @@ fn trimmed_number(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Formats a number of steps as an entry, with enough decimals to distinguish steps.
+/// Formats a number of steps for an input field, with enough decimals to distinguish adjacent steps.
 pub(super) fn format_steps(ruler: Ruler, steps: i32) -> Option<String> {
     let decimals = ruler.decimal_places(PositionUnit::Millimetres);
     Some(format!("{:.decimals$}", ruler.from_steps(steps.into(), PositionUnit::Millimetres)?))

@@ -16,7 +16,7 @@ impl Axis {
         }
     }
 
-    /// Adopts the present position of the axis as the limit that the current step sets.
+    /// Adopts the current position of the axis as the limit that the current step sets.
     pub(crate) fn adopt_limit(&mut self, seen: &DriveFacts) {
         if self.check_can_adopt_position(seen).is_err() {
             return;
@@ -192,7 +192,7 @@ impl Axis {
         self.power = self.power.map(|power| power.after_survey(seen, switched));
     }
 
-    /// Processes the present data of the drive. Updates the travel, the end of a test move, and the validity of all
+    /// Processes the current data of the drive. Updates the travel, the end of a test move, and the validity of all
     /// results.
     pub(crate) fn update(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {

@@ -168,7 +168,7 @@ impl Axis {
         }
     }
 
-    /// Checks whether the present location of the axis can become a limit.
+    /// Checks whether the current location of the axis can become a limit.
     ///
     /// # Errors
     /// Returns an error with the reason if the location cannot become a limit.
@@ -258,7 +258,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether the user has confirmed the present limits of the drive under the present scale.
+    /// Returns whether the user has confirmed the current limits of the drive under the current scale.
     pub(super) fn is_confirmed(&self, seen: &DriveFacts) -> bool {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));

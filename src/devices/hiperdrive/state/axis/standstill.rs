@@ -13,7 +13,7 @@ use crate::units::Moment;
 
 /// Maximum speed of a shaft in rpm, the largest value of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
-/// Time without a reading in which an axis may have moved and stopped again.
+/// Maximum interval between two readings. During a longer interval, an axis may have moved and stopped unnoticed.
 const MAX_READING_GAP: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]

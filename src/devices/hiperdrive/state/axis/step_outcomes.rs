@@ -20,7 +20,7 @@ pub(super) struct Preconditions {
     pub(super) requested: Option<bool>,
     pub(super) scale: Option<PositionScale>,
     pub(super) pitch: Option<Length>,
-    /// Whether the limits of the drive are confirmed under the present scale.
+    /// Whether the limits of the drive are confirmed under the current scale.
     pub(super) confirmed: bool,
     pub(super) origin: PositionOrigin,
     pub(super) limits: Option<(i32, i32)>,
@@ -57,8 +57,8 @@ impl StepOutcomes {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
-    /// Records the result of a step. Returns whether it differs from the previous result. If it does, the results of
-    /// later steps are void.
+    /// Records the result of a step. Returns `true` if the result differs from the previous one, which makes the
+    /// results of all later steps void.
     pub(super) fn record(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
         let made = StepOutcome { on, skipped };
         let before = self.0.get(step.index()).copied();
@@ -72,7 +72,7 @@ impl StepOutcomes {
         before.is_some()
     }
 
-    /// Discards results that no longer match the present facts and returns the first affected step.
+    /// Discards results that no longer match the current drive data. Returns the first affected step.
     pub(super) fn discard_outdated(&mut self, now: &Preconditions) -> Option<AxisStep> {
         let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
         let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
@@ -82,8 +82,8 @@ impl StepOutcomes {
     }
 }
 
-/// Returns whether the facts of the drive on which a step depends are unchanged. Facts of earlier steps are checked for
-/// those steps.
+/// Returns whether the drive data on which a step depends are unchanged. Data on which earlier steps depend are checked
+/// along with those steps.
 fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
     match step {
         AxisStep::Request => now.requested == Some(true),

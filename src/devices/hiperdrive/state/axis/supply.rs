@@ -128,7 +128,7 @@ impl Power {
     }
 }
 
-/// Returns whether [`RESTART_MARKER`] differs from its factory setting, or `None` if it was not read.
+/// Returns whether [`RESTART_MARKER`] differs from its factory setting, or `None` if it has not been read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&RESTART_MARKER)? != factory_mark()?)
 }

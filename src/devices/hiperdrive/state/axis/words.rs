@@ -226,7 +226,7 @@ pub fn target_text(place: TestTarget) -> Text {
     })
 }
 
-/// Lists all changes, if any. A parameter that was written more than once is listed with its present value.
+/// Lists all changes, if any. A parameter that was written more than once is listed with its current value.
 pub fn changes_text(axis: &Axis) -> Text {
     let number = |own: &AxisChange| match own {
         AxisChange::Parameter(number, _) => *number,

@@ -50,7 +50,7 @@ pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text
     }
 }
 
-/// Describes how an action ended, and what to do if it did not end well.
+/// Describes the end of an action, along with a remedy if the action failed.
 pub fn end_text(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
     match ended {
         ActionEnd::Done => TEXTS.text("hd_end.done"),

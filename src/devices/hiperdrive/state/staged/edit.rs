@@ -28,7 +28,7 @@ pub enum Edit {
     },
 }
 
-/// How the limits change when the size of a step changes.
+/// Effect of a changed step size on the limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsPolicy {
     InPlace,

@@ -17,9 +17,10 @@ pub enum EditFinding {
     Crossed { drive: DriveNumber, lower: i64, upper: i64 },
     /// The drive is outside its edited limits and would reject them.
     Outside { drive: DriveNumber, position: i64, lower: i64, upper: i64 },
-    /// The scale has changed but the limits have kept their numbers, which now denote other positions.
+    /// The scale has changed, but not the limits in scaled steps, which now denote other positions.
     LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },
-    /// Parameter 186 is 255. The drive would continue after a loss of the connection, so this program does not move it.
+    /// Parameter 186 (time-out) is 255, which means that the drive does not stop if the connection is lost. Therefore,
+    /// this program does not move the drive.
     NoTimeout { drive: DriveNumber },
 }
 
@@ -40,7 +41,8 @@ impl EditFinding {
 }
 
 impl StagedEdits {
-    /// Returns all findings. `position` gives the position of a drive in steps of its present scale.
+    /// Returns all findings about the edited values. `position` gives the position of a drive in steps of its current
+    /// scale.
     pub fn findings(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<EditFinding> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();

@@ -77,8 +77,8 @@ impl Master<'_> {
         }
     }
 
-    /// Records the codes of a reply to 50h. A reply equal to an earlier one may be a late duplicate. Its codes are then
-    /// known, and the reply to the current request may be missing.
+    /// Records the status codes in a reply to command 50h. A reply equal to an earlier one may be a late duplicate. In
+    /// this case, its codes are already known, and the reply to the current request may be missing.
     fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;

@@ -11,9 +11,11 @@ use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordErr
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{ActionPermission, StagedEdits, TEXTS};
 
-/// Step size in electrical degrees from which method 2 is rejected. The torque may then have the wrong sign (U).
+/// Step size in electrical degrees from which method 2 is rejected. At such a step size, the torque may have the wrong
+/// sign (`U`: not documented).
 const UNUSABLE_DEG: f64 = 90.0;
-/// Step size in electrical degrees from which a warning is given. The torque is then reduced to cos 30° or less (U).
+/// Step size in electrical degrees from which a warning is given. At such a step size, the torque is reduced to cos 30°
+/// or less (`U`: not documented).
 const WEAK_TORQUE_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -61,7 +61,8 @@ impl Master<'_> {
         self.wait_for_acknowledgement(command, tried, false)
     }
 
-    /// Sends a word until its echo is stable. A missing echo is also accepted if the encoder keeps running (`U`).
+    /// Sends a word until its echo is stable. A missing echo is also accepted if the encoder keeps running (`U`: not
+    /// documented).
     pub(super) fn send_mode_command(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.wait_until_value_cleared()?;
@@ -90,8 +91,8 @@ impl Master<'_> {
         })
     }
 
-    /// Returns how long the echo of a command must persist. The result is `None` if it cannot be confused with a busy
-    /// encoder.
+    /// Returns how long the echo of a command must persist. The result is `None` if the echo cannot be mistaken for a
+    /// word of a busy encoder.
     fn required_echo_time(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;

@@ -8,7 +8,8 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupMode};
 
-/// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`).
+/// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`: not
+/// documented).
 const VALUE_CLEAR_TIMEOUT: Duration = Duration::from_millis(300);
 /// Number of additional readings, because the first one may return an old word.
 const EXTRA_READINGS: u32 = 2;
@@ -109,7 +110,7 @@ impl Master<'_> {
         }
     }
 
-    /// Marks the present mode as the one to which the encoder returns after the job.
+    /// Marks the current mode as the one to which the encoder returns after the job.
     pub(in crate::devices::interbus::procedures) fn keep_current_mode(&mut self) {
         self.found = self.is;
     }

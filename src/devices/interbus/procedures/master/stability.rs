@@ -7,9 +7,10 @@ use crate::units::Moment;
 
 /// Number of consecutive cycles after which an echo or a value is stable. See reference 4.
 const STABLE_CYCLES: u32 = 2;
-/// Minimum duration of a stable echo or value. It exceeds the time for which a gateway usually keeps a word (`U`).
+/// Minimum duration of a stable echo or value. It exceeds the time for which a gateway usually keeps a word (`U`: not
+/// documented).
 const MIN_STABLE_TIME: Duration = Duration::from_millis(10);
-/// Time after which a word is accepted even if it could be the answer to the previous request (`U`).
+/// Time after which a word is accepted even if it could be the answer to the previous request (`U`: not documented).
 pub(super) const ACCEPTANCE_TIME: Duration = Duration::from_millis(100);
 /// Number of cycles that replaces a duration in recordings, in which no time passes.
 const RECORDED_CYCLES: u32 = 20;

@@ -56,8 +56,8 @@ impl Columns {
     }
 }
 
-/// Returns the delimiter that occurs on most lines, outside quotes. A comma must be more frequent than the others,
-/// since it may be a decimal separator.
+/// Returns the delimiter that occurs on most lines, outside quotes. A comma must be more frequent than the other
+/// delimiters, since a comma may be a decimal separator.
 pub(super) fn delimiter(text: &str) -> Delimiter {
     let has = |line: &str, sign: char| {
         let mut quoted = false;

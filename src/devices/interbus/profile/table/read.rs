@@ -129,7 +129,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Adds a note for each name with several pulses, since every pulse uses a cam.
+    /// Adds a note for each name that has several pulses, since every pulse uses up one cam.
     fn note_repeated_names(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();

@@ -22,7 +22,7 @@ impl Setting<'_> {
         Ok(())
     }
 
-    /// Sets the mask of active cams. A mask with more than 8 bits is invalid (`U`). See reference 6.9.
+    /// Sets the mask of active cams. A mask with more than 8 bits is invalid (`U`: not documented). See reference 6.9.
     pub(super) fn set_active_cams(&mut self, mask: u16) -> Result<(), WordFault> {
         self.0.mask = u8::try_from(mask).map_err(|_| WordFault::WrongData)?;
         Ok(())

@@ -8,8 +8,8 @@ const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
 /// Flag of an encoder that counts turns.
 const MULTITURN: u32 = 2;
-/// Upper part of the value of a chip register. It is chosen for the simulation. The lower part is the number of the
-/// register.
+/// Upper part of the value of a chip register, an arbitrary choice of the simulation. The lower part is the number of
+/// the register.
 const CHIP: u32 = 0x40;
 
 impl Encoder {

@@ -21,8 +21,8 @@ impl DragTarget {
     }
 }
 
-/// Returns the cam with one edge moved by `by` steps. The cam keeps at least one position and covers at most all of
-/// them. Edges beyond the range are brought into it.
+/// Returns the cam with one edge moved by `by` steps. The cam covers at least one position and at most all positions.
+/// Edges beyond the measuring range are moved into the range.
 pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, P
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, EditFinding};
 
-/// Returns the label of a cam, which is its number and its name, if any.
+/// Returns the label of a cam, which consists of its number and its name, if it has a name.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),

@@ -18,7 +18,7 @@ pub enum Edit {
         revolutions: u32,
     },
     Direction(Direction),
-    /// Sets the preset in steps. The preset is not fired.
+    /// Sets the preset in steps. The preset is not executed.
     Preset(u32),
     /// Sets the zero shift in steps.
     ZeroShift(u32),

@@ -1,4 +1,4 @@
-//! The 32 bits of the cam output word with the present window shift. Below them, the position bits show which of them
+//! The 32 bits of the cam output word with the current window shift. Below them, the position bits show which of them
 //! the window contains.
 //!
 //! * **Size**: The widget has the available width. If 32 cells do not fit, half of them are on a second line.

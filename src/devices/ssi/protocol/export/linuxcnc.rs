@@ -101,7 +101,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     Ok(words.collect())
 }
 
-/// Converts a name to a pin name that is not taken yet, and adds it to `taken`.
+/// Converts a name to a pin name that is not yet in `taken`, and adds the pin name to `taken`.
 fn pin_name(name: &str, taken: &mut Vec<String>) -> String {
     let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
     let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });

@@ -20,7 +20,7 @@ pub struct Picture {
 pub enum PictureLength {
     /// Length in whole grid units.
     Whole(u32),
-    /// Length to scale. The SVG output rounds it to hundredths.
+    /// Length drawn to scale. The SVG output rounds the length to hundredths.
     Scaled(f64),
 }
 
@@ -77,7 +77,7 @@ pub struct PictureLabel {
     pub is_bold: bool,
     /// Text colour, or `None` for black.
     pub colour: Option<&'static str>,
-    /// Whether `x` is the middle of the label. Otherwise it is the left end.
+    /// Whether `x` is the middle of the label. Otherwise, `x` is the left end.
     pub is_centred: bool,
     /// Label text.
     pub text: String,

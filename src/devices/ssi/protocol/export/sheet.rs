@@ -11,8 +11,8 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::Times;
 
-/// Locations of the position and of the other bits of a frame. Bits are numbered as in interface modules: bit 0 is the
-/// last one received.
+/// Locations of the position and of the other bits of a frame. Bits are numbered as in interface modules, where bit 0
+/// is the last bit received.
 struct BitLocations {
     frame: u8,
     lowest: u8,

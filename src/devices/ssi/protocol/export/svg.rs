@@ -44,7 +44,7 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: TranslateFn<'_>) -> St
     }
 }
 
-/// Draws the frame with one cell per clock. The cells show the bits of `frame`, if it is given.
+/// Draws the frame with one cell per clock. If `frame` is `Some`, the cells show its bits.
 pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Picture {
     let roles = layout.clock_roles();
     let clocks = u32::from(layout.clock_count());

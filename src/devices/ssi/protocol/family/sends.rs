@@ -6,7 +6,7 @@ use crate::devices::ssi::protocol::range::Range;
 
 type ResetSettingFn = fn(&mut Settings);
 
-/// Functions that each reset one setting to its default, in the order in which they are tried.
+/// Functions that reset a single setting to its default, in the order in which they are tried.
 const RESET_FUNCTIONS: [ResetSettingFn; 12] = [
     |settings| settings.clocks = None,
     |settings| settings.align = None,

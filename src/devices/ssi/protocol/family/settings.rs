@@ -49,9 +49,9 @@ pub struct ResolvedFrame {
     pub align: Alignment,
     /// Location of the error bits.
     pub errors: ErrorPlace,
-    /// Counting direction. It does not change how a frame is read.
+    /// Counting direction. It does not affect the decoding of a frame.
     pub direction: Direction,
-    /// Position at the zero point of the shaft, within the range. It does not change how a frame is read.
+    /// Position at the zero point of the shaft, within the range. It does not affect the decoding of a frame.
     pub preset: u64,
     /// Remarks about settings that were accepted although the manual does not mention them.
     pub advice: Vec<SettingAdvice>,
@@ -99,7 +99,7 @@ pub enum SettingsError {
         /// Requested value.
         value: u64,
     },
-    /// The family does not support the alignment, or the position does not fit into the frame with it.
+    /// The family does not support the alignment, or a position with this alignment does not fit into the frame.
     #[error("{family} does not support the alignment {align} for {bits} position bits; supported: {possible}")]
     Align {
         /// Name of the family.

@@ -9,8 +9,8 @@ const TRIED_COUNTS: usize = 40;
 /// Maximum information in bits by which another number of steps may exceed the best one to be considered equally good.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
-/// Returns the possible codes, each with two numbers of steps: the most common one that fits, and the last one that
-/// fits.
+/// Returns the possible codes, each with two possible numbers of steps: the most common number and the last number that
+/// fit.
 pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
     let whole = read.reading.wrap_after();
     if whole == 0 || read.reading.steps.is_some() {

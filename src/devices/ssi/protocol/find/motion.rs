@@ -14,7 +14,7 @@ pub(super) struct Motion {
     /// Information of all steps in bits.
     pub(super) bits: f64,
     pub(super) median: i64,
-    /// Number of steps from each frame to the next, or `None` if either of them has no valid number.
+    /// Number of steps from each frame to the next, or `None` if either frame has no valid number.
     pub(super) steps: Vec<Option<i64>>,
     /// Deviation of each step from the median of the steps around it.
     pub(super) uneven: Vec<i64>,

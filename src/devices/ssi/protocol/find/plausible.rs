@@ -37,7 +37,7 @@ pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
 }
 
-/// Returns the most common ways to divide bits into turns and steps, with the most common one first.
+/// Returns the usual divisions of the bits into turns and steps, most common first.
 pub(super) fn common_bit_splits(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();

@@ -7,13 +7,13 @@ use crate::devices::ssi::protocol::descriptor::{BitMeaning, Repeat};
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 
 const TRIAL_FRAMES: usize = 96;
-/// Maximum percentage of the tested frames that do not fit.
+/// Maximum percentage of tested frames that do not fit the layout.
 const MAX_MISFIT_PERCENT: usize = 4;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct TrialReading {
     pub(super) positions: Vec<u64>,
-    /// Whether positions decrease where those of the reading increase.
+    /// Whether the positions of the layout decrease while those of the reading increase.
     pub(super) backwards: bool,
     pub(super) never_odd: bool,
 }
@@ -64,7 +64,7 @@ impl<'a> LayoutProbe<'a> {
     }
 
     /// Tests whether the steps of a layout match those of the reading, forwards or backwards, up to a power of two.
-    /// Returns `None` if they do not.
+    /// Returns `None` if the steps do not match.
     pub(super) fn try_layout(&self, layout: &Layout) -> Option<TrialReading> {
         let form = Flags::CODE.union(Flags::PADDING).union(Flags::PARITY).union(Flags::REPEAT);
         let invalid =

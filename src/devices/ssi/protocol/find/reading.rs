@@ -200,7 +200,7 @@ fn parity_matches(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_parity_valid(**word, parity)).count()
 }
 
-/// Returns the readings with the most even motion, with the best first.
+/// Returns the interpretations of the frames with the steadiest motion, best first.
 pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
     let frames = seen.words().len();
     let sample = sample_runs(seen.words());

@@ -10,9 +10,10 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum difference between the first two classes in bits.
 const LEAD_BITS: f64 = 100.0;
-/// Maximum information of an even motion as a fraction of the bits of its numbers.
+/// Maximum information content of motion that is considered steady, as a fraction of the bits in the position values.
 const EVEN_MOTION_INFORMATION: f64 = 0.7;
-/// Maximum information of an even motion as a fraction of the bits of its numbers, for a certain result.
+/// Maximum information content of steady motion that still allows a certain result, as a fraction of the bits in the
+/// position values.
 const CERTAIN_INFORMATION: f64 = 0.35;
 /// Maximum percentage of frames that jump or have no valid number.
 const DISTURBED_PERCENT: usize = 15;

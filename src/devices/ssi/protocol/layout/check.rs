@@ -25,7 +25,7 @@ pub enum LayoutError {
         /// Number of clocks in the frame.
         clocks: u8,
     },
-    /// The position bits do not fit between the zeros.
+    /// The position has too many bits to fit between the zeros.
     #[error("{bits} position bits after {lead} zeros need {needed} clocks, but only {area} are available")]
     Wide {
         /// Width of the code word in bits.
@@ -45,7 +45,7 @@ pub enum LayoutError {
     Overlap {
         /// Clock number.
         clock: u8,
-        /// First use.
+        /// First use of the clock.
         first: ClockUse,
         /// Second use.
         second: ClockUse,
