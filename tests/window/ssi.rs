@@ -271,12 +271,12 @@ fn another_number_of_clocks_is_sent_to_the_adapter() {
 
 #[test]
 fn a_layout_found_live_can_be_adopted() {
-    let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=20");
+    let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=60");
     edit(&mut desk, Edit::Free);
     let clocks = encoder(&desk).clock_count();
     assert_eq!(clocks, 33);
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
-    desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 2000);
+    desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 700);
     command(&mut desk, DeviceCommand::Poll(None));
     act(&mut desk, Ssi::Find);
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
