@@ -6,6 +6,7 @@
 //   serve.mjs FILE.uf2 --biss                           a BiSS kit encoder. Its steps count the frames
 //   --sine HZ,SINE,COSINE,OFFSET,OFFSET                sine and cosine: frequency, amplitudes and offsets in volts
 //   --start NUMBER                                      position of the first frame
+//   --still                                             the BiSS encoder is at rest: its position stays the same
 //   --delay NANOSECONDS                                 delay of the line
 //
 // Prints "ready tcp:HOST:PORT" and serves one client at a time until it is terminated or its standard input ends.
@@ -23,7 +24,10 @@ import { UsbHost } from './usb-host.mjs';
 const string = (value) => ({ type: 'string', default: value });
 const { values: options, positionals: [file] } = parseArgs({
   allowPositionals: true,
-  options: { ssi: string(), biss: { type: 'boolean' }, sine: string(), start: string('0'), delay: string('100') },
+  options: {
+    ssi: string(), biss: { type: 'boolean' }, sine: string(), start: string('0'), still: { type: 'boolean' },
+    delay: string('100'),
+  },
 });
 
 const pico = new Pico(file), host = new UsbHost(pico);
@@ -40,7 +44,8 @@ if (options.ssi) {
 }
 if (options.biss) {
   const word = () => {
-    const value = Number(position++ & 0x1ffffffffn);
+    const value = Number(position & 0x1ffffffffn);
+    if (!options.still) position++;
     return frame(Math.floor(value / 2 ** 17), value % 2 ** 17);
   };
   new BissEncoder(pico, { word, delayNanos, control: new Control(new Registers()) });
