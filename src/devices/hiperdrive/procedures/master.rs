@@ -314,7 +314,7 @@ impl<'a> Master<'a> {
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_retry(&mut self.station.line, tries, took);
             match trouble {
-                // The device does not know the session any more, so it did not execute the request.
+                // The session no longer exists in the device, so it did not execute the request.
                 ExchangeError::Status(EncapsulationStatus::NO_SESSION)
                     if may && requested != RequestedItem::Session =>
                 {

@@ -120,7 +120,7 @@ impl HiperdriveDevice {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Removes the fault notice when no drive has a fault any more. All drives share one notice.
+    /// Removes the fault notice when no drive has a fault. All drives share one notice.
     fn update_fault_notice(&self, failed: bool, services: &mut Services) {
         let fails =
             |drive: &DriveNumber| self.moves.actual_values(*drive).is_some_and(|own| has_failed(own.status.state()));
