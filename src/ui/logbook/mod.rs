@@ -214,7 +214,9 @@ fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
                 EntryKind::Backup => (icons::FLOPPY_DISK, palette.muted, words),
                 EntryKind::Check => (icons::LIST_CHECKS, palette.muted, words),
                 EntryKind::Note => (icons::PENCIL_SIMPLE, palette.accent, words),
-                _ => (icons::QUESTION, palette.warn, theme.translate("writes_card.open")),
+                EntryKind::Write | EntryKind::Restore | EntryKind::Preset | EntryKind::Procedure => {
+                    (icons::QUESTION, palette.warn, theme.translate("writes_card.open"))
+                }
             }
         }
     }
