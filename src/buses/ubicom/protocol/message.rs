@@ -80,7 +80,7 @@ pub enum Reply {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// The frame belongs to a different node.
-    #[error("a frame from node 0x{got:02X} instead of 0x{expected:02X}")]
+    #[error("a frame came from node 0x{got:02X} instead of 0x{expected:02X}")]
     Address {
         /// Address in the request.
         expected: u8,
@@ -88,7 +88,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// The frame is the reply to a different command.
-    #[error("a frame with command 0x{got:02X} instead of 0x{expected:02X}")]
+    #[error("a frame had command 0x{got:02X} instead of 0x{expected:02X}")]
     Command {
         /// Command in the request.
         expected: u8,
@@ -96,7 +96,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// The payload length is wrong. If it equals the payload length of the request, the frame may be an echo.
-    #[error("{got} payload bytes instead of {expected}")]
+    #[error("the payload has {got} bytes instead of {expected}")]
     Length {
         /// Expected payload length in bytes.
         expected: usize,

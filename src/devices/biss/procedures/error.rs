@@ -158,7 +158,7 @@ pub(super) fn to_register_array<const N: usize>(start: RegisterAddress, bytes: V
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyDamage {
-    #[error("no complete frame in the received bytes (number of bytes: {bytes})")]
+    #[error("the received bytes contain no complete frame (number of bytes: {bytes})")]
     NoFrame { bytes: usize },
     /// The frame is not a reply to the request.
     #[error(transparent)]

@@ -18,10 +18,10 @@ pub struct Crc {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The degree of the polynomial is 0 or above 32.
-    #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest term")]
+    #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest terms")]
     Degree(u64),
     /// The polynomial lacks its lowest term, so the checksum would not detect every single-bit error.
-    #[error("the CRC polynomial {0:#X} must end with the term 1")]
+    #[error("the CRC polynomial {0:#X} must have the constant term 1")]
     LowestTerm(u64),
     /// The start value is wider than the checksum.
     #[error("the CRC start value {start:#X} does not fit into {width} bits")]

@@ -56,7 +56,7 @@ pub enum DescriptionErrorKind {
         width: u8,
     },
     /// The bit number exceeds the width of the register.
-    #[error("\"{name}\": bit {bit} is outside the register, which has a width of {width}")]
+    #[error("\"{name}\": bit {bit} is outside the register (width in bytes: {width})")]
     Bit {
         /// Name of the register.
         name: String,

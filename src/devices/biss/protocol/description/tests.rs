@@ -221,7 +221,7 @@ fn description_errors_name_their_location() {
         ("(\n  name: \"x\",\n  frame: Some((multiturn: 40, singleturn: 17, error: true, warning: true)),\n)".to_owned(), 3,
             "multiturn must have at most 32 bits, not 40"),
         ("(\n  name: \"x\",\n  frame: Some((multiturn: 4, singleturn: 7, error: true, warning: true,\n    crc: Some((polynomial: 0x42, inverted: true)))),\n)"
-            .to_owned(), 4, "the CRC polynomial 0x42 must end with the term 1"),
+            .to_owned(), 4, "the CRC polynomial 0x42 must have the constant term 1"),
         (register("(at: direct(0x3F), name: \"y\", access: r)"), 4, "must be from 0x40 to 0x7F"),
         (register("(at: bank(0x01, 0x40), name: \"y\", access: r)"), 4, "must be from 0x00 to 0x3F"),
         (register("(at: direct(0x7F), width: 2, name: \"y\", access: r)"), 4, "2 bytes at 0x7F extends past"),

@@ -347,7 +347,7 @@ mod tests {
         let (english, german) = interruption_texts(Failure::Device(Error::NeverSilent), left);
         let expected = [
             ["1 of 3", "1 von 3"],
-            ["Second run, clockwise", "Zweiter Lauf, im Uhrzeigersinn"],
+            ["Second run (clockwise)", "Zweiter Lauf (im Uhrzeigersinn)"],
             ["0x01 calibration, 0x00 operation", "0x01 Kalibrierung, 0x00 Betrieb"],
             ["password", "Passwort"],
             ["table", "Tabelle"],
