@@ -76,7 +76,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// The number of data bytes is wrong.
-    #[error("wrong length of the reply to {command:02X}h ({got} data bytes)")]
+    #[error("the reply to {command:02X}h has the wrong length ({got} data bytes)")]
     Length {
         /// Command byte.
         command: u8,
