@@ -80,7 +80,7 @@ fn both_positions_are_shown_and_the_offset_is_adopted() {
     assert!(screen.shows(&screen.say("nonlinearity.inl_raw")));
     assert!(screen.shows("0.00896°") && screen.shows("32.24″") && screen.shows("35.99″"));
     screen.click("page.synchronise");
-    assert!(screen.shows("All samples of reference.csv"));
+    assert!(screen.shows("All samples from reference.csv"));
     screen.click("synchronise.use_captured");
     assert_eq!(screen.studio().signals().synchronise().form.offset, "2.50");
     screen.act(Action::tool(Signals::Example(encoder_studio::signals::state::ExampleCapture::Healthy)));
