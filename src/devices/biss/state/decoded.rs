@@ -148,7 +148,7 @@ mod tests {
             ("0x02:0x11", "1 slave address", "1 Slave-Adresse"),
             ("0x02:0x17", "0x43", "0x43"),
             ("0x02:0x3F", "checksum correct", "Prüfsumme stimmt"),
-            ("0x03:0x04", "error, active low", "Fehler, aktiv 0"),
+            ("0x03:0x04", "error, active low", "Fehler, low-aktiv"),
             ("0x03:0x30", "-40 °C", "-40 °C"),
             ("0x03:0x2C", "12000 1/min", "12000 1/min"),
         ] {
