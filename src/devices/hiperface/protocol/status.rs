@@ -28,8 +28,8 @@ use StatusClass::{Data, Initialisation, Monitoring, Position, Protocol};
 
 #[rustfmt::skip]
 const CODES: [(u8, StatusClass, &str); 27] = [
-    (0x01, Initialisation, "faulty analogue signals or compensation data"),
-    (0x02, Initialisation, "faulty internal angular offset"),
+    (0x01, Initialisation, "analogue signals or compensation data faulty"),
+    (0x02, Initialisation, "internal angular offset faulty"),
     (0x03, Initialisation, "data field partition table destroyed"),
     (0x04, Initialisation, "analogue limit values not available"),
     (0x05, Initialisation, "internal I²C bus fault"),
@@ -46,10 +46,10 @@ const CODES: [(u8, StatusClass, &str); 27] = [
     (0x10, Data,           "data field size cannot be changed"),
     (0x11, Data,           "address outside the data field"),
     (0x12, Data,           "data field does not exist"),
-    (0x1C, Monitoring,     "analogue signal amplitude outside the limits"),
+    (0x1C, Monitoring,     "analogue signal amplitude out of limits"),
     (0x1D, Monitoring,     "critical transmitter current (dirt or ageing)"),
     (0x1E, Monitoring,     "critical encoder temperature"),
-    (0x1F, Position,       "speed too high to determine the position"),
+    (0x1F, Position,       "speed too high, no position possible"),
     (0x20, Position,       "singleturn position unreliable"),
     (0x21, Position,       "multiturn position error"),
     (0x22, Position,       "multiturn position error"),
