@@ -40,10 +40,10 @@ pub enum AllowedValues {
     StepsOfTurns { low: u32, high: u32 },
     #[error("only together with {0}")]
     OnlyWith(&'static str),
-    #[error("a polynomial with all terms, such as 0x43, or none")]
+    #[error("a CRC polynomial including its highest term, such as 0x43, or \"none\"")]
     Polynomial,
     /// A frame of 64 bits or fewer.
-    #[error("a frame of at most 64 bits, including turns, two flags and CRC")]
+    #[error("a frame of at most 64 bits, including the turns, two flags and the CRC")]
     ShortFrame,
     /// An encoder address on the bus, or the address for a single connected encoder.
     #[error("0x40 to 0x5F, or 0xFF if only one encoder is connected")]
@@ -51,7 +51,7 @@ pub enum AllowedValues {
     #[error("an address from 0x40 to {last:#04X}")]
     BusAddress { last: u8 },
     /// The first of several consecutive encoder addresses.
-    #[error("an address from 0x40 to {last:#04X}, so that every encoder gets one")]
+    #[error("an address from 0x40 to {last:#04X}, so that there is an address for every encoder")]
     FirstAddress { last: u8 },
     /// A HIPERFACE time-out, counted in bits.
     #[error("44 or 11 bits, as set in the encoder")]
@@ -73,9 +73,9 @@ pub enum AllowedValues {
     Release,
     #[error("a value of the error register from 0x00 to 0xFF")]
     ErrorRegister,
-    #[error("the number of write cycles of the encoder's flash memory so far")]
+    #[error("the number of flash write cycles that the encoder has used so far")]
     WriteCycles,
-    #[error("the number of write cycles of the encoder's EEPROM so far")]
+    #[error("the number of EEPROM write cycles that the encoder has used so far")]
     Stores,
     #[error("AVERAGE,MINIMUM in volts from 0 to 25.5, such as 6.3,5.8")]
     Pulses,
@@ -87,11 +87,11 @@ pub enum AllowedValues {
     SwitchDigits,
     #[error("a variant from 1 to 13, or its name, such as HDA30A")]
     Variant,
-    #[error("0 or 1 for each of {count} ports, separated by commas, such as 1,0")]
+    #[error("0 or 1 for each port (number of ports: {count}), separated by commas, such as 1,0")]
     Places { count: u8 },
     #[error("a family of SSI encoders with its settings, such as atm60,code=gray")]
     Family,
-    #[error("{}, separated by commas, each with :SECONDS for an error that recurs", .0.join(", "))]
+    #[error("{}, separated by commas; append :SECONDS to make an error recur", .0.join(", "))]
     ErrorBits(Vec<String>),
     #[error("no value, because the frame of this encoder has no error bits")]
     NoErrorBits,
@@ -103,11 +103,11 @@ pub enum AllowedValues {
     Byte,
     #[error("a number from 0 to 65535 (0x0000 to 0xFFFF)")]
     Word,
-    #[error("a list of strings of hexadecimal bytes")]
+    #[error("a list of strings that contain hexadecimal bytes")]
     HexLines,
     #[error("a structure: (name: value, …)")]
     Structure,
-    #[error("a structure with a name before each colon")]
+    #[error("a structure in which each value has a name followed by a colon")]
     Names,
     #[error("a list: […]")]
     List,
@@ -122,13 +122,13 @@ pub enum AllowedValues {
     Revolutions,
     #[error("a number or a fraction such as 25/2")]
     Fraction,
-    #[error("ones, or a number with the bits of a whole frame")]
+    #[error("\"ones\", or a number that contains all bits of a frame")]
     Frame,
     #[error("even@CLOCK or odd@CLOCK")]
     ParityBit,
     #[error("BITS+ZEROS, such as 25+1")]
     Repetition,
-    #[error("numbers of clock cycles, such as 1+26")]
+    #[error("clock numbers joined by +, such as 1+26")]
     Clocks,
 }
 
@@ -155,12 +155,12 @@ pub enum Quantity {
     PlaceOfDisc,
     #[error("a temperature in °C")]
     Celsius,
-    #[error("a temperature in whole °C")]
+    #[error("a temperature in whole degrees Celsius")]
     WholeCelsius,
     #[error("a speed in units of 0.1 rpm")]
     TenthsOfRpm,
-    /// A torque in percent of the nominal torque.
-    #[error("a torque in percent of the nominal torque")]
+    /// A torque as a percentage of the nominal torque.
+    #[error("a torque as a percentage of the nominal torque")]
     Torque,
     #[error("a protocol version")]
     Version,
@@ -183,10 +183,10 @@ pub enum Quantity {
     #[error("a voltage in volts")]
     Volts,
     /// The fraction of frames in which a bit is inverted.
-    #[error("a share of damaged frames")]
+    #[error("a proportion of damaged frames")]
     DamagedFrames,
     /// The fraction of requests answered with an exception.
-    #[error("a share of requests answered with an exception")]
+    #[error("a proportion of requests answered with an exception")]
     RefusedRequests,
 }
 

@@ -14,7 +14,7 @@ pub struct AssetName(String);
 pub enum AssetNameError {
     #[error("the name is empty")]
     Empty,
-    #[error("the name has {found} characters, at most {most} are possible")]
+    #[error("the name has {found} characters, but at most {most} are allowed")]
     TooLong { found: usize, most: usize },
     #[error("the name contains a control character")]
     ControlCharacter,

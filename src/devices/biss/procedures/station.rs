@@ -364,10 +364,13 @@ mod tests {
             ("st=0", "st=0 is not valid (allowed: a number of bits from 1 to 32)"),
             ("mt=12", "mt=12 is not valid (allowed: only together with st)"),
             ("crc=0x43", "crc=0x43 is not valid (allowed: only together with st)"),
-            ("st=8&crc=43", "crc=43 is not valid (allowed: a polynomial with all terms, such as 0x43, or none)"),
+            (
+                "st=8&crc=43",
+                "crc=43 is not valid (allowed: a CRC polynomial including its highest term, such as 0x43, or \"none\")",
+            ),
             (
                 "mt=32&st=32",
-                "st=32 is not valid (allowed: a frame of at most 64 bits, including turns, two flags and CRC)",
+                "st=32 is not valid (allowed: a frame of at most 64 bits, including the turns, two flags and the CRC)",
             ),
             ("leave-supply=no", "leave-supply=no is not valid (allowed: as-found, on or off)"),
             ("voltage=24", "voltage=24 is not valid (allowed: a voltage in volts from 4.75 to 12.5)"),

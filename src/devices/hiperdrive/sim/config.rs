@@ -189,7 +189,8 @@ mod tests {
             ("sed=1", format!("a virtual HIPERDRIVE has no setting `sed`; valid settings are {keys}")),
             (
                 "drives=1,1",
-                "`drives=1,1` is not valid (allowed: 0 or 1 for each of 1 ports, separated by commas, such as 1,0)"
+                "`drives=1,1` is not valid (allowed: 0 or 1 for each port (number of ports: 1), separated by commas, \
+                 such as 1,0)"
                     .to_owned(),
             ),
             (

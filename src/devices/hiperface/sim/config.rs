@@ -200,7 +200,8 @@ mod tests {
             ("model=sks36&position=4096", "`position=4096` is not valid (allowed: a position from 0 to 4095)"),
             (
                 "encoders=2&address=95",
-                "`address=0x5F` is not valid (allowed: an address from 0x40 to 0x5E, so that every encoder gets one)",
+                "`address=0x5F` is not valid (allowed: an address from 0x40 to 0x5E, so that there is an address for \
+                 every encoder)",
             ),
             (
                 "codes=4:66",

@@ -55,8 +55,8 @@ fn words_follow_code_preset_and_direction() {
 
 #[test]
 fn invalid_values_are_reported() {
-    let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas, each with :SECONDS for an \
-                    error that recurs)";
+    let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas; append :SECONDS to make an \
+                    error recur)";
     assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
     // The order of the two does not matter.
     assert_eq!(read("ssi-error=ERRDIG&ssi=ahm36").unwrap_err().to_string(), sentence);

@@ -295,7 +295,7 @@ fn profile_errors_name_their_location() {
         (
             "clocks: 27",
             "patterns: [(name: \"x\", word: \"all\", meaning: \"invalid\")], clocks: 27",
-            "frame.patterns[0].word must be ones, or a number with the bits of a whole frame",
+            "frame.patterns[0].word must be \"ones\", or a number that contains all bits of a frame",
         ),
         (
             "clocks: 27",
