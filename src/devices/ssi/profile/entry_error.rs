@@ -20,6 +20,6 @@ pub enum EntryError {
     #[error("this entry cannot be combined with {0}")]
     NotWith(&'static str),
     /// The range of positions is missing.
-    #[error("one of the entries singleturn, steps and bits is required")]
+    #[error("one of the entries singleturn, steps or bits is required")]
     NoPositions,
 }

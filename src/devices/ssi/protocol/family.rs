@@ -177,7 +177,7 @@ pub enum FamilyProblem {
     #[error("the key {0:?} may contain only lower-case letters, digits, - and _")]
     Key(String),
     /// A German text translates neither the source nor a note.
-    #[error("german: {0:?} does not match the source or any note of the family")]
+    #[error("german: {0:?} is neither the source nor one of the notes of the family")]
     German(String),
     /// The factory settings do not result in a valid frame.
     #[error("factory setting: {0}")]

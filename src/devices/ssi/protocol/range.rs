@@ -76,7 +76,7 @@ pub enum RangeError {
     #[error("the range has only a single position: specify bits or steps")]
     Empty,
     /// The numerator or denominator is zero.
-    #[error("numerator and denominator of revolutions must be greater than 0, not {0}/{1}")]
+    #[error("the numerator and denominator of revolutions must be greater than 0, not {0}/{1}")]
     Fraction(u32, u32),
 }
 

@@ -260,7 +260,7 @@ fn profile_errors_name_their_location() {
         (
             "multiturn: 12, singleturn: 14",
             "code: \"gray\"",
-            "frame: one of the entries singleturn, steps and bits is required",
+            "frame: one of the entries singleturn, steps or bits is required",
         ),
         ("singleturn: 14", "steps: 16384", "frame.multiturn: this entry cannot be combined with steps"),
         ("singleturn: 14", "singleturn: 14, turns: 4", "frame.turns: this entry cannot be combined with singleturn"),
@@ -273,7 +273,7 @@ fn profile_errors_name_their_location() {
         (
             "multiturn: 12, singleturn: 14",
             "steps: 9, revolutions: \"1/0\"",
-            "frame: numerator and denominator of revolutions must be greater than 0, not 1/0",
+            "frame: the numerator and denominator of revolutions must be greater than 0, not 1/0",
         ),
         (
             "multiturn: 12, singleturn: 14",

@@ -37,17 +37,17 @@ pub enum FormatError {
     #[error("LinuxCNC cannot decode {0}")]
     Cannot(UnsupportedProperty),
     /// A field is not of the form `name%bits` followed by a letter.
-    #[error("\"{0}\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code with g before the type)")]
+    #[error("\"{0}\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code, put g before the type)")]
     Form(String),
     /// A field type is not supported for SSI frames.
-    #[error("the field type \"{0}\" is not supported; use p, b, u, s, f or e (for Gray code with g before the type)")]
+    #[error("the field type \"{0}\" is not supported; use p, b, u, s, f or e (for Gray code, put g before the type)")]
     Kind(char),
     /// There is more than one position field.
     #[error("the format string contains two positions, \"{0}\" and \"{1}\"")]
     Two(String, String),
     /// There is no position field.
     #[error(
-        "the format string contains no position; add a field of type e or u (for Gray code with g before the type)"
+        "the format string contains no position; add a field of type e or u (for Gray code, put g before the type)"
     )]
     None,
     /// The fields exceed the length of a frame.

@@ -58,24 +58,24 @@ fn limits_of_linuxcnc_are_reported() {
     let cases = [
         (
             "",
-            "the format string contains no position; add a field of type e or u (for Gray code with g before the type)",
+            "the format string contains no position; add a field of type e or u (for Gray code, put g before the type)",
         ),
         (
             "error%1b",
-            "the format string contains no position; add a field of type e or u (for Gray code with g before the type)",
+            "the format string contains no position; add a field of type e or u (for Gray code, put g before the type)",
         ),
         ("a%12eb%12e", "the format string contains two positions, \"b\" and \"a\""),
         (
             "position%24",
-            "\"position%24\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code with g before the type)",
+            "\"position%24\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code, put g before the type)",
         ),
         (
             "position%0e",
-            "\"position%0e\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code with g before the type)",
+            "\"position%0e\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code, put g before the type)",
         ),
         (
             "low%16l",
-            "the field type \"l\" is not supported; use p, b, u, s, f or e (for Gray code with g before the type)",
+            "the field type \"l\" is not supported; use p, b, u, s, f or e (for Gray code, put g before the type)",
         ),
         ("position%60e%5p", "the fields together have more than 64 bits"),
     ];

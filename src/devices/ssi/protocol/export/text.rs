@@ -184,7 +184,7 @@ impl fmt::Display for ExportText {
                 "There is a gap between the turn bits and the step bits, but most modules can read only a position \
                  without gaps."
             }
-            Self::ReadAsBinary => "Read the whole frame as binary, and decode it in the program of the control.",
+            Self::ReadAsBinary => "Read the whole frame as binary, and decode it in the PLC program.",
             Self::CodeType => "Code type",
             Self::BitNumberLowest => "Bit number LSB of the position",
             Self::BitNumberHighest => "Bit number MSB of the position",

@@ -7,7 +7,7 @@ pub enum SettingName {
     #[error("frame")]
     Frame,
     /// Shift of the position by one clock.
-    #[error("shifting to the right")]
+    #[error("right shift")]
     ShiftRight,
     /// Number of steps that is not a power of two.
     #[error("number of steps that is not a power of two")]

@@ -223,7 +223,7 @@ fn unsupported_settings_are_refused_with_a_reason() {
             "ATM60 SSI does not support the alignment right24 for 25 position bits; supported: tree12_13, right25",
         ),
         ("afs60,err=fix", "AFS60 SSI does not support the setting fix for error bits; supported: following, none"),
-        ("afs60s,err=none,shift=1", "AFS60S Pro has no shifting to the right"),
+        ("afs60s,err=none,shift=1", "AFS60S Pro has no right shift"),
         ("atm60,steps=9000", "ATM60 SSI: steps per turn must be from 2 to 8192, not 9000"),
         (
             "atm60,steps=9000,revolutions=1",

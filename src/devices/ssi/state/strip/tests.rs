@@ -156,7 +156,7 @@ fn frames_are_divided_into_fields() {
     // MT is 5 to 12, so that its fourth bit from below is on clock 9.
     assert_eq!(
         cell_text(&tree, 9).to_string_in(Language::English),
-        "Clock 9: bit MT3 of the turns (number of turn bits: 8)"
+        "Clock 9: turn bit MT3 (number of turn bits: 8)"
     );
     assert_eq!(short_label(&tree, &tree.fields()[2]).to_string_in(Language::German), "ST 8");
 

@@ -38,7 +38,7 @@ fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
 fn a_short_pause_is_drawn_without_a_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let times =
-        ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs to 25 µs", "Minimum pause: 25 µs"];
+        ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs … 25 µs", "Minimum pause: 25 µs"];
     assert_eq!(span_texts(&diagram), times);
     // 122.5 µs from burst to burst, and two and a half clocks of the next.
     assert_eq!(diagram.sections().len(), 1);
@@ -92,8 +92,8 @@ fn a_point_in_time_is_described() {
     let told = |at: f64| {
         diagram.texts_at(at * 1e-6).iter().map(|text| text.to_string_in(Language::English)).collect::<Vec<_>>()
     };
-    assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: bit MT11 of the turns (number of turn bits: 12)"]);
-    assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs to 25 µs"]);
+    assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: turn bit MT11 (number of turn bits: 12)"]);
+    assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs … 25 µs"]);
     assert_eq!(told(0.5), ["500 ns after the first edge"]);
 }
 

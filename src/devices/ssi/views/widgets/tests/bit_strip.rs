@@ -169,7 +169,7 @@ fn cells_can_be_selected_and_bits_toggled() {
         harness.run();
     }
     assert_eq!(harness.state().events, [StripEvent::Toggled(7), StripEvent::Selected(7)]);
-    assert_eq!(value(&harness, "Frame"), "Clock 7: bit MT5 of the turns (number of turn bits: 8) = 1");
+    assert_eq!(value(&harness, "Frame"), "Clock 7: turn bit MT5 (number of turn bits: 8) = 1");
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::Space), (NONE, Key::End), (NONE, Key::Home)]);
     let keyed = [StripEvent::Selected(8), StripEvent::Toggled(8), StripEvent::Selected(25), StripEvent::Selected(1)];
     assert_eq!(harness.state().events[2..], keyed);
