@@ -48,11 +48,11 @@ pub struct CommonArgs {
     /// Print JSON.
     #[arg(long, global = true)]
     pub(super) json: bool,
-    /// Confirm that no drive or controller on the serial line is powered. Without this option a terminal asks; find
-    /// requires it without a terminal.
+    /// Confirm that no drive or controller on the serial line is powered. Without this option, you are asked on a
+    /// terminal; find requires this option if there is no terminal.
     #[arg(long, global = true)]
     pub(crate) only_master: bool,
-    /// Record every frame to a file that replay: can play back. Access codes are masked.
+    /// Record every frame in a file that can be opened with replay:FILE. Access codes are masked.
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
     #[command(flatten)]
@@ -87,23 +87,23 @@ pub enum Command {
     Position(Position),
     /// Read one value: a data field, a register or a parameter.
     Read(Read),
-    /// Save everything that can be restored to a profile.
+    /// Save all restorable values in a profile.
     Save(SaveArgs),
     /// Compare two profiles, or a profile with a device.
     Diff(DiffArgs),
     /// Compare a device with a profile; exit status 3 if they differ.
     Verify(VerifyArgs),
-    /// Write a profile to a device: only the values that differ.
+    /// Write a profile to a device. Only values that differ are written.
     Restore(Restore),
-    /// Write one value, after showing old and new.
+    /// Write one value after showing the old and the new one.
     Write(Write),
-    /// Carry out a device-specific action (listed by help do).
+    /// Carry out a device-specific action. The actions are listed by help do.
     Do(ActionArgs),
     /// Explain captured bytes without a device.
     Decode(DecodeArgs),
-    /// Print the logbook, newest first: connections, writes, status codes that were read, saved profiles, checks.
+    /// Print the logbook, newest entry first: connections, writes, status codes read, saved profiles and device checks.
     Log(LogArgs),
-    /// Plan a write of the logbook back, as far as possible: read, compare, and restore the values before it.
+    /// Undo a write recorded in the logbook, as far as possible: read, compare, and restore the previous values.
     Undo(UndoArgs),
     /// Serve a virtual device on a pseudo-terminal or a TCP port.
     Simulate(SimulateArgs),
@@ -133,8 +133,8 @@ impl Command {
 /// Option of the commands that assign a device to an asset.
 #[derive(Args)]
 pub(crate) struct AssetArgs {
-    /// Assign the device to an asset: the motor or the axis on which it is mounted. The assignment is valid until the
-    /// next one. log --asset lists what happened to the asset.
+    /// Assign the device to an asset: the motor or the axis on which it is mounted. The assignment remains in effect
+    /// until the next one. log --asset prints the entries of the asset.
     #[arg(long = "asset", value_name = "NAME")]
     pub(super) name: Option<AssetName>,
 }
@@ -159,13 +159,13 @@ pub struct Status {
 pub struct Position {
     /// Kind of device.
     pub(super) device: String,
-    /// Number of readings. Default: 1, or with --csv until Ctrl-C.
+    /// Number of readings. Default: 1; with --csv, until Ctrl-C.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) count: Option<u64>,
     /// Print CSV: a header, then one line per reading.
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// Time between two readings in milliseconds; 0 reads as fast as the link allows.
+    /// Time between two readings in milliseconds; with 0, readings follow as fast as the link allows.
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
     #[command(flatten)]
@@ -203,7 +203,7 @@ pub struct SaveArgs {
 
 #[derive(Args)]
 pub struct DiffArgs {
-    /// Profile to compare, or log:ENTRY for the values before a write of the logbook.
+    /// Profile to compare, or log:ENTRY for the values before a write recorded in the logbook.
     pub(super) left: PathBuf,
     /// Second profile or log:ENTRY. Default: the device at --link.
     pub(super) right: Option<PathBuf>,
@@ -219,27 +219,27 @@ pub struct VerifyArgs {
 pub struct Restore {
     /// Profile to read.
     pub file: PathBuf,
-    /// Print the operations that would be carried out, and write nothing.
+    /// Print the operations that would be carried out, without writing anything.
     #[arg(long)]
     pub dry_run: bool,
     #[command(flatten)]
     pub consent: ConsentArgs,
-    /// Accept a profile from another serial number of the same type.
+    /// Accept a profile from a device of the same type with another serial number.
     #[arg(long)]
     pub(crate) allow_other_device: bool,
-    /// Accept a profile from another type of device (defined in --help).
+    /// Accept a profile from another type of device; the end of --help explains what counts as one.
     #[arg(long)]
     pub(crate) allow_other_type: bool,
-    /// Copy this data field, whose meaning is unknown, to another serial number; repeatable.
+    /// Copy this data field of unknown meaning to a device with another serial number; repeatable.
     #[arg(long, value_name = "field:N")]
     pub(crate) copy: Vec<String>,
-    /// Keep the device's bytes of this data field, whose meaning is unknown; repeatable.
+    /// Leave this data field of unknown meaning unchanged in the device; repeatable.
     #[arg(long, value_name = "field:N")]
     pub(crate) leave: Vec<String>,
-    /// Also restore mounting values to another serial number.
+    /// Also restore the values that depend on the mounting to a device with another serial number.
     #[arg(long)]
     pub(crate) with_mounting: bool,
-    /// Delete and create again a field whose size differs and that is not the last one.
+    /// Delete and re-create a data field of a different size even if it is not the last one.
     #[arg(long)]
     pub(crate) recreate: bool,
     #[command(flatten)]
@@ -270,10 +270,10 @@ impl Restore {
 
 #[derive(Args)]
 pub struct UndoArgs {
-    /// Number of the entry, as log prints it.
+    /// Number of the entry, as printed by log.
     #[arg(value_parser = super::log::parse_entry)]
     pub(super) entry: EntryId,
-    /// Print the operations that would be carried out, and write nothing.
+    /// Print the operations that would be carried out, without writing anything.
     #[arg(long)]
     pub(super) dry_run: bool,
     #[command(flatten)]
@@ -285,29 +285,29 @@ pub struct ConsentArgs {
     /// Write without asking.
     #[arg(long)]
     pub yes: bool,
-    /// Write even if the device is worn or its write cycles are unknown.
+    /// Write even if the limit of write cycles is reached or their number is unknown.
     #[arg(long)]
     pub force_wear: bool,
 }
 
 #[derive(Args)]
 pub struct LogArgs {
-    /// Only this kind of device.
+    /// Print only entries for this kind of device.
     #[arg(long)]
     pub(super) device: Option<String>,
-    /// Only this serial number.
+    /// Print only entries for the device with this serial number.
     #[arg(long, value_name = "SN")]
     pub(super) serial_number: Option<String>,
-    /// Only what happened to an asset: the entries of each device while it was assigned to it.
+    /// Print only entries for this asset: those of each device while it was assigned to the asset.
     #[arg(long, value_name = "NAME")]
     pub(super) asset: Option<AssetName>,
-    /// Only entries since a date, such as 2026-11-27, or a time, such as 2026-11-27T14:30:00+01:00.
+    /// Print only entries since a date, such as 2026-11-27, or a time, such as 2026-11-27T14:30:00+01:00.
     #[arg(long, value_name = "DATE", value_parser = super::log::parse_date)]
     pub(super) since: Option<Timestamp>,
-    /// Only entries that contain this text.
+    /// Print only entries that contain this text.
     #[arg(long, value_name = "TEXT")]
     pub(super) search: Option<String>,
-    /// Maximum number of entries.
+    /// Maximum number of entries to print.
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub(super) limit: u32,
 }
@@ -318,8 +318,8 @@ pub struct Write {
     pub(super) device: String,
     /// Name of the value to write
     pub(crate) item: String,
-    /// Number (decimal or 0x), hexadecimal bytes for a data field or consecutive registers (+COUNT), or a word or a
-    /// range where the item takes one.
+    /// Number (decimal, or hexadecimal with 0x), hexadecimal bytes for a data field or consecutive registers (+COUNT),
+    /// or a word or a range if the item accepts one.
     #[arg(allow_hyphen_values = true)]
     pub(crate) value: String,
     #[command(flatten)]
@@ -334,7 +334,7 @@ pub struct Write {
 pub struct SimulateArgs {
     /// Kind of device.
     pub(super) device: String,
-    /// Serve on a pseudo-terminal, with a symbolic link to it at PATH.
+    /// Serve on a pseudo-terminal, and create a symbolic link to it at PATH.
     #[arg(long, value_name = "PATH", conflicts_with = "listen")]
     pub(crate) pty: Option<PathBuf>,
     /// Listen on HOST:PORT, over TCP and, if the device uses it, UDP.
@@ -343,13 +343,13 @@ pub struct SimulateArgs {
     /// Serve the encoder behind an adapter that speaks the bridge protocol.
     #[arg(long)]
     pub(crate) bridge: bool,
-    /// Seed of the random faults.
+    /// Seed for the random faults.
     #[arg(long)]
     pub(super) seed: Option<u64>,
     /// Faults to inject, separated by commas: drop:P, flip:P, garbage:P, delay:MS, silent-after:N, die-in-store:N.
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<String>,
-    /// Setting of the virtual device, as in sim:?rpm=60&echo=on; repeatable. An unknown name lists all of them.
+    /// Setting of the virtual device, as in sim:?rpm=60&echo=on; repeatable. An unknown name lists all settings.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) settings: Vec<String>,
     #[command(flatten)]

@@ -226,7 +226,7 @@ fn unsupported_ssi_commands_name_the_alternative() {
         (&["decode", "ssi", "00"], "ssi decode --layout"),
         (&["save", "ssi", "-o", &out], "--layout FILE|SPEC"),
         (&["save", "ssi", "--layout", "ahs36", "-o", &out, sim], "remove --link"),
-        (&["save", "biss", "--layout", "ahs36", "-o", &out, sim], "--layout is for ssi devices"),
+        (&["save", "biss", "--layout", "ahs36", "-o", &out, sim], "--layout is only for ssi devices"),
     ];
     for (words, said) in cases {
         bench.run(words).fails(2, &[said]);

@@ -18,7 +18,7 @@ pub struct DecodeArgs {
 /// Option for the direction of a word, for devices whose words have a different meaning in each direction.
 #[derive(Args)]
 pub(crate) struct DirectionOption {
-    /// Direction: from the device (in) or to it (out). Default: explain every direction that fits.
+    /// Direction of the words: from the device (in) or to it (out). Default: explain each direction that is possible.
     #[arg(long, value_enum)]
     pub(crate) direction: Option<Direction>,
 }

@@ -10,28 +10,28 @@ use crate::analysis::quality::Family;
 
 #[derive(Args)]
 pub(super) struct AnalyseArgs {
-    /// Table of time, sine and cosine in seconds and volts. Delimiter, decimal sign, header and units are detected.
-    /// Without a file, an adapter at --link samples the signals.
+    /// Table of time, sine and cosine in seconds and volts. The delimiter, decimal sign, header and units are detected
+    /// automatically. Without a file, the signals are sampled by the adapter at --link.
     #[arg(value_name = "FILE.csv")]
     pub(super) file: Option<PathBuf>,
-    /// Duration of the samples from an adapter.
+    /// How long the adapter samples the signals.
     #[arg(long, value_name = "SECONDS", value_parser = parse_duration, default_value = "1", allow_negative_numbers = true)]
     pub(super) seconds: Duration,
-    /// Sample rate of an adapter in hertz. The adapter uses the nearest one that it has.
+    /// Sample rate of the adapter in hertz. The adapter uses the nearest rate that it supports.
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(10..=1_000_000), default_value_t = 50_000, allow_negative_numbers = true)]
     pub(super) rate: u32,
-    /// Column numbers from 1: time, sine, cosine, or time, SIN, REFSIN, COS, REFCOS; optionally reference=N (mechanical
-    /// degrees) and absolute=N (steps of 1/32 period).
+    /// Column numbers, starting at 1: time, sine and cosine, or time, SIN, REFSIN, COS and REFCOS. Optional: reference=N
+    /// (mechanical degrees) and absolute=N (steps of 1/32 period).
     #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
     pub(super) columns: Option<Columns>,
     /// Volts per unit of the sine and cosine columns.
     #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
     pub(super) volts_per_unit: Option<f64>,
-    /// Encoder family whose limits apply.
+    /// Encoder family whose limits are used.
     #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
     pub(super) limits: Limits,
-    /// Signal periods per revolution: for the speed, for errors that repeat each revolution, and, with a reference, for
-    /// DNL and INL.
+    /// Signal periods per revolution, used to determine the speed, errors that repeat each revolution, and, with a
+    /// reference, DNL and INL.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(super) periods: Option<u32>,
 }

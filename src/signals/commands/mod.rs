@@ -31,7 +31,7 @@ pub(crate) struct AnalyseCommand;
 impl CliCommand for AnalyseCommand {
     fn command(&self) -> clap::Command {
         AnalyseArgs::augment_args(clap::Command::new("analyse")).about(
-            "Analyse a sine/cosine signal, recorded or at an adapter: amplitude, offsets, gain, phase, position error",
+            "Analyse a sine/cosine signal, recorded or from an adapter: amplitude, offsets, gain, phase, position error",
         )
     }
 

@@ -13,9 +13,9 @@ pub(super) struct DoOptions {
 /// Actions of BiSS encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum BissAction {
-    /// rate identity, errors, position, data sheet, limits and wear
+    /// check the identity, errors, position, data sheet, limits and write cycles
     Check,
-    /// calibrate the singleturn while the motor turns at 500 ± 2 rpm, first counterclockwise, then clockwise
+    /// run the singleturn calibration while the motor turns at 500 ± 2 rpm, first counterclockwise, then clockwise
     Calibrate,
     // Rustdoc would read brackets in a doc comment as links.
     #[value(
@@ -25,15 +25,14 @@ pub(super) enum BissAction {
     /// balanced|dynamic: choose the position filter
     Filter,
     #[value(
-        help = "[ST [MT]] [singleturn|multiturn]: store a preset value (MT default 0) and set the present position to it; without a value, use the stored one"
+        help = "[ST [MT]] [singleturn|multiturn]: store a preset value (MT default 0) and set the current position to it; without a value, use the stored one"
     )]
     Preset,
-    /// return to operation and clear the password after an interrupted procedure; values not yet saved are lost (asks,
-    /// or
-    /// --yes)
+    /// return to operation and clear the password after an interrupted procedure; values not yet saved are lost (asks
+    /// first, unless --yes is given)
     LeadBack,
     #[value(
-        help = "[calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE]: run these after mounting; by default calibrate and wiegand-test"
+        help = "[calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE]: run these steps after mounting; default: calibrate and wiegand-test"
     )]
     Mounting,
 }

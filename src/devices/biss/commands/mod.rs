@@ -40,7 +40,7 @@ impl DeviceCommands for BissCommands {
     }
 
     fn description(&self) -> &'static str {
-        "POSITAL kit encoder or other BiSS C encoder, over UBICOM (serial:, tcp:) or an adapter (bridge:)"
+        "POSITAL kit encoder or other BiSS C encoder, over UBICOM (serial:, tcp:) or through an adapter (bridge:)"
     }
 
     fn command_help(&self, command: CommandId) -> Option<String> {
@@ -54,11 +54,11 @@ impl DeviceCommands for BissCommands {
                  change filter, preset or calibration, use \"do biss …\"."
             }
             CommandId::Restore => {
-                "another type means another profile ID, manufacturer or device ID, or another number of bits of turns or steps"
+                "another type means another profile ID, manufacturer or device ID, or a different number of turn bits or step bits"
             }
             CommandId::Decode => {
-                "UBICOM frames, bridge packets (to the final 00), position frames of the kit encoder (41 bits right-justified: \
-                 16 turns, 17 steps, error, warning, CRC-6; one word of 11 hex digits or with 0x), and position words as \
+                "UBICOM frames, bridge packets (to the final 00), position frames of the kit encoder (41 bits, right-justified: \
+                 16 for turns, 17 for steps, error, warning, CRC-6; as one word of 11 hex digits or with 0x), and position words as \
                  \"position\" prints them (0x024698000, or raw=610893824 from JSON or a table)"
             }
             CommandId::Simulate => "serves UBICOM; for example --set firmware=1.2.0",
@@ -110,7 +110,7 @@ fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn
     let known = bridge::all_setting_names(attachable_kinds());
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
     if let Some((name, _)) = settings.iter().find(|(name, _)| needs_adapter(name)).filter(|_| !arguments.bridge) {
-        return Err(Failure::Usage(format!("{name} is a setting of the adapter: it needs --bridge")));
+        return Err(Failure::Usage(format!("{name} is a setting of the adapter and requires --bridge")));
     }
     let refused = |error: ConfigError| Failure::Usage(error.to_string());
     Ok(match arguments.bridge {

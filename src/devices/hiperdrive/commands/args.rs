@@ -9,7 +9,8 @@ use crate::devices::hiperdrive::protocol::{ByteOrder, KIND};
 /// Option that selects a drive behind a hub; only a hub has several drives.
 #[derive(Args)]
 pub(super) struct DriveOption {
-    /// hiperdrive: drive of a hub, 1 to 8. Default: the first, or the one in the parameter number.
+    /// hiperdrive: number of the drive behind a hub, 1 to 8. Default: the first drive, or the one in the parameter
+    /// number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
     pub(super) drive: Option<u8>,
 }
@@ -19,7 +20,7 @@ pub(super) struct DriveOption {
 pub(super) struct DoOptions {
     #[command(flatten)]
     pub(super) of: DriveOption,
-    /// hiperdrive factory: reset everything including the address (DHCP), and save.
+    /// hiperdrive factory: reset everything, including the address (to DHCP), and save.
     #[arg(long)]
     pub(super) all: bool,
 }
@@ -55,10 +56,10 @@ pub(crate) struct MoveArgs {
     pub(crate) yes: bool,
     #[command(flatten)]
     pub(crate) of: DriveOption,
-    /// Speed, in percent of the drive's maximum.
+    /// Speed as a percentage of the drive's maximum.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
     pub(crate) speed: u8,
-    /// Torque, in percent of nominal, in steps of 25.
+    /// Torque as a percentage of the nominal torque, in steps of 25.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
     pub(crate) torque: u8,
     /// Stop the drive after this time.
@@ -87,18 +88,19 @@ impl From<ByteOrderArg> for ByteOrder {
 /// The actions of drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum HiperdriveAction {
-    /// rate device, supply and address, and the request, line, errors and range of each drive
+    /// check the device, supply and address, and for each drive the request, line, errors and range
     Check,
     // Brackets in a doc comment would be read as links by rustdoc.
-    #[value(help = "POSITION [--drive N]: set the actual position, rounded to 64 steps and saved")]
+    #[value(help = "POSITION [--drive N]: set the actual position, rounded to a multiple of 64 steps, and save it")]
     SetPosition,
     /// acknowledge the fault of a drive (--drive N)
     Acknowledge,
     /// save written parameters (47 = 1)
     Save,
-    /// load the device's factory parameters, not saved (47 = -1); with --all everything, saved (47 = -3)
+    /// load the device's factory parameters without saving them (47 = -1); with --all, load and save everything
+    /// (47 = -3)
     Factory,
-    /// load the device's saved parameters, not those of its drives (47 = -2)
+    /// load the saved parameters of the device, but not those of its drives (47 = -2)
     Recall,
     /// detect the connected drives, which resets them (47 = -4)
     PresenceTest,

@@ -44,7 +44,7 @@ impl DeviceCommands for HiperdriveCommands {
             CommandId::Find => "searches the network for adapters and hubs",
             CommandId::Read => {
                 let items =
-                    "items: parameter numbers, such as 17 or 158; for drive 2 of a hub, 258, or 158 with --drive 2";
+                    "items: parameter numbers, such as 17 or 158; for drive 2 of a hub, use 258, or 158 with --drive 2";
                 return Some(format!("{items}.\n\n{}", parameter_list_help()));
             }
             CommandId::Write => {
@@ -56,7 +56,7 @@ impl DeviceCommands for HiperdriveCommands {
                 "another type means another category (adapter, 4-port hub, 8-port hub), or another drive variant at a port"
             }
             CommandId::Decode => {
-                "control and status words, 4 hex digits each (0439); process data as they are sent (8, 16, 32, 40, 64 or 72 \
+                "control and status words, 4 hex digits each (0439); process data as sent (8, 16, 32, 40, 64 or 72 \
                  bytes); parameter words (8 bytes); EtherNet/IP packets with their parameters"
             }
             CommandId::Simulate => "--listen serves TCP and UDP",
@@ -115,7 +115,7 @@ struct MoveCommand;
 impl CliCommand for MoveCommand {
     fn command(&self) -> clap::Command {
         MoveArgs::augment_args(clap::Command::new("move"))
-            .about("hiperdrive: move a drive to a position. Ctrl-C stops it; afterwards the drive is switched off")
+            .about("hiperdrive: move a drive to a position, then switch the drive off. Ctrl-C stops the motion")
     }
 
     fn run(&self, common: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
@@ -126,7 +126,7 @@ impl CliCommand for MoveCommand {
 /// Returns the help text that lists all parameters with their numbers, one per line.
 fn parameter_list_help() -> String {
     let mut text = "\
-Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201 of drive 2, up to drive 8):
+HIPERDRIVE parameters (below 100: device, from 101: drive 1, from 201: drive 2, and so on up to drive 8):
 "
     .to_owned();
     for row in PARAMETERS {

@@ -5,10 +5,11 @@ use clap::{Args, ValueEnum};
 /// Options of `find`.
 #[derive(Args)]
 pub(super) struct FindOptions {
-    /// hiperface: only one encoder is connected, so the broadcast address may be used as well.
+    /// hiperface: confirm that only one encoder is connected, so that the broadcast address can also be used.
     #[arg(long)]
     pub(super) one_encoder: bool,
-    /// hiperface: wait this long for a power cycle, and search within the encoder's default window after it.
+    /// hiperface: wait up to this long for a power cycle, and search in the time after it in which the encoder uses its
+    /// default settings.
     #[arg(long, value_name = "SECONDS")]
     pub(super) power_cycle: Option<u64>,
 }
@@ -16,10 +17,10 @@ pub(super) struct FindOptions {
 /// Options of `do`.
 #[derive(Args)]
 pub(super) struct DoOptions {
-    /// hiperface set-position: set exactly this value, even if it breaks the phase to the sine signal.
+    /// hiperface set-position: set exactly this value, even if it does not match the phase of the sine signal.
     #[arg(long)]
     pub(super) exact: bool,
-    /// hiperface synchronise: the encoder is a kit encoder, if its type does not show that.
+    /// hiperface synchronise: treat the encoder as a kit encoder if its type does not identify it as one.
     #[arg(long)]
     pub(super) kit: bool,
 }
@@ -29,9 +30,10 @@ pub(super) struct DoOptions {
 pub(super) enum HiperfaceAction {
     /// restart the encoder and read its status
     Reset,
-    /// run the start-up sequence and rate each step; with the argument restart, restart the encoder first
+    /// run the start-up sequence and report the result of each step; with the argument restart, restart the encoder
+    /// first
     Check,
-    /// POSITION: set the nearest value that keeps the phase to the sine signal
+    /// POSITION: set the nearest value that matches the phase of the sine signal
     SetPosition,
     /// POSITION: set the position of a kit encoder and align its code tracks
     Synchronise,
@@ -46,7 +48,7 @@ pub(super) enum HiperfaceAction {
     UnlockField,
     /// NUMBER: delete the last field
     DeleteField,
-    /// NUMBER HEX: change an access code; --code gives the present one
+    /// NUMBER HEX: change an access code; specify the current one with --code
     ChangeCode,
     /// increment the counter
     IncrementCounter,

@@ -42,11 +42,11 @@ impl DeviceCommands for HiperfaceCommands {
             CommandId::Find => "tries every address, baud rate and parity",
             CommandId::Status => "reads the whole error queue",
             CommandId::Read => {
-                "items: field:N, field:N@ADDR+COUNT (without +COUNT: to the end of the field), status:N, analogue:CH, counter, \
+                "items: field:N, field:N@ADDR+COUNT (without +COUNT, up to the end of the field), status:N, analogue:CH, counter, \
                  address, settings"
             }
             CommandId::Write => {
-                "items: field:N, field:N@ADDR+COUNT (+COUNT may be left out), status:N, counter (0 clears it), address, settings"
+                "items: field:N, field:N@ADDR+COUNT (+COUNT is optional), status:N, counter (0 clears it), address, settings"
             }
             CommandId::Restore => "another type means another type byte",
             CommandId::Simulate => "for example --set model=sel37",
@@ -73,8 +73,8 @@ impl DeviceCommands for HiperfaceCommands {
 
     fn refused_option(&self, option: &str) -> Option<String> {
         let why = match option {
-            "--code" => "is for devices with access codes, which this device does not have",
-            "--only-master" => "is for hiperface, where a line has only one master",
+            "--code" => "is only for devices with access codes, which this device does not have",
+            "--only-master" => "is only for hiperface, where a line has only one master",
             _ => return None,
         };
         Some(format!("{option} {why}"))

@@ -13,7 +13,7 @@ pub(super) struct WordOptions {
     /// interbus: mode of the encoder. With --direction out, a word not allowed in this mode is an error.
     #[arg(long, value_enum)]
     pub(super) mode: Option<EncoderModeArg>,
-    /// interbus: value that was read out, by name (temperature, operating-time …) or number (0x5D: chip register 5).
+    /// interbus: value read out, as a name (temperature, operating-time …) or a number (0x5D: chip register 5).
     #[arg(long = "read-out", value_name = "NAME|N")]
     pub(super) read_out: Option<String>,
     /// interbus: window shift (shift_iw) of a cam output word.
@@ -51,15 +51,15 @@ impl From<EncoderModeArg> for EncoderMode {
 /// The actions of INTERBUS encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum InterbusAction {
-    /// rate gateway, word order, handshake and identity
+    /// check the gateway, word order, handshake and identity
     Check,
     // Rustdoc would read brackets in a doc comment as links.
     #[value(
-        help = "[POSITION]: store a preset value and set the present position to it, at standstill; without a value, use the stored one"
+        help = "[POSITION]: store a preset value and, at standstill, set the current position to it; without a value, use the stored one"
     )]
     Preset,
     /// leave an unfinished parameterisation and return to operation
     LeadBack,
-    /// load the factory settings; experimental, since only the manual's appendix describes it
+    /// load the factory settings; experimental, because only the appendix of the manual describes this
     Default,
 }

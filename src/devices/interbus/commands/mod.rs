@@ -57,8 +57,8 @@ impl DeviceCommands for InterbusCommands {
             }
             CommandId::Save | CommandId::Diff | CommandId::Verify => CAM_READING_WARNING,
             CommandId::Write => {
-                "items: as for read, except measured values; the direction is cw or ccw, a cam START..STOP. A preset is stored \
-                 and not activated."
+                "items: as for read, except measured values; the direction is cw or ccw, and a cam is START..STOP. A preset is \
+                 stored but not activated."
             }
             CommandId::Restore => {
                 "another type means singleturn instead of multiturn, or a number of steps coded as N - 1"

@@ -37,7 +37,8 @@ impl DeviceCommands for SsiCommands {
 
     fn help_note(&self) -> Option<&'static str> {
         Some(
-            "An SSI encoder sends only its position: --layout defines the frame, and ssi works with frames without a device.",
+            "An SSI encoder sends only its position: --layout defines the frame, and the ssi command processes frames \
+             without a device.",
         )
     }
 
@@ -54,7 +55,7 @@ impl DeviceCommands for SsiCommands {
 
     fn refused_option(&self, option: &str) -> Option<String> {
         let is_own = option == "--layout";
-        is_own.then(|| format!("{option} is for {KIND} devices; other devices report their own"))
+        is_own.then(|| format!("{option} is only for {KIND} devices; other devices report their layout"))
     }
 
     fn extra_commands(&self) -> &'static [&'static dyn CliCommand] {
@@ -63,7 +64,7 @@ impl DeviceCommands for SsiCommands {
 
     fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
-            Command::Identify(_) => unsupported_command("identify", "see its type label for the identity"),
+            Command::Identify(_) => unsupported_command("identify", "see the type label for the identity"),
             Command::Status(status) => live::status(common, output, status),
             Command::Position(position) => live::position(common, output, position),
             Command::Read(_) => unsupported_command("read", "it has no registers"),
@@ -137,5 +138,5 @@ fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn
 
 /// Returns an error for a command that SSI encoders do not have. The error names the alternative.
 fn unsupported_command<T>(command: &str, instead: &str) -> Result<T> {
-    Err(Failure::Usage(format!("{command} is not for {KIND} devices, which send only a position: {instead}")))
+    Err(Failure::Usage(format!("{command} is not available for {KIND} devices, which send only a position: {instead}")))
 }

@@ -173,7 +173,7 @@ impl fmt::Display for ExportText {
             Self::HighestClock => "Highest clock",
             Self::Obstacle(ModuleObstacle::GrayExcess) => {
                 "The modules support binary and Gray code but not Gray excess. If the value is read as Gray code, it is \
-                 too high by a constant."
+                 too high by a constant amount."
             }
             Self::Obstacle(ModuleObstacle::Bcd) => "The modules support binary and Gray code but not BCD.",
             Self::Obstacle(ModuleObstacle::GrayOver) => {
