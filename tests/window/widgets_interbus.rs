@@ -146,7 +146,7 @@ fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
     assert!(screen.shows("Program 1: cams 6, 7 are outside the measuring range, which ends at 2999."));
     assert!(!screen.shows("Program 1: cam 7"));
     screen.act(Action::SetLanguage(Language::German));
-    assert!(screen.shows("Programm 1: Nocken 6, 7 liegen außerhalb des Messbereichs (bis 2999)."));
+    assert!(screen.shows("Programm 1: Die Nocken 6, 7 liegen außerhalb des Messbereichs, der bei 2999 endet."));
     screen.check_language();
 }
 

@@ -152,8 +152,8 @@ mod tests {
         let told: Vec<String> =
             table.problems.iter().map(|own| problem_text(own).to_string_in(Language::English)).collect();
         let expected = [
-            "Line 2, column 1: Cam program \"9\" does not exist. Choose 1 to 8.",
-            "Line 3, column 2: Cam \"8\" does not exist. Choose 0 to 7.",
+            "Line 2, column 1: Cam program \"9\" does not exist. Choose a program from 1 to 8.",
+            "Line 3, column 2: Cam \"8\" does not exist. Choose a cam from 0 to 7.",
             "Line 4, column 3: The value 1000 for start is outside the measuring range 0 to 999.",
             "Line 5, column 4: The value for stop is missing.",
             "Line 7, column 2: Cam 2 of program 1 is already defined in line 6. The definition in line 6 is used.",

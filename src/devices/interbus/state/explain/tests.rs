@@ -231,7 +231,7 @@ fn operations_are_described_one_by_one() {
     };
     let turned = ParameterChange { parameter: Parameter::Direction, from: 3, to: 4 };
     let expected = vec!["direction: clockwise → counterclockwise".to_owned()];
-    assert_eq!(words(&Op::Parameterise(vec![turned])), ("Parameters, saved in one write cycle".to_owned(), expected));
+    assert_eq!(words(&Op::Parameterise(vec![turned])), ("Parameters (saved in one write cycle)".to_owned(), expected));
     let cam = |number| CamNumber::new(number).unwrap();
     let change = ProgramChange {
         program: ProgramNumber::new(2).unwrap(),
@@ -247,7 +247,7 @@ fn operations_are_described_one_by_one() {
         ["cam 5, stop: 10 → 20", "cam 6: 900…40 → 910…55", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"]
             .map(str::to_owned)
             .to_vec();
-    assert_eq!(words(&Op::Program(change)), ("Cam program 2, saved in one write cycle".to_owned(), expected));
+    assert_eq!(words(&Op::Program(change)), ("Cam program 2 (saved in one write cycle)".to_owned(), expected));
     let fired = words(&Op::FirePreset { value: 500 });
     assert_eq!(fired.1, ["position when the preset is set → 500"]);
     assert!(words(&Op::Default).1[0].contains("experimental"));

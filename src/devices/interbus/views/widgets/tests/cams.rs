@@ -229,7 +229,7 @@ fn lanes_describe_cams_and_outputs() {
     (own.position, own.own) = (Some(150), Some(0b1000));
     let mut harness = draw(own, false);
     assert_eq!(value(&harness, "Cam 0 · feed"), "On from 100 (36.0°) to 299 (107.6°), 200 steps");
-    assert_eq!(value(&harness, "Cam 4"), "Switched off; 600 (216.0°) to 700 (252.0°), 101 steps");
+    assert_eq!(value(&harness, "Cam 4"), "Switched off: 600 (216.0°) to 700 (252.0°), 101 steps");
     assert_eq!(value(&harness, "Output 0"), "Encoder: off, simulation: on");
     assert_eq!(value(&harness, "Output 1"), "Encoder: off");
     let is_on = |harness: &Harness<'_, Page>, label| {
