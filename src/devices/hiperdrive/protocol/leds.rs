@@ -121,14 +121,14 @@ const fn network_led_row(
 
 /// States of the RS485 LED of a bus adapter (manual 4.4).
 const ADAPTER_LEDS: [LedRow; 7] = [
-    drive(DriveLedState::Off, "no supply", "check the control supply and its fuse"),
-    drive(DriveLedState::Alternating, "presence test", "wait until it has finished"),
+    drive(DriveLedState::Off, "no supply voltage", "check the control supply and its fuse"),
+    drive(DriveLedState::Alternating, "presence test in progress", "wait until the test has finished"),
     drive(
         DriveLedState::Red,
         "communication error with the requested drive",
         "check the drive's cable and supply, then acknowledge its fault (set parameter 197 to 0)",
     ),
-    drive(DriveLedState::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
+    drive(DriveLedState::RedGreen, "drive error", "read the errors, correct their causes, then acknowledge them"),
     drive(
         DriveLedState::GreenFlashing,
         "the drive has no error but is not requested",
@@ -144,31 +144,31 @@ const ADAPTER_LEDS: [LedRow; 7] = [
 
 /// States of the RS485 LED of a hub with switch S3 at 0, which apply to all drives (manual 3.3).
 const DRIVES_LEDS: [LedRow; 7] = [
-    drive(DriveLedState::Off, "no supply", "check the control supply and its fuse"),
-    drive(DriveLedState::Alternating, "presence test", "wait until it has finished"),
+    drive(DriveLedState::Off, "no supply voltage", "check the control supply and its fuse"),
+    drive(DriveLedState::Alternating, "presence test in progress", "wait until the test has finished"),
     drive(
         DriveLedState::Red,
         "communication error with a requested drive",
-        "turn S3 to each drive to find the one affected. Check its cable, then acknowledge its fault (set parameter 197 to 0)",
+        "set switch S3 to each drive in turn to find the affected one. Check its cable, then acknowledge its fault (set parameter 197 to 0)",
     ),
     drive(
         DriveLedState::RedGreen,
-        "error of a requested drive",
-        "turn S3 to each drive to find the one affected. Read its errors, remove the cause, then acknowledge",
+        "a requested drive has an error",
+        "set switch S3 to each drive in turn to find the affected one. Read its errors, correct their causes, then acknowledge them",
     ),
     drive(
         DriveLedState::GreenFlashing,
         "a connected drive is not requested. No drive has an error",
-        "set its parameter 152 to 1, or unplug it",
+        "set parameter 152 of the drive to 1, or unplug the drive",
     ),
     drive(
         DriveLedState::RedGreenFlashing,
         "a drive that is not requested has an error",
-        "request the drive (parameter 152 = 1) and read its errors, or unplug it",
+        "request the drive (parameter 152 = 1) and read its errors, or unplug the drive",
     ),
     drive(
         DriveLedState::Green,
-        "the connected drives are exactly the requested ones. No drive has an error",
+        "all requested drives are connected, and no others. No drive has an error",
         "no action needed",
     ),
 ];
@@ -181,20 +181,29 @@ const DRIVE_LEDS: [LedRow; 4] = [
         "communication error",
         "check the drive's cable, then acknowledge its fault (set parameter 197 to 0)",
     ),
-    drive(DriveLedState::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
-    drive(DriveLedState::Green, "the drive has no error", "turn S3 back to 0, or the bus cannot move the drive"),
+    drive(DriveLedState::RedGreen, "drive error", "read the errors, correct their causes, then acknowledge them"),
+    drive(
+        DriveLedState::Green,
+        "the drive has no error",
+        "set switch S3 back to 0; otherwise, the drive cannot be moved over the bus",
+    ),
 ];
 
 /// States of the two LEDs of port P1 or P2.
 pub const PORT_LEDS: [PortLedRow; 3] = [
     port(PortLedState::Off, "no network link", "check the cable and the device at its other end"),
-    port(PortLedState::Link, "network link, no data traffic", "no action needed"),
-    port(PortLedState::Active, "network link, data traffic", "no action needed"),
+    port(PortLedState::Link, "network link without data traffic", "no action needed"),
+    port(PortLedState::Active, "network link with data traffic", "no action needed"),
 ];
 
 /// States of the MS and NS LEDs.
 pub const BUS_LEDS: [NetworkLedRow; 12] = [
-    network_led_row(NetworkLed::Module, NetworkLedState::Off, "no supply", "check the control supply and its fuse"),
+    network_led_row(
+        NetworkLed::Module,
+        NetworkLedState::Off,
+        "no supply voltage",
+        "check the control supply and its fuse",
+    ),
     network_led_row(NetworkLed::Module, NetworkLedState::Green, "the device is operating", "no action needed"),
     network_led_row(
         NetworkLed::Module,
@@ -206,7 +215,7 @@ pub const BUS_LEDS: [NetworkLedRow; 12] = [
         NetworkLed::Module,
         NetworkLedState::RedFlashing,
         "recoverable fault",
-        "read the errors and remove the cause",
+        "read the errors and correct their causes",
     ),
     network_led_row(
         NetworkLed::Module,
@@ -214,7 +223,12 @@ pub const BUS_LEDS: [NetworkLedRow; 12] = [
         "unrecoverable fault",
         "switch the device off and on. If the fault remains, have it repaired",
     ),
-    network_led_row(NetworkLed::Module, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
+    network_led_row(
+        NetworkLed::Module,
+        NetworkLedState::Alternating,
+        "self-test in progress",
+        "wait until the test has finished",
+    ),
     network_led_row(
         NetworkLed::Network,
         NetworkLedState::Off,
@@ -240,7 +254,12 @@ pub const BUS_LEDS: [NetworkLedRow; 12] = [
         "another device has the same address",
         "assign a different address to one of them",
     ),
-    network_led_row(NetworkLed::Network, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
+    network_led_row(
+        NetworkLed::Network,
+        NetworkLedState::Alternating,
+        "self-test in progress",
+        "wait until the test has finished",
+    ),
 ];
 
 impl LedSubject {

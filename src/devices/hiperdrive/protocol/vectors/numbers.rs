@@ -290,7 +290,7 @@ fn error_variant_led_and_switch_tables_match_the_reference() {
     assert_eq!((variant(9), variant(0), variant(0xFFFF)), (Some(("HDA30E", Family::Short)), None, None));
     let all = LedSubject::Drives.row(DriveLedState::RedGreen).map(|row| row.meaning);
     let one = LedSubject::Drive.row(DriveLedState::RedGreen).map(|row| row.meaning);
-    assert_eq!((all, one), (Some("error of a requested drive"), Some("drive error")));
+    assert_eq!((all, one), (Some("a requested drive has an error"), Some("drive error")));
     assert!(LedSubject::Drive.row(DriveLedState::Alternating).is_none());
     let twins = |row: &NetworkLedRow| {
         BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count()
