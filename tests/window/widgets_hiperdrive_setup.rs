@@ -52,11 +52,11 @@ impl Screen {
 #[test]
 fn clicking_leds_sets_the_observed_states() {
     let mut screen = page("sim:", "page.diagnosis");
-    assert!(screen.shows("The connected drives are exactly the requested ones. No drive has an error."));
+    assert!(screen.shows("All requested drives are connected, and no others. No drive has an error."));
     screen.press(Role::RadioButton, "Device: Bus adapter");
     assert!(screen.shows("The drive has no error."));
     screen.press(Role::Button, "RS485: green");
-    assert!(screen.shows("No supply.") && screen.shows("Check the control supply and its fuse."));
+    assert!(screen.shows("No supply voltage.") && screen.shows("Check the control supply and its fuse."));
     screen.press(Role::RadioButton, "Device: Hub");
     screen.press(Role::RadioButton, "Switch S3: 3");
     assert!(
@@ -204,12 +204,12 @@ fn parameters_can_be_typed_into_their_table() {
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) is read-only"));
     // The typed text counts before other lines are shown, and before there are none.
-    begin(&mut screen, "172 Jog 1, speed");
-    screen.put("172 Jog 1, speed", "50");
+    begin(&mut screen, "172 Jog 1 speed");
+    screen.put("172 Jog 1 speed", "50");
     screen.press(Role::RadioButton, "Show: Changed");
     assert_eq!(edits(&screen), [(166, Some(350), Some(300)), (172, Some(100), Some(50))]);
-    begin(&mut screen, "172 Jog 1, speed");
-    screen.put("172 Jog 1, speed", "100");
+    begin(&mut screen, "172 Jog 1 speed");
+    screen.put("172 Jog 1 speed", "100");
     screen.press(Role::RadioButton, "Show: Scaling");
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(screen.shows("Spindle pitch"));

@@ -13,15 +13,17 @@ pub struct Item(pub ParameterNumber);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
     /// The string does not have the form of a parameter name.
-    #[error("{0:?} is not a parameter; enter a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
+    #[error(
+        "{0:?} is not a parameter; enter a number such as 47 or 158 (for another drive, use \"158 drive 2\" or 258)"
+    )]
     Unknown(String),
     /// The manual does not list a parameter with this number.
     #[error("parameter {0} does not exist")]
     NoParameter(u16),
     /// The parameter does not belong to a drive, or the drive number is not in the range 1 to 8.
     #[error(
-        "parameter {number} does not belong to drive {drive}: drives are 1 to 8, and parameters below 100 belong to the \
-         device"
+        "parameter {number} does not belong to drive {drive}: drives are numbered 1 to 8, and parameters below 100 belong \
+         to the device"
     )]
     NoDrive {
         /// Parameter number in the string.

@@ -40,7 +40,7 @@ pub enum ValueError {
         got: usize,
     },
     /// The number exceeds the range of the type.
-    #[error("{number} is not within {low} to {high}")]
+    #[error("{number} is outside the range {low} to {high}")]
     Number {
         /// Rejected number.
         number: i64,

@@ -176,7 +176,7 @@ mod tests {
         assert_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
         assert_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four-wire cables only"]);
         assert_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
-        assert_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5-pin, A-coded)", "M6"]);
+        assert_notes(&TEXTS, &WIRING, &["control supply 1 +24 V, 3 GND (5-pin, A-coded)", "M6"]);
         assert_notes(&TEXTS, &WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
         assert_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub must be set to 0"]);
     }

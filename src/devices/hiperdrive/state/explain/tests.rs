@@ -37,7 +37,7 @@ fn invalid_input_names_cause_and_remedy() {
         OutOfRange { number: number(166), name: "maximum speed", value: 351, range: ParameterRange::Within(5, 350) };
     assert_eq!(
         english(&device_error_text(&Error::OutOfRange(out))),
-        "Parameter 166 (Maximum speed) cannot be set to 351. Allowed: 5 to 350."
+        "Parameter 166 (Maximum speed) cannot be set to 351. Allowed values: 5 to 350."
     );
     let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
     assert!(
@@ -53,7 +53,7 @@ fn invalid_input_names_cause_and_remedy() {
         "Drive 1 rejected the request because its parameter 152 (Requested) is 0. Set this parameter to 1 first."
     );
     let switch = end_text(ActionEnd::NotStarted, literal_text);
-    assert!(english(&switch).contains("S3 of the hub is at 0"), "{}", english(&switch));
+    assert!(english(&switch).contains("S3 of the hub is set to 0"), "{}", english(&switch));
     let master = device_error_text(&Error::OtherMaster { extended: 0x0106 });
     assert!(
         english(&master).starts_with("Another master already controls these drives (0x0106). Close its connection"),
