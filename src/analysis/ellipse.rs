@@ -28,7 +28,7 @@ pub struct Ellipse {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// The fit has too few points. An ellipse has five parameters, and one more point is needed to assess the fit.
-    #[error("{points} points where {least} are needed", least = MIN_POINTS)]
+    #[error("{points} points are too few: at least {least} are required", least = MIN_POINTS)]
     TooFew { points: usize },
     #[error("sample {index} is not a finite number")]
     NotFinite {
@@ -43,7 +43,7 @@ pub enum FitError {
     #[error("the points lie on a line")]
     Line,
     /// The input has fewer than six distinct points, or more than one ellipse passes through them.
-    #[error("the points do not tell one ellipse from another")]
+    #[error("the points do not determine a single ellipse")]
     Ambiguous,
     /// The best-fitting curve is a parabola or a hyperbola, or the points are too close to the centre.
     #[error("the points do not lie on an ellipse")]

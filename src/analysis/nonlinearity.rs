@@ -30,13 +30,13 @@ pub struct Deviation {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NonlinearityError {
     /// The reference angle reverses or does not change.
-    #[error("the reference does not run on at sample {index}")]
+    #[error("the reference reverses or does not change at sample {index}")]
     NotMonotonic {
         /// Sample index, counted from 0.
         index: usize,
     },
     /// The data cover less than two periods, or a period has fewer than four samples.
-    #[error("two periods with at least four samples each are needed")]
+    #[error("at least two periods with at least four samples each are required")]
     TooLittle,
     /// A sample is not a finite number, or `periods` is zero.
     #[error("a sample is not a number")]

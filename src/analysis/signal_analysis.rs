@@ -40,13 +40,13 @@ pub enum AnalysisError {
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The capture covers too little of a period for a reliable ellipse.
-    #[error("samples in {octants} of 8 octants where {least} are needed", least = MIN_OCTANTS)]
+    #[error("the samples cover {octants} of 8 octants, but at least {least} are required", least = MIN_OCTANTS)]
     Coverage { octants: u32 },
     /// All samples lie around one point away from zero. The signal is present, and the shaft is at rest.
-    #[error("all samples lie around one point")]
+    #[error("all samples are close to a single point")]
     AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
-    #[error("the samples are {share:.2} of the amplitude off the ellipse")]
+    #[error("the samples deviate from the ellipse by {share:.2} of the amplitude")]
     NoSignal {
         /// Rms distance from the ellipse as a fraction of the amplitude.
         share: f64,

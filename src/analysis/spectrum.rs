@@ -21,10 +21,10 @@ pub struct SpectralLine {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
     /// A spectrum requires at least eight samples.
-    #[error("{samples} samples where 8 are needed")]
+    #[error("{samples} samples are too few: at least 8 are required")]
     TooFew { samples: usize },
     /// The times are not evenly spaced.
-    #[error("the time from sample {index} to the next is not that of the others")]
+    #[error("the time between sample {index} and the next one differs from the others")]
     Uneven {
         /// Index of the sample before the uneven step, counted from 0.
         index: usize,

@@ -124,7 +124,7 @@ fn ready_made_profiles_parse() {
 fn an_unknown_kind_is_reported_with_the_known_ones() {
     let error = ProfileDocument::parse("(schema: 1, device: \"sse\")", program().studio.formats).unwrap_err();
     let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
-    assert_eq!(error.to_string(), format!("device \"sse\"; this program knows {known}"));
+    assert_eq!(error.to_string(), format!("device \"sse\" is not supported (supported: {known})"));
     assert!(matches!(error, ProfileError::Device { found, .. } if found == "sse"));
 }
 

@@ -31,7 +31,7 @@ pub enum ProfileError {
     },
     /// The schema version is missing or newer than supported. A newer version is an error only if the caller requires a
     /// known schema.
-    #[error("schema {found}; this program knows schema 1 to {known}")]
+    #[error("schema {found} is not supported (supported: 1 to {known})")]
     Schema {
         /// Version in the file.
         found: u32,
@@ -39,7 +39,7 @@ pub enum ProfileError {
         known: u32,
     },
     /// The profile is for an unknown kind of device.
-    #[error("device {found:?}; this program knows {}", quoted_list(known))]
+    #[error("device {found:?} is not supported (supported: {})", quoted_list(known))]
     Device {
         /// Kind of device in the file.
         found: String,
@@ -47,7 +47,7 @@ pub enum ProfileError {
         known: Vec<&'static str>,
     },
     /// The profile is for a different kind of device than required.
-    #[error("a profile of a {found} device where one of a {wanted} device is needed")]
+    #[error("the profile is for a {found} device, not for a {wanted} device")]
     OtherKind {
         /// Kind of device in the file.
         found: &'static str,

@@ -104,16 +104,16 @@ fn bodies_are_equal_if_kind_and_content_are() {
 fn an_unknown_kind_is_reported_with_the_known_ones() {
     let told = |formats| ProfileDocument::parse("(schema: 1, device: \"tap\")", formats).unwrap_err().to_string();
     let three = ProfileFormats::new(&[Lamp::FORMAT, Fan::FORMAT, Lamp::FORMAT]);
-    assert_eq!(told(Lamp::FORMATS), "device \"tap\"; this program knows \"lamp\"");
-    assert_eq!(told(FORMATS), "device \"tap\"; this program knows \"lamp\" and \"fan\"");
-    assert_eq!(told(three), "device \"tap\"; this program knows \"lamp\", \"fan\" and \"lamp\"");
+    assert_eq!(told(Lamp::FORMATS), "device \"tap\" is not supported (supported: \"lamp\")");
+    assert_eq!(told(FORMATS), "device \"tap\" is not supported (supported: \"lamp\" and \"fan\")");
+    assert_eq!(told(three), "device \"tap\" is not supported (supported: \"lamp\", \"fan\" and \"lamp\")");
 }
 
 #[test]
 fn a_profile_of_another_kind_names_both() {
     let error = lamp("red").into_profile::<Fan>().unwrap_err();
     assert_eq!(error, lamp("red").wrong_kind_error(Fan::KIND));
-    assert_eq!(error.to_string(), "a profile of a lamp device where one of a fan device is needed");
+    assert_eq!(error.to_string(), "the profile is for a lamp device, not for a fan device");
     assert_eq!(Body::new(Fan).into_profile(), Ok(Fan));
 }
 

@@ -15,7 +15,7 @@ pub enum ReadCaptureError {
     /// The file contains no capture.
     #[error(transparent)]
     Capture(#[from] CaptureError),
-    #[error("given up")]
+    #[error("cancelled")]
     Cancelled,
 }
 

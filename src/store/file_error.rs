@@ -46,10 +46,10 @@ pub enum FileErrorKind {
     #[error("it is a folder")]
     IsFolder,
     /// The path refers to a pipe or a device.
-    #[error("it is no file but a pipe or a device")]
+    #[error("it is a pipe or a device, not a file")]
     NotAFile,
     /// The file exists and must not be replaced.
-    #[error("it exists already")]
+    #[error("it already exists")]
     Exists,
     #[error("permission denied")]
     PermissionDenied,
@@ -60,7 +60,7 @@ pub enum FileErrorKind {
     #[error("the disk is full")]
     DiskFull,
     /// Another program has kept the file locked for several seconds.
-    #[error("another program keeps it locked")]
+    #[error("it is locked by another program")]
     InUse,
     /// The file is larger than any file that the program writes.
     #[error("it is larger than {limit} bytes")]
@@ -69,7 +69,7 @@ pub enum FileErrorKind {
         limit: u64,
     },
     /// The file is not text, or uses another encoding.
-    #[error("it is not UTF-8 text: byte {offset} does not fit")]
+    #[error("it is not UTF-8 text: byte {offset} is not valid")]
     NotUtf8 {
         /// Offset of the first invalid byte, counted from 0.
         offset: usize,

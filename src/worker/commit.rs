@@ -53,13 +53,13 @@ pub enum NotStarted {
     #[error("the consent is for another plan")]
     OtherPlan,
     /// The number of earlier write cycles cannot be read, or the new ones cannot be counted.
-    #[error("the write cycles so far are not known, {cost} more would not be counted")]
+    #[error("the number of previous write cycles is unknown, so {cost} more cannot be counted")]
     WearUnknown {
         /// Number of write cycles required by the plan.
         cost: u64,
     },
     /// The write would exceed the limit of write cycles of the device.
-    #[error("{seen} write cycles seen, {cost} more would exceed {limit}")]
+    #[error("{cost} more write cycles would exceed the limit of {limit} ({seen} counted so far)")]
     Worn {
         /// Number of known write cycles.
         seen: u64,

@@ -213,7 +213,7 @@ pub enum SubmitError {
     #[error("busy with another job")]
     Busy,
     /// The channel is full of unread events, which must be read first.
-    #[error("what was told is not read")]
+    #[error("the channel is full of unread events")]
     Unread,
     /// The worker has ended.
     #[error("the session has ended")]

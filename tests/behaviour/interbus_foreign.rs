@@ -112,7 +112,7 @@ fn faults_of_the_encoder_or_another_master_are_reported() {
     }
     let Some(foreign) = bench.gateway(&["--second-master=00000000:1"]) else { return };
     let error = session(&bench, &foreign, "?handshake=300").run_inline(InterbusJob::Identify).unwrap_err();
-    let expected = "another master writes to the encoder: OUT is 00000000, but 20210009 was written";
+    let expected = "another master is writing to the encoder: OUT is 00000000, but 20210009 was written";
     assert_eq!(error.to_string(), expected);
 }
 

@@ -10,7 +10,7 @@ const BLOCK: usize = 254;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CobsError {
     /// A byte within the packet is 00, which is only allowed at its end. The value is the index of the byte.
-    #[error("00 stands within the packet, at byte {0}")]
+    #[error("byte {0} of the packet is 00")]
     Zero(usize),
     /// The packet ends before the block of its last code byte. The value is the number of missing bytes.
     #[error("the packet ends {0} bytes too early")]

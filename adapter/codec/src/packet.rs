@@ -26,10 +26,10 @@ pub enum PacketError {
     #[error(transparent)]
     Cobs(#[from] CobsError),
     /// The length is below four bytes or above the maximum. The value is the length.
-    #[error("{0} bytes are not the length of a packet")]
+    #[error("{0} bytes is not a valid packet length")]
     Length(usize),
     /// The checksum does not match.
-    #[error("CRC {got:04X} where {expected:04X} was expected")]
+    #[error("CRC {got:04X} instead of {expected:04X}")]
     Crc {
         /// Checksum of the received bytes.
         expected: u16,

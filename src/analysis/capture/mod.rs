@@ -48,7 +48,7 @@ pub enum CaptureError {
     #[error("it is empty")]
     Empty,
     /// No line has numbers in two or more columns.
-    #[error("no line has numbers")]
+    #[error("no line contains numbers")]
     NoNumbers,
     #[error("it has one column")]
     OneColumn,
@@ -56,7 +56,7 @@ pub enum CaptureError {
     #[error("it has {columns} columns")]
     TooFewColumns { columns: usize },
     /// A row ends before a required column.
-    #[error("row {row} has {columns} columns, {needed} are needed")]
+    #[error("row {row} has {columns} columns, but {needed} are required")]
     ShortRow {
         /// Line number in the file, counted from 1.
         row: u64,
@@ -72,7 +72,7 @@ pub enum CaptureError {
         text: String,
     },
     /// An absolute position is not a whole number of steps.
-    #[error("row {row}, column {column}: {text} is no whole number")]
+    #[error("row {row}, column {column}: {text} is not a whole number")]
     NotWhole {
         /// Line number in the file, counted from 1.
         row: u64,
@@ -90,7 +90,7 @@ pub enum CaptureError {
         text: String,
     },
     /// More than half of the rows have no measured value.
-    #[error("{left_out} of {rows} rows have no value, the first is row {row}")]
+    #[error("{left_out} of {rows} rows have no value (the first one is row {row})")]
     NoValues {
         /// Number of rows without a measured value.
         left_out: u64,
@@ -99,13 +99,15 @@ pub enum CaptureError {
         row: u64,
     },
     /// The header names a start time and an increment, but the line below does not contain their values.
-    #[error("the header names Start and Increment, and row {row} has no numbers for them")]
+    #[error("the header contains Start and Increment, but row {row} has no numbers for them")]
     NoSampleClock {
         /// Line number in the file, counted from 1.
         row: u64,
     },
     /// The header gives a start time and an increment, but a field in the sample number column is not a sample number.
-    #[error("row {row}, column {column}: {text} is no sample number, though the header names Start and Increment")]
+    #[error(
+        "row {row}, column {column}: {text} is not a sample number, although the header contains Start and Increment"
+    )]
     NotASampleNumber {
         /// Line number in the file, counted from 1.
         row: u64,
@@ -114,7 +116,7 @@ pub enum CaptureError {
         text: String,
     },
     /// A quotation mark is not closed, so everything after it belongs to one field.
-    #[error("row {row} has a quotation mark that is not closed")]
+    #[error("row {row} has no closing quotation mark")]
     OpenQuote {
         /// Line number in the file, counted from 1.
         row: u64,

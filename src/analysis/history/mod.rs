@@ -93,10 +93,10 @@ impl<'a> ColumnPart<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BatchError {
     /// The number of columns, values or flags does not match, or a column has values of the wrong kind.
-    #[error("the batch does not have the history's columns")]
+    #[error("the columns of the batch differ from those of the history")]
     Shape,
     /// A sample is earlier than its predecessor.
-    #[error("the time goes back at sample {at} of the batch")]
+    #[error("the time decreases at sample {at} of the batch")]
     TimeGoesBack {
         /// Index of the sample in the batch.
         at: usize,

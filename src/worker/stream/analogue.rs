@@ -18,7 +18,7 @@ const LATE_NS: i64 = 250_000_000;
 
 /// The error for samples whose settings are no longer stored, because the source was changed too often in the meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the settings of samples that are due are forgotten")]
+#[error("the settings for the requested samples are no longer stored")]
 pub struct StaleSettings;
 
 /// A virtual analogue source driven by a clock.

@@ -170,7 +170,7 @@ fn wrong_widths_are_reported() {
     let error = bus.master().position().unwrap_err();
     assert_eq!(
         error.to_string(),
-        "21 frames in a row have a wrong CRC: the encoder's have not 27+6 bits",
+        "21 frames in a row have a wrong CRC: frames of the encoder do not have 27+6 bits",
         "five tries, and sixteen more"
     );
     bus.station.layout = None;

@@ -278,8 +278,8 @@ fn a_device_id_without_a_description_is_reported() {
     let survey = device::read_all_registers(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap();
     assert_eq!(
         survey.identity.mismatch.as_ref().unwrap().to_string(),
-        "the encoder says profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01; the description \"POSITAL \
-         IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 02"
+        "the encoder reports profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01, but the description \
+         \"POSITAL IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 02"
     );
     assert_eq!(survey.identity.description.name(), "BiSS C encoder");
     assert_eq!((survey.status.mode, survey.status.celsius), (None, None));

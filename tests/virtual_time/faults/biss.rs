@@ -107,7 +107,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
                     case.course.iter().map(|(data, preset, filter, _)| (data.clone(), *preset, *filter, false)),
                 );
             }
-            if told.contains(" after writing ") {
+            if told.contains(" was read back") {
                 // A byte did not arrive, and the others were saved: the error names it.
                 let mut mixed = left.clone();
                 mixed.1 = after.1;

@@ -127,7 +127,7 @@ fn a_changed_device_or_value_stops_the_write() {
 fn out_of_range_values_name_both_limits_of_host_and_device() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
-    assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400: it may be 5 to 350");
+    assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400 (allowed: 5 to 350)");
     // The drive has turned meanwhile: the plan does not include it, and the device rejects the request.
     let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
     let now = stand.clock.now();
@@ -136,16 +136,16 @@ fn out_of_range_values_name_both_limits_of_host_and_device() {
     let Error::Refuses(out) = &error else { panic!("{error}") };
     // 512 turns of 65536 steps.
     assert_eq!(out.range, ParameterRange::Within(-33_554_432, 640), "no lower limit above the position");
-    assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000: it may be -33554432 to 640");
+    assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000 (allowed: -33554432 to 640)");
 }
 
 #[test]
 fn read_only_and_motion_parameters_are_refused_without_a_request() {
     let mut stand = Stand::new("");
     for (own, why) in [
-        (107, "parameter 107 (actual position) can only be read"),
-        (101, "parameter 101 (control word) moves the drive and is never written as a parameter"),
-        (104, "parameter 104 (target position) moves the drive and is never written as a parameter"),
+        (107, "parameter 107 (actual position) is read-only"),
+        (101, "parameter 101 (control word) moves the drive and cannot be written as a value"),
+        (104, "parameter 104 (target position) moves the drive and cannot be written as a value"),
     ] {
         let error = stand.prepare(Change::Write(image(&[(own, 1)]))).unwrap_err();
         assert_eq!(error.to_string(), why);

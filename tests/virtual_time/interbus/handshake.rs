@@ -161,7 +161,7 @@ fn a_stale_echo_is_skipped() {
 fn a_persistent_echo_is_named_after_the_timeout() {
     let (ended, ..) = carry_out(Script::new().on(STEPS, &[0xC600_0004]), worked_example());
     let cause = ended.unwrap_err().cause;
-    let expected = "no acknowledgement after OUT 020000FF within 2000 ms; IN is C6000004, the acknowledgement of another \
+    let expected = "no acknowledgement within 2000 ms after OUT 020000FF; IN is C6000004, the acknowledgement of another \
                     word";
     assert_eq!(cause.to_string(), expected);
 }
@@ -222,7 +222,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     // It never accepts it.
     let never = (0..9).fold(Script::new(), |script, _| script.on(0x2020_0010, &[0xA000_0007]));
     let interrupted = carry_out(never, cams(0, 0x15, 0x20, 1)).0.unwrap_err();
-    assert_eq!(interrupted.cause.to_string(), "cam:1:0 start is 7 after 21 was written");
+    assert_eq!(interrupted.cause.to_string(), "cam:1:0 start: 21 was written, but 7 was read back");
     assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "leading back may store what was set");
 }
 
@@ -294,7 +294,7 @@ fn another_master_is_detected_by_the_out_word() {
     assert_eq!(interrupted.cause, Error::OtherMaster { sent: STEPS, output: 0x2040_0001 });
     assert_eq!(
         interrupted.cause.to_string(),
-        "another master writes to the encoder: OUT is 20400001, but 020000FF was written"
+        "another master is writing to the encoder: OUT is 20400001, but 020000FF was written"
     );
 }
 
@@ -317,7 +317,7 @@ fn a_missing_echo_position_or_value_is_reported_with_its_words() {
     let mut station = station("handshake=500");
     let script = Script::new().on(0x2021_0000, &[POSITION]);
     let error = identify(&mut Master::for_job(script, &mut station)).unwrap_err();
-    assert_eq!(error.to_string(), "no value after OUT 20210000 within 500 ms; IN is 000004D2");
+    assert_eq!(error.to_string(), "no value within 500 ms after OUT 20210000; IN is 000004D2");
 }
 
 #[test]
@@ -326,7 +326,7 @@ fn swapped_words_are_suspected() {
     // 1234h in the first register, 0 in the second.
     let script = Script::new().on(0x2021_0009, &[0x1234_0000]);
     let error = identify(&mut Master::for_job(script, &mut station)).unwrap_err();
-    assert_eq!(error.to_string(), "IN 12340000 makes sense as 00001234 only: the word order may be swapped");
+    assert_eq!(error.to_string(), "IN 12340000 is plausible only as 00001234: the word order may be swapped");
 }
 
 /// The manual does not define what ends a mode: an encoder that returns to its position with `00000000` is kept in its
@@ -382,10 +382,7 @@ fn words_with_another_meaning_in_the_current_mode_are_not_sent() {
     // Nor after that: the effect of 20800000 there is not known.
     for wanted in [StartupMode::K3, StartupMode::Velocity, StartupMode::Cams(program(1))] {
         let error = select(&mut master, wanted).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "the encoder is in the unknown mode 85: values were read and nothing else was sent"
-        );
+        assert_eq!(error.to_string(), "the encoder is in the unknown mode 85, so only values were read");
     }
     let sent = sent.lock().unwrap();
     assert!(sent.iter().all(|word| *word == 0 || word >> 16 == 0x2021), "{sent:08X?}");

@@ -259,7 +259,7 @@ fn the_device_check_reports_faults() {
         "nothing is sent into the wrong half"
     );
     let error = stand.run(InterbusJob::Identify).unwrap_err();
-    assert_eq!(error.to_string(), "IN C6BF002D makes sense as 002DC6BF only: the word order may be swapped");
+    assert_eq!(error.to_string(), "IN C6BF002D is plausible only as 002DC6BF: the word order may be swapped");
     // Left in parameterisation.
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));

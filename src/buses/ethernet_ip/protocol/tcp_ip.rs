@@ -40,23 +40,23 @@ pub struct InterfaceConfiguration {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// The address is 0.0.0.0.
-    #[error("0.0.0.0 is no address: type the one that the device is to have")]
+    #[error("0.0.0.0 is not a valid device address: enter the address for the device")]
     None,
     /// The address is reserved.
-    #[error("{0} cannot be a device's address: it is kept for the computer itself, for groups or for later")]
+    #[error("{0} is reserved (loopback, multicast or future use): enter a different address")]
     Reserved(Ipv4Addr),
     /// The mask does not consist of ones followed by zeros, or leaves too few addresses.
-    #[error("{0} is no mask: ones come first and zeros behind them, at least two of these, as in 255.255.255.0")]
+    #[error("{0} is not a valid subnet mask: enter a mask such as 255.255.255.0 (at most 255.255.255.252)")]
     Mask(Ipv4Addr),
     /// The address is the network address.
-    #[error("{0} is its network itself: choose one between the first and the last address")]
+    #[error("{0} is the address of the network itself: enter the address of a host in this network")]
     Network(Ipv4Addr),
     /// The address is the broadcast address of its network.
-    #[error("{0} goes to all devices of its network: choose one between the first and the last address")]
+    #[error("{0} is the broadcast address of the network: enter the address of a host in this network")]
     Broadcast(Ipv4Addr),
     /// The gateway is outside the network.
     #[error(
-        "the gateway {gateway} is outside the network {network}/{prefix}: choose one inside it, or 0.0.0.0 for none"
+        "the gateway {gateway} is outside the network {network}/{prefix}: enter an address in this network, or 0.0.0.0"
     )]
     GatewayOutside {
         /// Gateway address outside the network.
@@ -67,10 +67,10 @@ pub enum AddressError {
         prefix: u32,
     },
     /// The gateway is the device itself, or a network or broadcast address.
-    #[error("the gateway cannot be {0}: it is another device's address in the same network, or 0.0.0.0 for none")]
+    #[error("{0} cannot be used as the gateway: enter the address of another device in the network, or 0.0.0.0")]
     Gateway(Ipv4Addr),
     /// The domain name is invalid. A valid name has up to 48 letters, digits, hyphens and dots.
-    #[error("{0:?} is no domain name: it has letters, digits, hyphens and points, 48 at most")]
+    #[error("{0:?} is not a valid domain name: use at most 48 letters, digits, hyphens and dots")]
     Domain(String),
 }
 

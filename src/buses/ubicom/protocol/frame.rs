@@ -22,10 +22,10 @@ pub struct Frame<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// The first byte is not 80h.
-    #[error("a frame begins with 80, not with {0:02X}")]
+    #[error("the first byte of the frame is {0:02X} instead of 80")]
     Sync(u8),
     /// The length differs from the length in the header.
-    #[error("{got} bytes where the frame has {expected}")]
+    #[error("{got} bytes instead of {expected} for the frame")]
     Length {
         /// Length of the complete frame in bytes, or of the shortest frame if the header is incomplete.
         expected: usize,
@@ -33,7 +33,7 @@ pub enum FrameError {
         got: usize,
     },
     /// The last byte is not the inverted sum of all preceding bytes.
-    #[error("checksum {got:02X} where {expected:02X} was expected")]
+    #[error("checksum {got:02X} instead of {expected:02X}")]
     Checksum {
         /// Checksum calculated over the received bytes.
         expected: u8,

@@ -45,7 +45,7 @@ pub enum RequestError {
     #[error("0x{0:02X} is not a command")]
     Command(u8),
     /// The payload length does not match the command.
-    #[error("{got} payload bytes where {expected} belong")]
+    #[error("{got} payload bytes instead of {expected}")]
     Length {
         /// Required payload length in bytes.
         expected: usize,

@@ -36,7 +36,7 @@ mod tests {
         let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
         let [folder, latin, broken] = texts.as_slice() else { panic!("{texts:?}") };
         assert!(folder.contains("folder.ron: it is a folder"), "{folder}");
-        assert!(latin.contains("latin.ron: it is not UTF-8 text: byte 8 does not fit"), "{latin}");
+        assert!(latin.contains("latin.ron: it is not UTF-8 text: byte 8 is not valid"), "{latin}");
         assert!(broken.contains("broken.ron, line 3, column "), "{broken}");
     }
 }

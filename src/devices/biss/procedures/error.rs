@@ -40,7 +40,7 @@ pub enum Error {
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged { requested: RequestedItem, tries: u32, cause: ReplyDamage },
     /// Bytes keep arriving although the line must be silent.
-    #[error("the line is never silent")]
+    #[error("the line is never idle")]
     NeverSilent,
     #[error(transparent)]
     Adapter(#[from] AdapterError),
@@ -55,7 +55,7 @@ pub enum Error {
     #[error("the data line stays high (attempts: {tries})")]
     StuckHigh { tries: u32 },
     /// No frame has ever had a correct checksum, so the assumed widths do not match the encoder.
-    #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
+    #[error("{frames} frames in a row have a wrong CRC: frames of the encoder do not have {data_bits}+{crc_bits} bits")]
     WrongWidths {
         frames: u32,
         /// Assumed number of position, error and warning bits.
@@ -64,12 +64,12 @@ pub enum Error {
         crc_bits: u8,
     },
     /// The frame widths are unknown, and no frame length fits the checksums.
-    #[error("no length of the frames fits their CRC")]
+    #[error("no frame length matches the CRC of the frames")]
     WidthsUnknown { moving: bool },
     #[error("the encoder has no register {address}")]
     NoSuchRegister { address: RegisterAddress },
     /// Registers of a data area cannot be watched, because they are only read at standstill.
-    #[error("register {address} is data, which is not read while the shaft may turn")]
+    #[error("register {address} contains data, which cannot be read while the shaft may turn")]
     NotWatched { address: RegisterAddress },
     #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
@@ -80,7 +80,7 @@ pub enum Error {
     },
     /// It is unknown whether the value was accepted, because the register cannot be read back or the value read back
     /// proves nothing.
-    #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
+    #[error("it is not known whether 0x{value:02X} was written to register {address}: {cause}")]
     Unclear {
         address: RegisterAddress,
         value: u8,
@@ -90,7 +90,7 @@ pub enum Error {
     #[error("cancelled")]
     Cancelled,
     /// The byte order of register numbers is unknown, because the reply of the encoder is not defined for either order.
-    #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
+    #[error("the byte order of register numbers cannot be derived from the encoder's reply 0x{answer:02X}")]
     OrderUnknown { answer: u8 },
     /// The position has more bits than the encoder's known frame.
     #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
@@ -101,14 +101,14 @@ pub enum Error {
         singleturn: u8,
     },
     /// The registers extend beyond the last address.
-    #[error("{count} registers from {start} on are more than there can be")]
+    #[error("{count} registers from {start} extend past the last register")]
     OutOfRange { start: RegisterAddress, count: usize },
     /// No description applies to this encoder, and there is no general description.
-    #[error("no description fits the encoder, which says {0}")]
+    #[error("no description matches the encoder, which reports {0}")]
     NoDescription(Identity),
     #[error("the encoder was not identified")]
     NotIdentified,
-    #[error("the shaft moves")]
+    #[error("the shaft is moving")]
     Moving {
         /// Speed in revolutions per minute, positive clockwise. `None` if the encoder counts too few turns.
         rpm: Option<f64>,
@@ -118,10 +118,10 @@ pub enum Error {
     NotInOperation { mode: DeviceMode },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
-    #[error("{requested}: the reply is of another kind: {reply}")]
+    #[error("unexpected kind of reply while {requested}: {reply}")]
     OtherReply { requested: RequestedItem, reply: String },
     /// The adapter reports a frame status that the bridge protocol does not define.
-    #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
+    #[error("the adapter reports the unknown frame status 0x{status:02X}")]
     FrameStatus {
         /// Status byte from the adapter.
         status: u8,
@@ -129,7 +129,7 @@ pub enum Error {
     #[error(transparent)]
     Layout(#[from] LayoutError),
     /// Fewer registers were read than requested.
-    #[error("{got} registers were read from {start} on, not {expected}")]
+    #[error("{got} registers were read from {start} instead of {expected}")]
     TooFew { start: RegisterAddress, expected: usize, got: usize },
     /// The encoder does not return to operation, or its password remains set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]

@@ -16,7 +16,7 @@ pub struct RegisterRange {
 
 /// The error for a string that does not name any registers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not an item; items are 0x40 to 0x7F, BANK:OFFSET as 0x24:0x10, and either with +COUNT behind it")]
+#[error("{0:?} is not an item; items are 0x40 to 0x7F or BANK:OFFSET such as 0x24:0x10, either with +COUNT appended")]
 pub struct ItemError(pub String);
 
 impl RegisterRange {

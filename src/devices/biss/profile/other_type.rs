@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::Identity;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeMismatch {
     /// The reported identities differ.
-    #[error("the profile is of {profile}, the encoder says {device}")]
+    #[error("the profile is for {profile}, but the encoder reports {device}")]
     Kind {
         /// Identity in the profile.
         profile: Box<Identity>,
@@ -19,7 +19,7 @@ pub enum TypeMismatch {
         device: Box<Identity>,
     },
     /// The position widths differ.
-    #[error("the profile is of an encoder with {profile} bits, the encoder has {device}")]
+    #[error("the profile is for an encoder with {profile} bits, but the encoder has {device}")]
     Width {
         /// Widths in the profile.
         profile: Width,

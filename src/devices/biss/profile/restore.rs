@@ -29,7 +29,7 @@ pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from an encoder with a different serial number.
-    #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
+    #[error("the profile is for serial number {profile:?}, but the encoder has {device:?}")]
     OtherDevice {
         /// Serial number in the profile.
         profile: String,
@@ -40,7 +40,7 @@ pub enum PlanError {
     #[error(transparent)]
     TypeMismatch(#[from] TypeMismatch),
     /// The bank does not belong to a data area of the encoder, or cannot be written.
-    #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
+    #[error("bank 0x{bank:02X} is not a writable bank of user data")]
     NoBank {
         /// Number of the bank.
         bank: u8,
@@ -56,7 +56,7 @@ pub enum PlanError {
         bits: u8,
     },
     /// The code does not denote a filter.
-    #[error("0x{code:02X} is no filter")]
+    #[error("0x{code:02X} is not a valid filter")]
     UnknownFilter {
         /// Requested filter code.
         code: u8,
@@ -70,7 +70,7 @@ pub enum PlanError {
         description: String,
     },
     /// The encoder's firmware is too old for the request.
-    #[error("firmware {needed} is needed, the encoder has {found}")]
+    #[error("firmware {needed} is required, but the encoder has {found}")]
     FirmwareTooOld {
         /// Requested procedure.
         kind: ProcedureKind,
@@ -86,13 +86,13 @@ pub enum PlanError {
         address: RegisterAddress,
     },
     /// Only a procedure may write the register.
-    #[error("register {address} is written by the procedures alone")]
+    #[error("register {address} can be written only by the procedures")]
     Guarded {
         /// Address of the register.
         address: RegisterAddress,
     },
     /// The number of bytes does not match the size of the range.
-    #[error("{count} bytes are given for {range}")]
+    #[error("{range} cannot be written with {count} bytes")]
     ByteCount {
         /// Range to be written.
         range: RegisterRange,
@@ -100,14 +100,14 @@ pub enum PlanError {
         count: usize,
     },
     /// The calibration requires the balanced filter, but another filter is active.
-    #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
+    #[error("the calibration requires the balanced filter, but the filter is 0x{code:02X}")]
     NotBalanced {
         /// Code of the active filter.
         code: u8,
     },
     /// The drive of the motor closes its loop on this encoder, and the encoder provides no position during the
     /// procedure.
-    #[error("the motor is driven by this encoder's position, which is not there during the procedure")]
+    #[error("the motor is controlled with this encoder's position, which is not available during the procedure")]
     DrivenByThisEncoder,
 }
 

@@ -10,7 +10,7 @@ pub struct RegisterAddress(u16);
 
 /// The error for a string that is not a register address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no register: 0x40 to 0x7F stands for a direct one, BANK:OFFSET as 0x24:0x10 for one of a bank")]
+#[error("`{0}` is not a register: enter 0x40 to 0x7F for a direct register, or BANK:OFFSET such as 0x24:0x10")]
 pub struct AddressError(String);
 
 impl RegisterAddress {

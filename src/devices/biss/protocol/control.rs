@@ -45,10 +45,10 @@ enum RequestKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// The slave number is outside the range 0 to 7.
-    #[error("a slave has a number from 0 to 7, not {0}")]
+    #[error("the slave number must be from 0 to 7, not {0}")]
     Slave(u8),
     /// The range contains no register, or extends beyond 7Fh.
-    #[error("{count} registers from 0x{address:02X} on do not lie within 0x00 and 0x7F")]
+    #[error("{count} registers from 0x{address:02X} extend past 0x7F")]
     Range {
         /// Address of the first register.
         address: u8,
@@ -67,10 +67,10 @@ pub enum ControlError {
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
     /// The encoder delayed its reply for too many cycles.
-    #[error("the encoder does not give register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
+    #[error("the encoder did not return register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
     TimeOut(u8),
     /// The encoder's reply is damaged. A write may or may not have taken effect.
-    #[error("register 0x{address:02X}: CRC {got:X} where {expected:X} was expected")]
+    #[error("register 0x{address:02X}: CRC {got:X} instead of {expected:X}")]
     Crc {
         /// Address of the register.
         address: u8,

@@ -47,7 +47,7 @@ pub struct Identity {
 
 /// A mismatch between an encoder and its description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the encoder says {found}; the description \"{name}\" is for {expected}")]
+#[error("the encoder reports {found}, but the description \"{name}\" is for {expected}")]
 pub struct IdentityMismatch {
     /// Name of the description.
     pub name: String,

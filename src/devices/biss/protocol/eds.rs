@@ -143,7 +143,7 @@ pub struct Eds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of all other bytes.
-    #[error("EDS bank 0x{bank:02X}: checksum {got:02X} where {expected:02X} was expected")]
+    #[error("EDS bank 0x{bank:02X}: checksum {got:02X} instead of {expected:02X}")]
     Checksum {
         /// Number of the bank in the manual.
         bank: u8,
@@ -161,7 +161,7 @@ pub enum EdsError {
         code: u8,
     },
     /// The two banks disagree on the data length.
-    #[error("EDS: the data length is {common} bit in bank 0x02 and {encoder} bit in bank 0x03")]
+    #[error("EDS: the data length is {common} bits in bank 0x02 but {encoder} bits in bank 0x03")]
     DataLength {
         /// Data length in bank 2 (offset 15h).
         common: u8,

@@ -25,7 +25,7 @@ pub enum CycleError {
     #[error("the encoder is not ready")]
     NotReady,
     /// The samples end before the frame does.
-    #[error("{got} bits behind the start bit are too few for {expected}")]
+    #[error("{got} bits were received after the start bit instead of {expected}")]
     Short {
         /// Number of samples needed for the control bit and the frame.
         expected: usize,
@@ -33,7 +33,7 @@ pub enum CycleError {
         got: usize,
     },
     /// The line is high after the frame, although the time-out cannot be over yet.
-    #[error("the line is high behind the last bit: the frame is longer than {bits} bits")]
+    #[error("the line is high after the last bit: the frame is longer than {bits} bits")]
     TimeOut {
         /// Frame length in the layout, in bits.
         bits: u8,

@@ -67,7 +67,7 @@ pub enum FrameError {
         bits: u8,
     },
     /// The checksum does not match.
-    #[error("CRC {got:02X} where {expected:02X} was expected")]
+    #[error("CRC {got:02X} instead of {expected:02X}")]
     Crc {
         /// Checksum calculated from the other bits.
         expected: u32,

@@ -33,7 +33,7 @@ pub enum MemoryError {
     #[error("{0} has not been read")]
     NotRead(RegisterAddress),
     /// The register does not belong to an editable data area.
-    #[error("{0} is no plain data")]
+    #[error("{0} is not user data")]
     NoData(RegisterAddress),
 }
 

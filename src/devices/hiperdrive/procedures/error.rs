@@ -48,11 +48,11 @@ pub enum ReplyDamage {
     #[error(transparent)]
     Value(#[from] ValueError),
     /// The frame contains no message.
-    #[error("a frame without a message")]
+    #[error("the frame contains no message")]
     Empty,
-    #[error("a reply to service {got:02X}h where one to {requested:02X}h was expected")]
+    #[error("a reply to service {got:02X}h instead of {requested:02X}h")]
     Service { requested: u8, got: u8 },
-    #[error("a frame that was cut off after {bytes} bytes")]
+    #[error("the frame is incomplete ({bytes} bytes received)")]
     Cut { bytes: usize },
 }
 
@@ -110,7 +110,7 @@ pub enum Error {
     #[error("cancelled")]
     Cancelled,
     /// Bytes that do not form frames keep arriving.
-    #[error("bytes keep arriving that are not EtherNet/IP frames")]
+    #[error("the device keeps sending data that is not EtherNet/IP")]
     NeverSilent,
     #[error("no reply: {requested} (attempts: {tries})")]
     NoReply {
@@ -132,7 +132,7 @@ pub enum Error {
     },
     /// The device offers a longer send or receive interval than requested, with which a drive could not be stopped in
     /// time.
-    #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
+    #[error("the device offers cyclic data every {got_ms} ms instead of every {asked_ms} ms")]
     TooSlow {
         /// Requested interval in milliseconds.
         asked_ms: u64,
@@ -140,15 +140,15 @@ pub enum Error {
     },
     /// The timer of this computer is too coarse to send at the requested interval, so a drive could not be stopped in
     /// time.
-    #[error("the timer of this computer has steps of {step_ms} ms, too coarse for an interval of {asked_ms} ms")]
+    #[error("the timer resolution of this computer ({step_ms} ms) is too coarse for an interval of {asked_ms} ms")]
     CoarseTimer { asked_ms: u64, step_ms: u64 },
-    #[error("the cyclic connection is open")]
+    #[error("the cyclic connection is still open")]
     InControl,
     /// The link has no cyclic connection, for example because it is a recording.
-    #[error("this link has no cyclic connection")]
+    #[error("this link does not provide a cyclic connection")]
     NoCyclic,
     /// The manual does not list a parameter with this number.
-    #[error("there is no parameter {0}")]
+    #[error("parameter {0} does not exist")]
     Unknown(ParameterNumber),
     /// The number is not a valid parameter number.
     #[error("{0} is not a parameter number")]
@@ -173,27 +173,27 @@ pub enum Error {
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
     /// The parameter is read-only; no data was sent.
-    #[error("parameter {number} ({name}) can only be read")]
+    #[error("parameter {number} ({name}) is read-only")]
     ReadOnly { number: ParameterNumber, name: &'static str },
     /// The parameter is write-only.
-    #[error("parameter {number} ({name}) can only be written")]
+    #[error("parameter {number} ({name}) is write-only")]
     WriteOnly { number: ParameterNumber, name: &'static str },
     /// The parameter moves the drive and may be written only over the cyclic connection; no data was sent.
-    #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
+    #[error("parameter {number} ({name}) cannot be written as a value: drives move only over the cyclic connection")]
     Motion { number: ParameterNumber, name: &'static str },
-    #[error("drive {} moves", drive.get())]
+    #[error("drive {} is moving", drive.get())]
     Moving { drive: DriveNumber },
     /// The identity is not that of a HIPERDRIVE.
-    #[error("this is not a HIPERDRIVE: {product:?}")]
+    #[error("the device {product:?} is not a HIPERDRIVE")]
     NotHiperdrive {
         /// Category of the device, or the name in the identity object.
         product: String,
     },
     /// The value read back differs from the value written.
-    #[error("parameter {number} ({}) reads {reads} after {wanted} was written", parameter_name(*number))]
+    #[error("parameter {number} ({}): {wanted} was written, but {reads} was read back", parameter_name(*number))]
     NotTaken { number: ParameterNumber, wanted: i64, reads: i64 },
     /// The network settings read back differ from those written.
-    #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
+    #[error("attribute {attribute} of the TCP/IP object differs from the value that was written")]
     NetworkNotTaken { attribute: u16 },
     /// The device stays busy: parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]

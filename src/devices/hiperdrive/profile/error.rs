@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Va
 pub enum TypeMismatch {
     /// The profile is for another type of device. Adapters, hubs with four ports and hubs with eight ports are different
     /// types.
-    #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
+    #[error("the profile is for a {}, but the device is a {}", profile.category(), device.category())]
     Device {
         /// Topology in the profile.
         profile: Topology,
@@ -19,12 +19,12 @@ pub enum TypeMismatch {
     },
     /// The drive in a port has a different variant from the one in the profile.
     #[error(
-        "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
+        "drive {}: the profile is for variant {} ({}), but the drive has variant {} ({})",
         drive.get(),
         profile.number(),
-        profile.row().map_or("in no table", |row| row.name),
+        profile.row().map_or("unknown", |row| row.name),
         device.number(),
-        device.row().map_or("in no table", |row| row.name)
+        device.row().map_or("unknown", |row| row.name)
     )]
     Drive {
         /// Number of the drive.
@@ -40,7 +40,7 @@ pub enum TypeMismatch {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another adapter or hub.
-    #[error("the profile is of serial number {profile:?}, the device has {device:?}")]
+    #[error("the profile is for serial number {profile:?}, but the device has {device:?}")]
     OtherDevice {
         /// Serial number in the profile.
         profile: String,
@@ -48,7 +48,7 @@ pub enum PlanError {
         device: String,
     },
     /// The profile was read with a different drive in this port.
-    #[error("drive {}: the profile is of serial number {profile:?}, the drive has {device:?}", drive.get())]
+    #[error("drive {}: the profile is for serial number {profile:?}, but the drive has {device:?}", drive.get())]
     OtherDrive {
         /// Number of the drive.
         drive: DriveNumber,
@@ -64,25 +64,25 @@ pub enum PlanError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The parameter is read-only.
-    #[error("parameter {item} ({}) can only be read", item.name())]
+    #[error("parameter {item} ({}) is read-only", item.name())]
     ReadOnly {
         /// Read-only parameter.
         item: Item,
     },
     /// Parameters 101 to 104 move drives and may be written only over the cyclic connection.
-    #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
+    #[error("parameter {item} ({}) moves the drive and cannot be written as a value", item.name())]
     Moves {
         /// Parameter that moves a drive.
         item: Item,
     },
     /// Parameters 47 and 197 to 199 trigger actions, which are planned as services instead.
-    #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
+    #[error("parameter {item} ({}) triggers an action and cannot be written as a value", item.name())]
     Acts {
         /// Parameter that triggers an action.
         item: Item,
     },
     /// The current value is unknown because it has not been read or its drive is missing.
-    #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
+    #[error("parameter {item} ({}) cannot be changed because it has not been read", item.name())]
     NotRead {
         /// Parameter whose present value is unknown.
         item: Item,
@@ -110,7 +110,7 @@ pub enum PlanError {
         upper: i64,
     },
     /// The position in the new scale does not fit in 32 bits.
-    #[error("drive {}: the actual position would be {position} steps, beyond −2147483648 to 2147483647", drive.get())]
+    #[error("drive {}: the actual position would be {position} steps, which does not fit into 32 bits", drive.get())]
     PositionTooLarge {
         /// Number of the drive.
         drive: DriveNumber,
@@ -119,7 +119,7 @@ pub enum PlanError {
     },
     /// The position to set is outside the limits after rounding.
     #[error(
-        "drive {}: position {position} becomes {becomes}, which is not within the limits {lower} to {upper}",
+        "drive {}: position {position} becomes {becomes}, which is outside the limits {lower} to {upper}",
         drive.get()
     )]
     ReferenceOutside {
@@ -139,6 +139,6 @@ pub enum PlanError {
     Address(#[from] AddressError),
     /// The requested address source is unknown and therefore not written. Contains its number. An unknown source that
     /// the device already uses is preserved.
-    #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
+    #[error("{0} is not an address source; valid sources are 0 (stored), 1 (BOOTP) and 2 (DHCP)")]
     Source(u8),
 }

@@ -22,8 +22,8 @@ pub enum ItemError {
     NoParameter(u16),
     /// The parameter does not belong to a drive, or the drive number is not in the range 1 to 8.
     #[error(
-        "parameter {number} does not belong to drive {drive}: drives are numbered 1 to 8, and parameters below 100 belong \
-         to the device"
+        "parameter {number} does not belong to drive {drive}: drives are numbered 1 to 8, and parameters below 100 \
+         belong to the device"
     )]
     NoDrive {
         /// Parameter number in the string.

@@ -265,7 +265,7 @@ impl fmt::Display for ParameterRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ParameterRange::Any => f.write_str("any number"),
-            ParameterRange::Within(only, same) if only == same => write!(f, "{only} alone"),
+            ParameterRange::Within(only, same) if only == same => write!(f, "only {only}"),
             ParameterRange::Within(low, high) => write!(f, "{low} to {high}"),
             ParameterRange::WithinOr(low, high, also) => write!(f, "{low} to {high} or {also}"),
             ParameterRange::OneOf(values) => {
@@ -280,8 +280,8 @@ impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let OutOfRange { number, name, value, range } = self;
         match range {
-            ParameterRange::OneOf([]) => write!(f, "parameter {number} ({name}) is a text and cannot be {value}"),
-            _ => write!(f, "parameter {number} ({name}) cannot be {value}: it may be {range}"),
+            ParameterRange::OneOf([]) => write!(f, "parameter {number} ({name}) contains text and cannot be {value}"),
+            _ => write!(f, "parameter {number} ({name}) cannot be {value} (allowed: {range})"),
         }
     }
 }

@@ -104,7 +104,7 @@ pub struct InputImage {
 
 /// Error for an image whose length does not match the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{got} bytes of process data where {expected} were expected")]
+#[error("{got} bytes of process data instead of {expected}")]
 pub struct ProcessImageError {
     /// Length required by the layout, in bytes.
     pub expected: usize,

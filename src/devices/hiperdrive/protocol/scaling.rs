@@ -37,14 +37,15 @@ pub enum Family {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
     /// A numerator or denominator is 0.
-    #[error("a scale cannot have a 0 in it: numerator and denominator are 1 to 65535")]
+    #[error("numerator and denominator of the scaling must be from 1 to 65535, not 0")]
     Zero,
     /// The pitch or the step size is 0.
-    #[error("a spindle has a pitch and a step above 0")]
+    #[error("the spindle pitch and the step size must be greater than 0")]
     NoLength,
     /// The numerator or denominator would exceed 16 bits.
     #[error(
-        "the pitch is {steps} steps, which needs {numerator}/{denominator}; both may be up to 65535: choose another step"
+        "the scaling would be {numerator}/{denominator} for {steps} steps: choose a step size for which neither \
+         exceeds 65535"
     )]
     TooFine {
         /// Steps per turn, rounded.

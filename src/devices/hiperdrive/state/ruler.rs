@@ -15,10 +15,10 @@ pub struct Ruler {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionRangeError {
     /// The position exceeds 32 bits. Contains the minimum and the maximum.
-    #[error("a position is between {least} and {most}")]
+    #[error("the position must be between {least} and {most}")]
     Bits { least: f64, most: f64 },
     /// A position in millimetres requires a pitch.
-    #[error("the spindle's pitch is not known")]
+    #[error("the spindle pitch is not known")]
     NoPitch,
 }
 

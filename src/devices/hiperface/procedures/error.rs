@@ -21,12 +21,12 @@ pub enum Error {
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
     Damaged { command: Command, tries: u32, cause: ReplyDamage },
     /// Bytes keep arriving during the required silence.
-    #[error("the line is never silent")]
+    #[error("the line is never idle")]
     NeverSilent,
     #[error("{} was refused: {}", command.row().name, code_list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
     /// The encoder can no longer be reached, so it is unknown whether a change was executed.
-    #[error("whether {} was carried out is not known: {cause}", command.row().name)]
+    #[error("it is not known whether {} was carried out: {cause}", command.row().name)]
     Unclear {
         command: Command,
         /// Reason why the change cannot be read back.
@@ -35,7 +35,7 @@ pub enum Error {
     #[error("cancelled")]
     Cancelled,
     /// The shaft is turning, but it must be at rest.
-    #[error("the shaft moves: {readings:?}")]
+    #[error("the shaft is moving: {readings:?}")]
     Moving {
         /// Consecutive position readings.
         readings: Vec<u32>,
@@ -59,9 +59,9 @@ pub enum Error {
     CodeUnknown { field: u8, number: AccessCodeNumber },
     #[error("{item} has changed since the plan was made")]
     Changed { item: PlanItem },
-    #[error("{item} reads {got} after writing {expected}")]
+    #[error("{item}: {expected} was written, but {got} was read back")]
     NotVerified { item: PlanItem, expected: String, got: ReadBackValue },
-    #[error("the reply to {} is of another kind: {reply}", command.row().name)]
+    #[error("unexpected kind of reply to {}: {reply}", command.row().name)]
     OtherReply { command: Command, reply: String },
     #[error("the position already had this value, so reading it back does not show whether it was written")]
     PositionUnchanged,

@@ -129,7 +129,7 @@ impl fmt::Display for ExpectedWord {
             ExpectedWord::Echo => "acknowledgement",
             ExpectedWord::Value => "value",
             ExpectedWord::Run => "position",
-            ExpectedWord::Preset => "preset as position",
+            ExpectedWord::Preset => "position equal to the preset",
         })
     }
 }
@@ -138,7 +138,7 @@ impl fmt::Display for ExpectedWord {
 pub enum ImplausibleValue {
     #[error(transparent)]
     Gear(#[from] GearError),
-    #[error("{0} is not a direction")]
+    #[error("{0} is not a valid direction code")]
     Direction(u32),
     /// A preset, a cam edge or a shift is out of range.
     #[error("{value} for OUT {read:08X} is too large")]
@@ -174,7 +174,10 @@ pub enum Error {
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
     /// The encoder did not react to a word within the time limit of the handshake.
-    #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", unexpected_echo_note(*input))]
+    #[error(
+        "no {awaited} within {milliseconds} ms after OUT {sent:08X}; IN is {input:08X}{}",
+        unexpected_echo_note(*input)
+    )]
     TimeOut {
         awaited: ExpectedWord,
         sent: u32,
@@ -182,14 +185,14 @@ pub enum Error {
         /// Time limit in milliseconds.
         milliseconds: u64,
     },
-    #[error("another master writes to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
+    #[error("another master is writing to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
     OtherMaster { sent: u32, output: u32 },
     /// The encoder is being parameterised, but not by this program. Either a write was interrupted or another master is
     /// active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning { input: u32 },
     /// The IN word is only valid with its halves exchanged.
-    #[error("IN {input:08X} makes sense as {swapped:08X} only: the word order may be swapped")]
+    #[error("IN {input:08X} is plausible only as {swapped:08X}: the word order may be swapped")]
     WordOrder {
         /// The word as received.
         input: u32,
@@ -204,13 +207,13 @@ pub enum Error {
     NotSelectable { mode: StartupMode },
     /// The encoder is in a mode that the manual does not define. Only read-outs were sent, since the effect of other
     /// words is unknown.
-    #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
+    #[error("the encoder is in the unknown mode {}, so only values were read", mode.emit())]
     UnknownMode { mode: StartupMode },
     /// The shaft is turning, although it must be at standstill.
     #[error("the shaft is moving: from position {from} to {to}")]
     Moving { from: u32, to: u32 },
     /// The value read back differs from the value written.
-    #[error("{item} is {reads} after {wanted} was written")]
+    #[error("{item}: {wanted} was written, but {reads} was read back")]
     NotTaken { item: String, wanted: u32, reads: u32 },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },

@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 /// A profile and an encoder of different types, according to their flags. Either only one of them counts turns, or only
 /// one reports its steps minus one, which gives the same number a different meaning. See manual 10.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
+#[error("the profile is for a {} encoder, but this encoder is {}", profile.type_name(), device.type_name())]
 pub struct TypeMismatch {
     /// Flags in the profile.
     pub profile: Flags,
@@ -18,7 +18,7 @@ pub struct TypeMismatch {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
-    #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
+    #[error("the profile is for serial number {profile:?}, but the encoder has {device:?}")]
     OtherDevice {
         /// Serial number in the profile.
         profile: String,
@@ -35,7 +35,7 @@ pub enum PlanError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// A mounting value does not fit the values to be written, and the restore does not change mounting values.
-    #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
+    #[error("{item} belongs to the mounting and is kept: {value} is outside the range {low} to {high}")]
     MountingLeft {
         /// Item with the mounting value.
         item: Item,
@@ -47,7 +47,7 @@ pub enum PlanError {
         high: u32,
     },
     /// An edge of a cam is beyond the measuring range.
-    #[error("{item}, {edge}: {position} is not within 0 to {last}")]
+    #[error("{item}, {edge}: {position} is outside the range 0 to {last}")]
     CamBeyondRange {
         /// Cam that would be changed.
         item: Item,
@@ -59,7 +59,7 @@ pub enum PlanError {
         last: u32,
     },
     /// The current value of an item is unknown, so the item cannot be changed.
-    #[error("{item} was not read before it is to be changed")]
+    #[error("{item} cannot be changed because it has not been read")]
     NotRead {
         /// The item.
         item: Item,

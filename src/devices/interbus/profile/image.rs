@@ -75,7 +75,7 @@ impl fmt::Display for Direction {
 
 /// The text is not a keyword of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a direction is cw (3) or ccw (4)")]
+#[error("the direction must be cw (3) or ccw (4)")]
 pub struct DirectionError;
 
 impl FromStr for Direction {

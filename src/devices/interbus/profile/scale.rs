@@ -32,7 +32,7 @@ pub struct RoundedPosition {
 
 /// The requested position is outside the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{value} is not within {least} to {most}")]
+#[error("{value} is outside the range {least} to {most}")]
 pub struct OutsideRangeError {
     /// Requested position in the unit of the scale.
     pub value: f64,
@@ -44,7 +44,7 @@ pub struct OutsideRangeError {
 
 /// The number of steps per unit is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("steps in a unit are a number above 0")]
+#[error("the number of steps per unit must be greater than 0")]
 pub struct ScaleError;
 
 /// Maximum number of decimals that are displayed.

@@ -90,25 +90,25 @@ pub enum TableProblemKind {
     #[error("the table has no rows")]
     Empty,
     /// The header has no column for the start or stop.
-    #[error("the header names no column for the {0}")]
+    #[error("the header has no column for the {0}")]
     NoColumn(Column),
     /// The line has no value in this column.
     #[error("the {0} is missing")]
     Missing(Column),
     /// The text is not a number.
-    #[error("{text:?} is no number")]
+    #[error("{text:?} is not a number")]
     Number {
         /// Text in the table.
         text: String,
     },
     /// The text is not the number of a program.
-    #[error("{text:?} is no cam program: there are 1 to 8")]
+    #[error("{text:?} is not a cam program from 1 to 8")]
     Program {
         /// Text in the table.
         text: String,
     },
     /// The text is not the number of a cam.
-    #[error("{text:?} is no cam: there are 0 to 7")]
+    #[error("{text:?} is not a cam from 0 to 7")]
     Cam {
         /// Text in the table.
         text: String,
@@ -122,10 +122,10 @@ pub enum TableProblemKind {
         outside: OutsideRangeError,
     },
     /// All eight cams of the program are in use.
-    #[error("program {} has no cam left: it has eight", .0.get())]
+    #[error("all eight cams of program {} are in use", .0.get())]
     Full(ProgramNumber),
     /// The cam already appears in an earlier line, which takes precedence.
-    #[error("cam {} of program {} stands in line {first} already", cam.get(), program.get())]
+    #[error("cam {} of program {} is already defined in line {first}", cam.get(), program.get())]
     Twice {
         /// Program of the cam.
         program: ProgramNumber,
@@ -135,7 +135,7 @@ pub enum TableProblemKind {
         first: u64,
     },
     /// The name is too long or contains control characters.
-    #[error("a name has at most {most} characters")]
+    #[error("the name must have at most {most} characters")]
     Name {
         /// Maximum number of characters.
         most: usize,

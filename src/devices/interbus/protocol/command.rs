@@ -52,7 +52,7 @@ pub enum Command {
 /// The error for a command that must not be sent. In its current mode, the encoder would interpret the word as a
 /// different command or as none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
+#[error("{:08X} ({}) is not valid in {mode}", command.emit(), command.name())]
 pub struct ForbiddenCommandError {
     /// The intended command.
     pub command: Command,

@@ -19,13 +19,13 @@ pub struct Gear {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GearError {
     /// The number of turns exceeds the number that an encoder counts.
-    #[error("{turns} turns are not within 1 to {TURNS}")]
+    #[error("the number of turns must be from 1 to {TURNS}, not {turns}")]
     Turns {
         /// Given number of turns.
         turns: u32,
     },
     /// The number of steps exceeds 25 bits, or the resolution of the disc over the given number of turns.
-    #[error("{steps} steps are not within 1 to {most}, which is what {turns} turns have")]
+    #[error("the number of steps over {turns} turns must be from 1 to {most}, not {steps}")]
     Steps {
         /// Given number of steps.
         steps: u32,

@@ -49,7 +49,7 @@ enum Limit {
 
 /// The value of a parameter is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: {value} is not within {low} to {high}", parameter.name())]
+#[error("{}: {value} is outside the range {low} to {high}", parameter.name())]
 pub struct OutOfRange {
     /// The parameter.
     pub parameter: Parameter,

@@ -192,7 +192,7 @@ fn the_mode_determines_the_meaning_of_a_word() {
         assert_eq!(inside.ensure_legal(Position), Err(ForbiddenCommandError { command: inside, mode: Position }));
     }
     let refused = Command::in_mode(0x4600_0015, Position).unwrap_err().to_string();
-    assert_eq!(refused, "46000015 (start of a cam) is not legal in position mode");
+    assert_eq!(refused, "46000015 (start of a cam) is not valid in position mode");
     for (command, legal) in [
         (set_command(P::Steps, 255), &[Position, Parameterisation][..]),
         (Command::Preset, &[Position]),
@@ -320,7 +320,7 @@ fn parameter_limits_are_checked() {
         assert_eq!(parameter.check_value(high + 1, gear), Err(refused));
     }
     let refused = P::Preset.check_value(3600, gear).unwrap_err();
-    assert_eq!(refused.to_string(), "preset: 3600 is not within 0 to 3599");
+    assert_eq!(refused.to_string(), "preset: 3600 is outside the range 0 to 3599");
     for (row, code) in PARAMETERS.iter().zip([1, 2, 3, 4, 5, 7]) {
         assert_eq!((row.code, row.parameter.row().code), (code, code));
         assert_eq!(P::from_code(Code::new(code).unwrap()), Some(row.parameter));

@@ -40,7 +40,7 @@ pub enum BurstError {
     #[error("no burst is complete")]
     Incomplete,
     /// Bursts are longer than the longest possible frame.
-    #[error("bursts have {clocks} clocks, and a frame has at most 64")]
+    #[error("the bursts have {clocks} clocks, but a frame has at most 64")]
     Long {
         /// Most frequent number of clocks in a burst.
         clocks: usize,

@@ -214,6 +214,6 @@ mod tests {
         assert!(said("frame,repeat=3").contains("25+1"));
         assert!(said("frame,ones=1+x").contains("1+26"));
         assert!(said("frame,inverted=yes").contains("0 or 1"));
-        assert_eq!(said("frame,st=3,st=4"), "st is given twice");
+        assert_eq!(said("frame,st=3,st=4"), "st is specified twice");
     }
 }

@@ -33,7 +33,7 @@ pub enum SpecError {
         value: String,
     },
     /// A setting occurs twice.
-    #[error("{0} is given twice")]
+    #[error("{0} is specified twice")]
     Twice(String),
 }
 

@@ -20,13 +20,13 @@ pub enum Failure {
         code: u8,
     },
     /// The active filter is not the balanced one.
-    #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
+    #[error("the calibration requires the balanced filter, but the filter is 0x{code:02X}")]
     NotBalanced { code: u8 },
     /// The device mode read back differs from the one written.
-    #[error("device mode {wanted} was written and {found} is there")]
+    #[error("device mode {wanted} was written, but {found} was read back")]
     Mode { wanted: DeviceMode, found: DeviceMode },
     /// A status register never reached the required value.
-    #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
+    #[error("the status of the procedure is 0x{found:02X} instead of 0x{expected:02X}")]
     Status { kind: ProcedureKind, expected: u8, found: u8 },
     #[error("the run has not ended after {seconds} s")]
     TooLong {
@@ -38,10 +38,10 @@ pub enum Failure {
     #[error("the conditions are not met: {blockers:?}")]
     NotReady { task: OperatorTask, blockers: Vec<StartBlocker> },
     /// A value read back differs from the one written.
-    #[error("{item} reads {got} after writing {expected}")]
+    #[error("{item}: {expected} was written, but {got} was read back")]
     NotVerified { item: String, expected: String, got: String },
     /// The description of the encoder does not contain the procedure.
-    #[error("no description of this procedure for this encoder")]
+    #[error("this procedure is not described for this encoder")]
     NotDescribed { kind: ProcedureKind },
 }
 

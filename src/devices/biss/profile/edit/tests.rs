@@ -72,7 +72,7 @@ fn registers_owned_by_a_procedure_are_not_written_directly() {
     let same = plan_edits(&kit, &[], &[(at("0x40"), Some(2))], &[edit("0x40", &[2])]).unwrap();
     assert_eq!(same, BissPlan { base: Base::default(), ops: vec![] });
     let error = plan_edits(&kit, &[], &[], &[edit("0x40", &[1, 2])]).unwrap_err();
-    assert_eq!(error.to_string(), "2 bytes are given for 0x40");
+    assert_eq!(error.to_string(), "0x40 cannot be written with 2 bytes");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn a_filter_is_selected_if_it_differs() {
     let mut old = device();
     (old.identity.firmware, old.filter) = (Some(Firmware::new(1, 0, 9)), None);
     let error = plan_filter(&kit(), &old, PositionFilter::Dynamic).unwrap_err();
-    assert_eq!(error.to_string(), "firmware 1.1.0 is needed, the encoder has 1.0.9");
+    assert_eq!(error.to_string(), "firmware 1.1.0 is required, but the encoder has 1.0.9");
     let any = Descriptions::built_in().find_by_name("BiSS C encoder").unwrap().clone();
     let error = plan_filter(&any, &device(), PositionFilter::Dynamic).unwrap_err();
     assert!(matches!(error, PlanError::NoProcedure { kind: ProcedureKind::FilterSelection, .. }), "{error}");
@@ -115,10 +115,10 @@ fn a_preset_is_stored_and_executed() {
     old.identity.firmware = Some(Firmware::new(1, 2, 0));
     assert!(plan_preset(&kit(), &old, value, Some(PresetParts::Both)).is_ok());
     let error = plan_preset(&kit(), &old, value, Some(PresetParts::Singleturn)).unwrap_err();
-    assert_eq!(error.to_string(), "firmware 1.6.0 is needed, the encoder has 1.2.0");
+    assert_eq!(error.to_string(), "firmware 1.6.0 is required, but the encoder has 1.2.0");
     old.identity.firmware = Some(Firmware::new(1, 1, 9));
     let error = plan_preset(&kit(), &old, value, Some(PresetParts::Both)).unwrap_err();
-    assert_eq!(error.to_string(), "firmware 1.2.0 is needed, the encoder has 1.1.9");
+    assert_eq!(error.to_string(), "firmware 1.2.0 is required, but the encoder has 1.1.9");
     let wide = PresetValue::new(1 << 17, 0);
     assert!(matches!(plan_preset(&kit(), &device(), wide, None), Err(PlanError::PresetTooWide { bits: 17, .. })));
 }

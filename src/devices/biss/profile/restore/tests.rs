@@ -223,7 +223,7 @@ fn another_kind_and_a_missing_serial_number_are_refused() {
     let error = plan_restore(&wanted, &now, RestoreOptions::default()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "the profile is of profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01, the encoder says \
+        "the profile is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01, but the encoder reports \
          profile 0x6129, manufacturer 46 72, device ID 09 09 09 09 09 09"
     );
     let nameless = profile("");

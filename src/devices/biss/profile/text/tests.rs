@@ -118,7 +118,7 @@ fn unknown_fields_are_kept() {
 #[test]
 fn profile_errors_name_their_location() {
     let cases = [
-        ("schema: 1", "schema: 0", "schema 0; this program knows schema 1 to 1"),
+        ("schema: 1", "schema: 0", "schema 0 is not supported (supported: 1 to 1)"),
         ("identity:", "identy:", "line 3, column 5: identy is unknown, and identity is missing"),
         ("data:", "date:", "line 4, column 5: date is unknown, and data is missing"),
         ("\"1234567\"", "1234567", "identity.serial_number must be a string"),

@@ -198,8 +198,8 @@ fn an_encoder_finds_its_description() {
     assert_eq!(all.find(&other).unwrap().name(), "BiSS C encoder");
     assert_eq!(
         kit().check_identity(&other).unwrap_err().to_string(),
-        "the encoder says profile 0x6129, manufacturer 58 59, device ID 01 01 68 11 00 01; the description \"POSITAL \
-         IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01"
+        "the encoder reports profile 0x6129, manufacturer 58 59, device ID 01 01 68 11 00 01, but the description \
+         \"POSITAL IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01"
     );
     let own = "(name: \"mine\", identity: Some((profile: 0x6129, manufacturer: (70, 114), device_id: (1, 1, 104, 17, 0, 1))))";
     let anything = "(name: \"anything\")";

@@ -110,7 +110,7 @@ fn a_changed_byte_is_detected() {
     let mut damaged = common();
     damaged[63] = 0;
     let error = Eds::parse(EdsBank::Common, damaged).unwrap_err();
-    assert_eq!(error.to_string(), "EDS bank 0x02: checksum 00 where F4 was expected");
+    assert_eq!(error.to_string(), "EDS bank 0x02: checksum 00 instead of F4");
 }
 
 #[test]

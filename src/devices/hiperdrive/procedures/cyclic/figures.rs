@@ -32,7 +32,7 @@ pub struct Histogram {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConnectionLoss {
     /// No packet has arrived for three intervals.
-    #[error("nothing has come for {} ms", after.as_millis())]
+    #[error("no cyclic data was received for {} ms", after.as_millis())]
     Silent { after: Duration },
     #[error(transparent)]
     Port(#[from] LinkError),
@@ -40,9 +40,9 @@ pub enum ConnectionLoss {
     #[error("drive {} did not stop", .0.get())]
     DoesNotStand(DriveNumber),
     /// The session's own TCP connection is lost.
-    #[error("the connection for parameters is gone")]
+    #[error("the TCP connection of the session was lost")]
     Session,
-    #[error("its thread has failed")]
+    #[error("the thread of the connection has failed")]
     Failed,
 }
 

@@ -76,7 +76,7 @@ fn another_type_of_device_or_drive_is_refused() {
     device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
     let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
     assert_eq!(error, TypeMismatch::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
-    assert_eq!(error.to_string(), "the profile is of a HIPERDRIVE HUB-4, the device is a HIPERDRIVE SINGLE");
+    assert_eq!(error.to_string(), "the profile is for a HIPERDRIVE HUB-4, but the device is a HIPERDRIVE SINGLE");
     let restore = plan_restore(&profile(), &device, TYPE).unwrap();
     assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13), "what is of a place that both have");
     device.identity = profile().identity;

@@ -122,7 +122,7 @@ fn profile_errors_name_their_location() {
         (
             "154: 400",
             "154: 0",
-            "drives[0].parameters.154: parameter 254 (position scale numerator) cannot be 0: it may be 1 to 65535",
+            "drives[0].parameters.154: parameter 254 (position scale numerator) cannot be 0 (allowed: 1 to 65535)",
         ),
         ("number: 2", "number: 9", "drives[0].number must be a number from 1 to 8"),
         ("number: 2,", "", "drives[0].number is missing"),

@@ -164,11 +164,11 @@ fn parameter_ranges_are_checked() {
         let refused = parameter(own).row().unwrap().check_value(parameter(own), value, Travel::UNKNOWN);
         refused.unwrap_err().to_string()
     };
-    assert_eq!(message(266, 400), "parameter 266 (maximum speed) cannot be 400: it may be 5 to 350");
-    assert_eq!(message(186, 0), "parameter 186 (RS-485 time-out) cannot be 0: it may be 1 to 100 or 255");
-    assert_eq!(message(190, 1), "parameter 190 (RS-485 baud rate) cannot be 1: it may be 9600, 19200, 38400");
-    assert_eq!(message(197, 3), "parameter 197 (faults since the acknowledgement) cannot be 3: it may be 0 alone");
-    assert_eq!(message(15, 3), "parameter 15 (name) is a text and cannot be 3");
+    assert_eq!(message(266, 400), "parameter 266 (maximum speed) cannot be 400 (allowed: 5 to 350)");
+    assert_eq!(message(186, 0), "parameter 186 (RS-485 time-out) cannot be 0 (allowed: 1 to 100 or 255)");
+    assert_eq!(message(190, 1), "parameter 190 (RS-485 baud rate) cannot be 1 (allowed: 9600, 19200, 38400)");
+    assert_eq!(message(197, 3), "parameter 197 (faults since the acknowledgement) cannot be 3 (allowed: only 0)");
+    assert_eq!(message(15, 3), "parameter 15 (name) contains text and cannot be 3");
 }
 
 /// Reference 7 and 9: numbers have 1, 2 or 4 bytes, low byte first; a string may be preceded by its length.

@@ -42,13 +42,13 @@ pub enum EditError {
     #[error("nothing has been read yet")]
     NothingRead,
     /// The manual does not list a parameter with this number.
-    #[error("there is no parameter {0}")]
+    #[error("parameter {0} does not exist")]
     Unknown(ParameterNumber),
     /// The value of this parameter has not been read.
     #[error("parameter {0} has not been read")]
     NotRead(ParameterNumber),
     /// The parameter is read-only, or is an action without a stored value.
-    #[error("parameter {0} is not set as a value")]
+    #[error("parameter {0} is an action and cannot be set as a value")]
     NotAValue(ParameterNumber),
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),

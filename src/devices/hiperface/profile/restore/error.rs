@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::AccessCodeNumber;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
-    #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
+    #[error("the profile is for serial number {profile:?}, but the encoder has {device:?}")]
     OtherDevice {
         /// Serial number in the profile.
         profile: String,
@@ -14,7 +14,7 @@ pub enum PlanError {
         device: String,
     },
     /// The profile belongs to another type of encoder.
-    #[error("the profile is of type {profile:02X}h, the encoder of type {device:02X}h")]
+    #[error("the profile is for type {profile:02X}h, but the encoder has type {device:02X}h")]
     TypeMismatch {
         /// Type code in the profile.
         profile: u8,
@@ -22,7 +22,9 @@ pub enum PlanError {
         device: u8,
     },
     /// Only the last field can change size.
-    #[error("field {field} has {device} bytes in the encoder and {profile} in the profile, and is not the last")]
+    #[error(
+        "field {field} has {device} bytes in the encoder but {profile} in the profile, and it is not the last field"
+    )]
     SizeFixed {
         /// Field number.
         field: u8,
@@ -40,7 +42,7 @@ pub enum PlanError {
         missing: u8,
     },
     /// The EEPROM is too small.
-    #[error("{needed} bytes are needed and {free} are free")]
+    #[error("{needed} bytes are required, but only {free} are free")]
     NoMemory {
         /// Required number of bytes.
         needed: usize,
@@ -48,7 +50,7 @@ pub enum PlanError {
         free: usize,
     },
     /// A field must be created again, but its content cannot be read.
-    #[error("field {field} has to be created again and its content cannot be read: access code {code} is not known")]
+    #[error("field {field} must be created again, but its content cannot be read: access code {code} is not known")]
     WouldLose {
         /// Field number.
         field: u8,
@@ -56,7 +58,7 @@ pub enum PlanError {
         code: AccessCodeNumber,
     },
     /// Fields can only be created in ascending order.
-    #[error("field {field} cannot be created: the next one is {next}")]
+    #[error("field {field} cannot be created: the next field is {next}")]
     NotNext {
         /// Requested field number.
         field: u8,
@@ -64,7 +66,7 @@ pub enum PlanError {
         next: u8,
     },
     /// Only the last field can be deleted or change its size.
-    #[error("field {field} is not the last: that is {last}")]
+    #[error("field {field} is not the last field, which is {last}")]
     NotLast {
         /// Requested field number.
         field: u8,
@@ -80,7 +82,7 @@ pub enum PlanError {
         count: u8,
     },
     /// The field is write-protected (WE is 0).
-    #[error("field {field} is write protected")]
+    #[error("field {field} is write-protected")]
     WriteProtected {
         /// Field number.
         field: u8,

@@ -190,7 +190,7 @@ fn invalid_values_are_refused_with_both_limits() {
     let beyond =
         PlanError::CamBeyondRange { item: parse_item("cam:2:5"), edge: Edge::Start, position: 3600, last: 3599 };
     assert_eq!(start, beyond);
-    assert_eq!(start.to_string(), "cam:2:5, start: 3600 is not within 0 to 3599");
+    assert_eq!(start.to_string(), "cam:2:5, start: 3600 is outside the range 0 to 3599");
     assert!(plan_edits(&device, &image_with(&device, &[("cam:2:5", ItemValue::Cam(cam_between(3599, 10)))])).is_ok());
 }
 

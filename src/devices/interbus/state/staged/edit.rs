@@ -84,7 +84,7 @@ pub enum EditError {
     #[error("cam program {} has not been read", .0.get())]
     NotRead(ProgramNumber),
     /// The window shift has not been read. It is read together with a program.
-    #[error("the shift of the window has not been read")]
+    #[error("the window shift has not been read")]
     ShiftNotRead,
     /// The profile does not contain the cam.
     #[error("cam {} of program {} has no edges", cam.get(), program.get())]

@@ -230,7 +230,7 @@ fn unsupported_settings_are_refused_with_a_reason() {
             "ATM60 SSI: steps over this number of revolutions must be from 2 to 8192, not 9000",
         ),
         ("atm60,code=grey", "code must be binary, gray, gray-excess or bcd, not \"grey\""),
-        ("atm60,st=12,st=13", "st is given twice"),
+        ("atm60,st=12,st=13", "st is specified twice"),
         (
             "atm60,bits=12",
             "there is no \"bits\"; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step, direction, preset",
