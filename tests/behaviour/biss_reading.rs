@@ -189,7 +189,7 @@ fn a_frame_with_a_wrong_crc_is_counted_and_not_printed() {
     assert!((9..=10).contains(&count), "{ran:?}");
     let Some(hopeless) = bench.adapter(&["--damage", "1"]) else { return };
     let ran = ask(&bench, &hopeless, &["position", "biss", JSON]);
-    ran.fails(1, &["crc errors: ", "35 data bits and 6 CRC bits"]);
+    ran.fails(1, &["crc errors: ", "35 data bits, 6 CRC bits"]);
 }
 
 #[test]

@@ -267,7 +267,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
     };
     let wear_to = |cycles: u64| bench.wear_to(&device, cycles);
     wear_to(798);
-    write(&[]).assert_stderr(&["at least 800 of the 1000"]);
+    write(&[]).assert_stderr(&["at least 800 of its 1000"]);
     wear_to(999);
     write(&[]).fails(1, &["999", "(2)", "1000", "--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(2));

@@ -80,7 +80,7 @@ fn layouts_are_exported() {
     // 15 clocks of 400 kHz: 37.5 µs.
     assert!(timing(&[]).out.contains("15 clocks, 37.50 µs"));
     assert_eq!(timing(&[]).err, "");
-    assert!(timing(&["--cable", "150"]).err.contains("at most 200 kHz"));
+    assert!(timing(&["--cable", "150"]).err.contains("to 200 kHz or less"));
     assert!(timing(&["--pause", "20"]).err.contains("more than 25 µs"));
     // Without a family the general times of SSI apply, which is said: 13 clocks of 500 kHz take 26 µs.
     let any = ["ssi", "export", "--layout", "frame,st=13", "--format", "timing", "--clock", "500000", "--pause", "20"];

@@ -191,7 +191,7 @@ fn impossible_simulations_are_refused() {
     bench.run(&["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--hub", "5"]).fails(2, &["--hub", "4, 8"]);
     bench.run(&["simulate", "interbus", "--listen", "127.0.0.1:0", "--hub", "4"]).fails(2, &["hub", "encoders"]);
     let wrong = ["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--set", "drives=1,1"];
-    bench.run(&wrong).fails(2, &["drives=1,1", "1 ports"]);
+    bench.run(&wrong).fails(2, &["drives=1,1", "number of ports: 1"]);
     bench.run(&["simulate", "hiperdrive", "--listen", "nowhere"]).fails(2, &["nowhere", "HOST:PORT"]);
     bench.run(&["simulate", "hiperdrive", "--listen", "[::1]:0"]).fails(1, &["::1", "127.0.0.1:4001"]);
     let taken = drives(&bench, &[]);

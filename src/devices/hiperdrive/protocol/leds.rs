@@ -221,7 +221,7 @@ pub const BUS_LEDS: [NetworkLedRow; 12] = [
         NetworkLed::Module,
         NetworkLedState::Red,
         "unrecoverable fault",
-        "switch the device off and on. If the fault remains, have it repaired",
+        "switch the device off and on again. If the fault remains, have the device repaired",
     ),
     network_led_row(
         NetworkLed::Module,
@@ -240,7 +240,7 @@ pub const BUS_LEDS: [NetworkLedRow; 12] = [
         NetworkLed::Network,
         NetworkLedState::GreenFlashing,
         "no connection",
-        "connect, or start the control (PLC)",
+        "connect to the device, or start the control (PLC)",
     ),
     network_led_row(
         NetworkLed::Network,

@@ -154,10 +154,7 @@ fn frames_are_divided_into_fields() {
     assert_eq!(tree.strip_handles()[5..], [Handle::FrameEnd]);
     assert_eq!(tree.position(), Some((5, 20)));
     // MT is 5 to 12, so that its fourth bit from below is on clock 9.
-    assert_eq!(
-        cell_text(&tree, 9).to_string_in(Language::English),
-        "Clock 9: turn bit MT3 (number of turn bits: 8)"
-    );
+    assert_eq!(cell_text(&tree, 9).to_string_in(Language::English), "Clock 9: turn bit MT3 (number of turn bits: 8)");
     assert_eq!(short_label(&tree, &tree.fields()[2]).to_string_in(Language::German), "ST 8");
 
     let twice = Layout::new(FrameDescriptor {

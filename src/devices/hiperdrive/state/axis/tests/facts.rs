@@ -229,7 +229,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
     let returned = |seen: &DriveFacts| words::write_back_text(&axis, seen).unwrap().to_string_in(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
-    assert!(returned(&seen).contains("have their previous value again: 2 of 2"));
+    assert!(returned(&seen).contains("restored to their previous values: 2 of 2"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
     let told = words::unrestored_position_text(&axis, &seen).unwrap().to_string_in(Language::English);
     assert!(
