@@ -148,8 +148,8 @@ impl Studio {
             Some(FollowUpAction::CloseSession(id)) => self.remove(id),
             Some(FollowUpAction::Write(question, path)) => self.handle_chosen_path(question, path),
             Some(FollowUpAction::Save(saving)) => {
-                let kinds = self.services.world.kinds;
-                self.services.tasks.run("save", move || saving.run(kinds));
+                let (kinds, store) = (self.services.world.kinds, self.services.world.store.clone());
+                self.services.tasks.run("save", move || saving.run(kinds, &store));
             }
             Some(FollowUpAction::OpenLink(id)) => self.open_confirmed(id),
             Some(FollowUpAction::Find(tab)) => self.start_confirmed_search(tab),

@@ -205,8 +205,8 @@ impl Studio {
                 return;
             }
         };
-        let kinds = self.services.world.kinds;
-        self.services.tasks.run("save", move || saving.run(kinds));
+        let (kinds, store) = (self.services.world.kinds, self.services.world.store.clone());
+        self.services.tasks.run("save", move || saving.run(kinds, &store));
     }
 
     fn reload_profile(&mut self, diverged: ProfileConflict) {

@@ -38,6 +38,8 @@ pub struct LogbookMatches {
     pub has_more: bool,
     /// Devices that have entries, in the order of their kinds and serial numbers.
     pub devices: Vec<DeviceKey>,
+    /// Assets to which a device was ever assigned, in their order.
+    pub assets: Vec<String>,
 }
 
 impl LogbookPage {
@@ -78,7 +80,7 @@ impl LogbookMatches {
         let mut entries = logbook.entries(filter, LogbookPage::LIMIT + 1)?;
         let has_more = entries.len() > LogbookPage::LIMIT as usize;
         entries.truncate(LogbookPage::LIMIT as usize);
-        Ok(LogbookMatches { entries, has_more, devices: logbook.devices()? })
+        Ok(LogbookMatches { entries, has_more, devices: logbook.devices()?, assets: logbook.assets()? })
     }
 }
 

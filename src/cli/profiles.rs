@@ -16,7 +16,7 @@ use super::runner::to_failure;
 use super::{Failure, Result, Success};
 use crate::app::{KindRegistry, explain, review};
 use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
-use crate::store::{EntryKind, Event, Store, read_text, write_atomically};
+use crate::store::{Event, Store, read_text, write_atomically};
 use crate::worker::commit::PlannedWrite;
 
 /// Reads a profile of any kind, for viewing or comparison.
@@ -58,10 +58,8 @@ pub fn save_profile(common: &CommonArgs, path: &Path, body: Body) -> Result<()> 
     let document = ProfileDocument::new(second.to_string(), body);
     write_atomically(path, document.emit().as_bytes())
         .map_err(|error| to_failure(&explain::file_error_text(&error)))?;
-    let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let saved = Event::new(EntryKind::Backup, format!("saved to {}", full.display()));
     let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
-    common.log.record(&store, &Event { backup: Some(full), ..saved });
+    common.log.record(&store, &Event::saved_profile(path));
     Ok(())
 }
 

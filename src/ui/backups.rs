@@ -5,7 +5,7 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
 use super::controls::{
-    card, committed_entry, empty_placeholder, enabled_button, labelled_button, paragraph, show_error_below,
+    card, committed_entry, empty_placeholder, enabled_button, entry, labelled_button, paragraph, show_error_below,
 };
 use super::{Theme, icons};
 use crate::app::session::Phase;
@@ -100,10 +100,12 @@ fn asset_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Ac
         let id = egui::Id::unique(("asset_card.name", device.id()));
         let mut draft = ui.data(|data| data.get_temp::<Option<(String, Option<Text>)>>(id)).flatten();
         let (shown, label) = (device.asset().unwrap_or_default(), theme.translate("asset_card.name"));
-        committed_entry(ui, &mut draft, shown, 260.0, &label, |text| {
-            let name = text.parse::<AssetName>().map_err(explain::asset_name_error_text)?;
-            actions.push(device.command(DeviceCommand::Assign(name)));
-            Ok(())
+        entry(ui, theme, &label, |ui| {
+            committed_entry(ui, &mut draft, shown, 260.0, &label, |text| {
+                let name = text.parse::<AssetName>().map_err(explain::asset_name_error_text)?;
+                actions.push(device.command(DeviceCommand::Assign(name)));
+                Ok(())
+            })
         });
         show_error_below(ui, theme, draft.as_ref().and_then(|(_, problem)| problem.as_ref()));
         ui.data_mut(|data| data.insert_temp(id, draft));

@@ -36,7 +36,7 @@ pub use live::WorkerStopHandle;
 pub use open::OpenError;
 pub use ring::Ring;
 pub use session::{Session, SessionContext};
-pub use session_log::SessionLog;
+pub use session_log::{SessionLog, record_event};
 
 use event_sender::{CAPACITY, EventSender};
 use live::{LiveRequests, WatchList};

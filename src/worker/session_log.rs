@@ -61,7 +61,7 @@ impl SessionLog {
     /// Records an event of the device that was identified last. Without such a device, nothing is recorded.
     pub fn record(&self, store: &Store, event: &Event) {
         if let Some(device) = self.device() {
-            write(store, |logbook| logbook.record(Timestamp::now(), &device, event).map(drop));
+            record_event(store, &device, event);
         }
     }
 
@@ -85,6 +85,11 @@ impl SessionLog {
     fn state(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Records an event of a device.
+pub fn record_event(store: &Store, device: &DeviceKey, event: &Event) {
+    write(store, |logbook| logbook.record(Timestamp::now(), device, event).map(drop));
 }
 
 fn write<T>(store: &Store, record: impl FnOnce(&mut Logbook) -> Result<T, LogbookError>) -> Option<T> {

@@ -1,7 +1,7 @@
 //! The page of the logbook, with the real widgets: entries with old and new values, the filter, backups and notes.
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::{Action, DeviceCommand, LOGBOOK_TAB, Language, Studio};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio};
 use encoder_studio::devices::hiperface::state::{HiperfaceAction, ReviewState};
 use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Logbook};
 
@@ -108,6 +108,41 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     screen.act(Action::SearchLogbook(EntryFilter { search: "nothing like this".into(), ..EntryFilter::default() }));
     screen.until("no entry is left", |studio| entry_count(studio) == Some(0));
     assert!(screen.shows(&screen.say("logbook.no_match")));
+}
+
+/// Issue 26: a profile saved in the window is recorded like one saved by a command, and entries are found by their asset.
+#[test]
+fn a_saved_profile_is_recorded_and_found_by_its_asset() {
+    let mut screen = after_a_write();
+    assert!(!screen.shows(&screen.say("logbook.all_assets")), "there is no asset to choose");
+    screen.command(DeviceCommand::Assign("Achse 7".parse().unwrap()));
+    let (session, suggested) = (screen.encoder().session.id, "x.ron".into());
+    let path = screen.outside.path("own.ron");
+    screen.act(Action::Chosen(FileQuestion::Save { session, suggested }, path.clone()));
+    let is_written = path.clone();
+    screen
+        .until("the profile is saved", |studio| is_written.exists() && studio.hiperface().unwrap().session.is_ready());
+    let at = screen.outside.store().logbook_path();
+    let recorded = || Logbook::open(&at).unwrap().entries(&EntryFilter::default(), 10).unwrap();
+    screen.until("it is recorded", |_| recorded().len() == 4);
+    let [saved, assigned, write, _] = recorded().try_into().unwrap();
+    assert_eq!((saved.kind, saved.backup, saved.asset.as_deref()), (EntryKind::Backup, Some(path), Some("Achse 7")));
+    assert_eq!((assigned.kind, &saved.device), (EntryKind::Assigned, &write.device));
+
+    screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("all entries are shown", |studio| entry_count(studio) == Some(4));
+    let choice = screen.say("asset_card.name");
+    screen.harness.get_by_role_and_label(egui::Role::ComboBox, &choice).click();
+    screen.steps();
+    screen.harness.get_by_role_and_label(egui::Role::Button, "Achse 7").click();
+    screen.until("those of the asset are shown", |studio| entry_count(studio) == Some(2));
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    screen.act(Action::SearchLogbook(EntryFilter { search: "achse 7".into(), ..EntryFilter::default() }));
+    screen.until("the search finds the asset", |studio| entry_count(studio) == Some(2));
 }
 
 #[test]

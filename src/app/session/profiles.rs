@@ -28,13 +28,20 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values that were read in order to save them to a file. `edits` is the number of edits that are not
+    /// Handles values that were read from a device in order to save them to a file. `edits` is the number of edits that are not
     /// saved, and `remarks` name other missing values.
-    pub fn save_read_values(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
+    pub fn save_read_values(
+        &mut self,
+        device: Option<DeviceKey>,
+        body: Body,
+        edits: Option<usize>,
+        remarks: Vec<Text>,
+        services: &mut Services,
+    ) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
         let remarks = without.into_iter().chain(remarks).collect();
-        self.write_document(path, new_document(body), remarks, services);
+        self.write_document(path, device, new_document(body), remarks, services);
     }
 
     /// Adopts a profile that was read again from its file, or was saved to another file.
@@ -51,10 +58,12 @@ impl SessionState {
         true
     }
 
-    /// Saves a profile in a task. `remarks` name the values that are missing from it.
+    /// Saves a profile in a task. `device` is the one from which it was read, if any. `remarks` name the values that are
+    /// missing from it.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
+        device: Option<DeviceKey>,
         document: ProfileDocument,
         remarks: Vec<Text>,
         services: &mut Services,
@@ -68,9 +77,9 @@ impl SessionState {
             Source::Link(_) | Source::New { .. } => None,
         };
         let (document, may_lose, is_merged) = (Box::new(document), false, false);
-        let saving = SaveRequest { session: self.id, path, document, remarks, opened, may_lose, is_merged };
-        let kinds = services.world.kinds;
-        services.tasks.run("save", move || saving.run(kinds));
+        let saving = SaveRequest { session: self.id, path, document, remarks, opened, device, may_lose, is_merged };
+        let (kinds, store) = (services.world.kinds, services.world.store.clone());
+        services.tasks.run("save", move || saving.run(kinds, &store));
     }
 
     /// Starts a task that lists the backups and writes of a device.

@@ -60,7 +60,7 @@ pub trait HasProfile: HasMemory {
                 document.body = body;
             }
             let remarks = self.save_remarks();
-            self.session_mut().write_document(path, document, remarks, services);
+            self.session_mut().write_document(path, None, document, remarks, services);
         } else if let Some(known) = self.last_read_profile().filter(|_| self.saves_last_reading()) {
             let (body, remarks) = match known {
                 Ok(known) => known,
@@ -72,7 +72,8 @@ pub trait HasProfile: HasMemory {
             let mut document = new_document(body);
             document.note = Some("as it was read last; the device did not answer when this was saved".to_owned());
             let remarks = std::iter::once(Text::new("session.saved_as_read")).chain(remarks).collect();
-            self.session_mut().write_document(path, document, remarks, services);
+            let device = self.device_key();
+            self.session_mut().write_document(path, device, document, remarks, services);
         } else if self.try_submit(Self::read_all(), services) {
             self.session_mut().save_to = Some(path);
         }

@@ -9,7 +9,8 @@ use crate::app::diverged::ProfileConflict;
 use crate::app::studio::SessionId;
 use crate::app::{KindRegistry, Text};
 use crate::profile::{ProfileDocument, ProfileFormats};
-use crate::store::{FileError, FileErrorKind, overwrite_text, read_file};
+use crate::store::{DeviceKey, Event, FileError, FileErrorKind, Store, overwrite_text, read_file};
+use crate::worker::record_event;
 
 /// A profile file as last read or written.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +44,8 @@ pub struct SaveRequest {
     pub remarks: Vec<Text>,
     /// Expected state of the open file. Another file is replaced without a check.
     pub opened: Option<FileSnapshot>,
+    /// The device from which the values were read. The logbook records that they were saved.
+    pub device: Option<DeviceKey>,
     /// Whether the user has agreed to the loss of comments.
     pub may_lose: bool,
     /// Whether the edits were merged with changes made by another program. If so, they are no longer edits of this
@@ -52,7 +55,7 @@ pub struct SaveRequest {
 
 impl SaveRequest {
     /// Writes the file, or returns the reason why it was not written. Runs in a task.
-    pub(in crate::app) fn run(mut self, kinds: KindRegistry) -> Action {
+    pub(in crate::app) fn run(mut self, kinds: KindRegistry, store: &Store) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
@@ -74,6 +77,9 @@ impl SaveRequest {
             return Action::Done(TaskResult::WouldLose(Box::new(self), lost));
         }
         let result: Result<(), FileError> = overwrite_text(&self.path, &text);
+        if let (Ok(()), Some(device)) = (&result, &self.device) {
+            record_event(store, device, &Event::saved_profile(&self.path));
+        }
         // The key is determined after writing. A symbolic link may lead to another file by now, and a new file exists
         // only now.
         let file = ProfileFile { key: file_key(&self.path), path: self.path.clone(), text };

@@ -1,7 +1,7 @@
 //! Entries of the logbook.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 
@@ -183,6 +183,13 @@ impl Event {
     pub fn new(kind: EntryKind, description: impl Into<String>) -> Self {
         Event { kind, description: description.into(), items: Vec::new(), backup: None }
     }
+
+    /// Creates the event that a profile of the device was saved to a file.
+    pub fn saved_profile(path: &Path) -> Self {
+        let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let saved = Event::new(EntryKind::Backup, format!("saved to {}", full.display()));
+        Event { backup: Some(full), ..saved }
+    }
 }
 
 /// An entry of the logbook with the result of the write, if it has one.
@@ -236,6 +243,6 @@ pub struct EntryFilter {
     pub asset: Option<String>,
     /// Time of the oldest entry.
     pub since: Option<Timestamp>,
-    /// Text contained in the description, the device, the user or the bench. The case of ASCII letters is ignored.
+    /// Text contained in the description, the device, its asset at that time, the user or the bench. The case of ASCII letters is ignored.
     pub search: String,
 }

@@ -176,6 +176,14 @@ impl Logbook {
         query::devices(&self.database).map_err(|error| self.database_error(error))
     }
 
+    /// Returns the names of all assets to which a device was ever assigned, in their order.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be read.
+    pub fn assets(&self) -> Result<Vec<String>, LogbookError> {
+        query::assets(&self.database).map_err(|error| self.database_error(error))
+    }
+
     /// Returns the last `limit` entries that match the filter, newest first.
     ///
     /// # Errors

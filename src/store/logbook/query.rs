@@ -32,7 +32,8 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
             = (:device, :device_type, :device_number, :is_virtual))
         AND (:since IS NULL OR rtrim(event.at, 'Z') >= rtrim(:since, 'Z'))
         AND (:search = '' OR instr(lower(description || char(10) || kind || char(10) || device_type || char(10)
-            || serial_number || char(10) || coalesce(user, '') || char(10) || bench), lower(:search)))
+            || serial_number || char(10) || coalesce(user, '') || char(10) || bench || char(10)
+            || coalesce({ASSET}, '')), lower(:search)))
         AND (:asset IS NULL OR (kind, serial_number, device_type, is_virtual) IN (
                 SELECT named.kind, named.serial_number, named.device_type, named.is_virtual
                 FROM event AS named WHERE named.asset = :asset)
@@ -60,6 +61,12 @@ pub(super) fn devices(database: &Connection) -> rusqlite::Result<Vec<DeviceKey>>
     let sql = "SELECT DISTINCT kind, serial_number, device_type, is_virtual FROM event
         ORDER BY kind, serial_number, device_type, is_virtual";
     database.prepare(sql)?.query_map([], read_device)?.collect()
+}
+
+/// Returns the names of all assets, in their order.
+pub(super) fn assets(database: &Connection) -> rusqlite::Result<Vec<String>> {
+    let sql = "SELECT DISTINCT asset FROM event WHERE asset IS NOT NULL ORDER BY asset";
+    database.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
 }
 
 pub(super) fn write_entries(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {

@@ -376,6 +376,13 @@ fn an_asset_has_the_entries_of_its_devices_while_they_are_assigned() {
     assert_eq!(of("motor 17"), ["second encoder", assigned, "first encoder", assigned]);
     assert_eq!(of("shelf"), ["on the shelf", "asset: motor 17 → shelf"]);
     assert_eq!(of("Motor 17"), [] as [String; 0]);
+    assert_eq!(logbook.assets().unwrap(), ["motor 17", "shelf"]);
+    let search = |text: &str| {
+        let filter = EntryFilter { search: text.to_owned(), ..EntryFilter::default() };
+        let entries = logbook.entries(&filter, 10).unwrap();
+        entries.into_iter().map(|entry| entry.description).collect::<Vec<_>>()
+    };
+    assert_eq!(search("Motor 17"), ["second encoder", assigned, "asset: motor 17 → shelf", "first encoder", assigned]);
 }
 
 #[test]

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
-use super::{device_name, kind_text, result, time};
+use super::{description, device_name, kind_text, old_and_new, result, time};
 use crate::app::{Action, AnyDevice, DeviceCommand, MAX_NOTE, Studio, Text};
-use crate::profile::ChangedItem;
-use crate::store::{DeviceKey, Entry, Origin};
+use crate::store::{DeviceKey, Entry, EntryKind, Origin};
 use crate::ui::controls::{card, card_with_trailing, enabled_button, fill_width, paragraph, row, text_entry};
 use crate::ui::{Theme, icons};
 
@@ -33,10 +32,15 @@ pub(super) fn entry_ui(
                 facts_ui(ui, theme, studio, entry);
                 if !entry.items.is_empty() {
                     ui.add_space(theme.space.between);
-                    items_ui(ui, theme, &entry.items);
+                    items_ui(ui, theme, entry);
                 }
                 if let Some(path) = &entry.backup {
                     ui.add_space(theme.space.between);
+                    // The path of a saved profile is its description.
+                    if entry.kind != EntryKind::Backup {
+                        let hint = theme.translate("logbook.backup_hint");
+                        ui.label(theme.label(theme.translate("logbook.backup"))).on_hover_text(hint);
+                    }
                     backup_ui(ui, theme, studio, (&entry.device, path), actions);
                 }
                 ui.add_space(theme.space.inside);
@@ -50,8 +54,12 @@ pub(super) fn entry_ui(
 
 fn facts_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
     row(ui, theme, &theme.translate("logbook.device"), device_name(theme, studio, &entry.device, true));
-    if entry.items.is_empty() {
-        row(ui, theme, &theme.translate("logbook.text"), &entry.description);
+    if let Some(asset) = entry.asset.as_ref().filter(|_| entry.kind != EntryKind::Assigned) {
+        row(ui, theme, &theme.translate("asset_card.name"), asset);
+    }
+    let description = description(entry);
+    if entry.items.is_empty() && !description.is_empty() {
+        row(ui, theme, &theme.translate("logbook.text"), description);
     }
     if entry.kind.has_result() {
         let (_, colour, words) = result(theme, entry);
@@ -72,13 +80,16 @@ fn origin_ui(ui: &mut Ui, theme: &Theme, origin: &Origin) {
     }
 }
 
-fn items_ui(ui: &mut Ui, theme: &Theme, items: &[ChangedItem]) {
+fn items_ui(ui: &mut Ui, theme: &Theme, entry: &Entry) {
     ui.spacing_mut().item_spacing.y = theme.space.inside;
-    for item in items {
-        let name = item.name.as_ref().map_or_else(|| item.item.clone(), |name| format!("{}  {name}", item.item));
+    for item in &entry.items {
+        let name = match (entry.kind, &item.name) {
+            (EntryKind::Assigned, _) => theme.translate("asset_card.name"),
+            (_, Some(name)) => format!("{}  {name}", item.item),
+            (_, None) => item.item.clone(),
+        };
         paragraph(ui, theme.label(name));
-        let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
-        ui.add(Label::new(theme.monospace(format!("{old}  →  {new}"))).wrap().selectable(true));
+        ui.add(Label::new(theme.monospace(old_and_new(item))).wrap().selectable(true));
     }
 }
 
@@ -91,7 +102,6 @@ fn backup_ui(
     actions: &mut Vec<Action>,
 ) {
     let device = studio.devices().iter().map(Box::as_ref).find(|own| own.logbook_key().as_ref() == Some(device));
-    ui.label(theme.label(theme.translate("logbook.backup"))).on_hover_text(theme.translate("logbook.backup_hint"));
     ui.horizontal_wrapped(|ui| {
         if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
             actions.push(Action::Open(path.to_owned()));

@@ -15,6 +15,7 @@ use super::page::page_margin;
 use super::row_selection::selection_step;
 use super::{Theme, icons};
 use crate::app::{Action, LogbookMatches, Rgb, Studio, Text};
+use crate::profile::ChangedItem;
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Outcome};
 
 /// The logbook page, as listed in the help.
@@ -26,9 +27,13 @@ const SEARCH: f32 = 200.0;
 /// Widths of the columns with the time, the result and the device in points.
 const TIME: f32 = 128.0;
 const RESULT: f32 = 18.0;
-const DEVICE: f32 = 168.0;
+const DEVICE: f32 = 212.0;
+const NARROW_DEVICE: f32 = 168.0;
 /// Width of the selected entry beside the list in points.
 const DETAIL: f32 = 330.0;
+const NARROW_DETAIL: f32 = 272.0;
+/// Width of the page in points from which the usual widths are used.
+const WIDE: f32 = 960.0;
 
 #[derive(Default)]
 pub(super) struct LogbookView {
@@ -84,7 +89,8 @@ fn matches_ui(
         return;
     }
     let room = ui.available_rect_before_wrap();
-    let (list, detail) = room.split_left_right_at_x(room.right() - DETAIL);
+    let detail = if room.width() < WIDE { NARROW_DETAIL } else { DETAIL };
+    let (list, detail) = room.split_left_right_at_x(room.right() - detail);
     let list = Rect { max: list.max - egui::vec2(theme.space.groups, 0.0), ..list };
     ui.scope_builder(UiBuilder::new().max_rect(list), |ui| rows_ui(ui, theme, studio, view, &matches.entries));
     let selected = view.selected.and_then(|id| matches.entries.iter().find(|entry| entry.id == id));
@@ -122,6 +128,16 @@ fn toolbar_ui(
             filter.device = device.checked_sub(1).and_then(|at| matches.devices.get(at)).cloned();
             changed = true;
         }
+        // The asset of the filter is the one after "all assets". Without any asset, there is nothing to choose.
+        if !matches.assets.is_empty() || filter.asset.is_some() {
+            let position = |asset: &String| matches.assets.iter().position(|own| own == asset);
+            let mut asset = filter.asset.as_ref().and_then(position).map_or(0, |at| at + 1);
+            let options = std::iter::once(theme.translate("logbook.all_assets")).chain(matches.assets.iter().cloned());
+            if dropdown(ui, &theme.translate("asset_card.name"), &mut asset, options.enumerate()) {
+                filter.asset = asset.checked_sub(1).and_then(|at| matches.assets.get(at)).cloned();
+                changed = true;
+            }
+        }
         let kinds = EntryKind::ALL.map(|kind| (Some(kind), theme.translate(kind_text(kind))));
         let options = std::iter::once((None, theme.translate("logbook.all_kinds"))).chain(kinds);
         changed |= dropdown(ui, &theme.translate("logbook.kind"), &mut filter.what, options);
@@ -148,6 +164,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &mut LogbookView, 
         selection_step(ui, keys).and_then(|step| selected?.checked_add_signed(step)).filter(|row| *row < entries.len());
     let selected = moved.or(selected);
     ui.spacing_mut().item_spacing.y = 0.0;
+    let device = if ui.available_width() < WIDE - NARROW_DETAIL { NARROW_DEVICE } else { DEVICE };
     let mut table = TableBuilder::new(ui)
         .id_salt("logbook")
         .auto_shrink(false)
@@ -161,7 +178,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &mut LogbookView, 
     table
         .column(Column::exact(TIME))
         .column(Column::exact(RESULT))
-        .column(Column::exact(DEVICE).clip(true))
+        .column(Column::exact(device).clip(true))
         .column(Column::remainder().clip(true))
         .body(|body| {
             body.rows(ROW, entries.len(), |mut row| {
@@ -191,10 +208,13 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
         ui.label(RichText::new(icon).color(colour)).on_hover_text(words);
     });
     row.col(|ui| {
-        ui.add(Label::new(device_name(theme, studio, &entry.device, false)).truncate());
+        let name = RichText::new(device_name(theme, studio, &entry.device, false));
+        // The word "virtual" may be cut.
+        let name = if entry.device.is_virtual { name.color(theme.palette.muted) } else { name };
+        ui.add(Label::new(name).truncate());
     });
     row.col(|ui| {
-        let text = format!("{}  {}", theme.translate(kind_text(entry.kind)), entry.description.replace('\n', " "));
+        let text = format!("{}  {}", theme.translate(kind_text(entry.kind)), description(entry).replace('\n', " "));
         ui.add(Label::new(text).truncate());
     });
 }
@@ -209,7 +229,8 @@ fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
         None => {
             let words = theme.translate(kind_text(entry.kind));
             match entry.kind {
-                EntryKind::Connected | EntryKind::Assigned => (icons::PLUGS_CONNECTED, palette.muted, words),
+                EntryKind::Connected => (icons::PLUGS_CONNECTED, palette.muted, words),
+                EntryKind::Assigned => (icons::PUSH_PIN, palette.muted, words),
                 EntryKind::Status => (icons::WARNING_CIRCLE, palette.warn, words),
                 EntryKind::Backup => (icons::FLOPPY_DISK, palette.muted, words),
                 EntryKind::Check => (icons::LIST_CHECKS, palette.muted, words),
@@ -220,6 +241,23 @@ fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
             }
         }
     }
+}
+
+/// Returns the description of an entry. Where its kind says everything else, it is the name or the path alone.
+fn description(entry: &Entry) -> String {
+    match (entry.kind, entry.items.as_slice(), &entry.backup) {
+        (EntryKind::Connected, ..) => String::new(),
+        (EntryKind::Assigned, [ChangedItem { old: None, new: Some(new), .. }], _) => new.clone(),
+        (EntryKind::Assigned, [item], _) => old_and_new(item),
+        (EntryKind::Backup, _, Some(path)) => path.display().to_string(),
+        _ => entry.description.clone(),
+    }
+}
+
+/// Returns the old and the new value of an item.
+fn old_and_new(item: &ChangedItem) -> String {
+    let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
+    format!("{old}  →  {new}")
 }
 
 fn kind_text(kind: EntryKind) -> &'static str {

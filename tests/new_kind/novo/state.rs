@@ -99,7 +99,8 @@ impl Encoder {
             self.load_draft(services);
         }
         let edits = self.staged.is_dirty().then(|| self.staged.count());
-        self.session.save_read_values(Body::new(read), edits, Vec::new(), services);
+        let device = self.device_key();
+        self.session.save_read_values(device, Body::new(read), edits, Vec::new(), services);
         self.list_backups(services);
     }
 }

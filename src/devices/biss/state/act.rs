@@ -6,7 +6,7 @@ use super::action::BissAction;
 use super::encoder::Encoder;
 use super::words;
 use crate::app::services::Services;
-use crate::app::session::{HasMemory, HasProfile, Phase, SessionEvents};
+use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, SessionEvents};
 use crate::app::{ActionContext, PendingEdits, Severity, Text};
 use crate::devices::biss::jobs::{BissJob, Change};
 use crate::devices::biss::profile::{BissProfile, RegisterRange};
@@ -130,6 +130,7 @@ impl Encoder {
     pub(super) fn save_profile(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::unsaved_profile_warning(&profile).into_iter().collect();
-        self.session.save_read_values(Body::new(profile), edits, remarks, services);
+        let device = self.device_key();
+        self.session.save_read_values(device, Body::new(profile), edits, remarks, services);
     }
 }

@@ -8,7 +8,7 @@ use super::staged::Edit;
 use super::unit::HiperdriveDevice;
 use super::{explain, words};
 use crate::app::services::Services;
-use crate::app::session::{HasMemory, HasProfile};
+use crate::app::session::{HasDraft, HasMemory, HasProfile};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
 use crate::devices::hiperdrive::procedures::Temperature;
@@ -159,6 +159,7 @@ impl HiperdriveDevice {
         self.handle_scale_change(&profile.image);
         self.staged.refresh_partially(&profile.image);
         let edits = self.is_dirty().then(|| self.staged.count());
-        self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
+        let device = self.device_key();
+        self.session.save_read_values(device, Body::new(profile), edits, Vec::new(), services);
     }
 }

@@ -7,7 +7,7 @@ use super::words;
 use crate::app::FrameExplanation;
 use crate::app::review::written_texts;
 use crate::app::services::{JobState, Services};
-use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, Source, first};
+use crate::app::session::{EarlyEnd, HasDraft, HasMemory, Kind, SessionEvents, Source, first};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, JobStep, SavedProfile, Value,
@@ -156,7 +156,8 @@ impl Encoder {
         let remarks = locked
             .map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number))
             .collect();
-        self.session.save_read_values(Body::new(saved.profile), edits, remarks, services);
+        let device = self.device_key();
+        self.session.save_read_values(device, Body::new(saved.profile), edits, remarks, services);
     }
 
     fn apply_completed_steps(&mut self, error: &JobError, services: &mut Services) {

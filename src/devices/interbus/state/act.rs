@@ -4,7 +4,7 @@ use super::action::InterbusAction;
 use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::services::Services;
-use crate::app::session::{HasMemory, HasProfile, Phase, SessionEvents};
+use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, SessionEvents};
 use crate::app::{DeviceFile, FileQuestion, Text};
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::profile::InterbusProfile;
@@ -70,7 +70,8 @@ impl Encoder {
             profile.names = wanted.names.clone();
         }
         let edits = self.is_dirty().then(|| self.staged.count());
-        self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
+        let device = self.device_key();
+        self.session.save_read_values(device, Body::new(profile), edits, Vec::new(), services);
     }
 
     /// Reads the next unread part of a virtual encoder. Returns `false` if there is none.

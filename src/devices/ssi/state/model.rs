@@ -78,7 +78,7 @@ impl DeviceModel for Encoder {
             Source::File { document, .. } => ProfileDocument { body, ..(**document).clone() },
             Source::Link(_) | Source::New { .. } => new_document(body),
         };
-        self.session.write_document(path, document, Vec::new(), services);
+        self.session.write_document(path, None, document, Vec::new(), services);
     }
 
     fn is_savable(&self) -> bool {
