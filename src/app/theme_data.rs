@@ -37,6 +37,8 @@ pub struct Palette {
     pub surface: Rgb,
     pub raised: Rgb,
     pub sunken: Rgb,
+    /// Background of an entry. In the light theme, a grey one would look disabled.
+    pub entry: Rgb,
     pub line: Rgb,
     pub text: Rgb,
     pub muted: Rgb,
@@ -131,7 +133,7 @@ mod tests {
         for theme in [ColorScheme::Dark, ColorScheme::Light] {
             let palette = look.palette(theme);
             let Palette { text, muted, accent, staged, good, warn, bad, .. } = *palette;
-            for surface in [palette.surface, palette.raised, palette.sunken] {
+            for surface in [palette.surface, palette.raised, palette.sunken, palette.entry] {
                 for (name, colour) in [
                     ("text", text),
                     ("muted", muted),

@@ -14,7 +14,7 @@ pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl
     card_with_trailing(ui, theme, title, |_| {}, content)
 }
 
-/// Draws a card with a heading. `aside` draws to the right of the heading.
+/// Draws a card with a heading. `aside` draws to the right of the heading, or below it if there is not enough room.
 pub(crate) fn card_with_trailing<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -27,14 +27,33 @@ pub(crate) fn card_with_trailing<R>(
         .card_frame()
         .show(ui, |ui| {
             fill_width(ui);
-            ui.horizontal(|ui| {
-                ui.label(theme.heading(heading.clone()));
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
-            });
+            heading_ui(ui, theme, &heading, aside);
             ui.add_space(theme.space.inside);
             with_label_column(ui, &heading, content)
         })
         .inner
+}
+
+/// Draws the heading of a card with `aside` to the right or below. The width that is too small for one row is known
+/// from an earlier frame.
+fn heading_ui(ui: &mut Ui, theme: &Theme, heading: &str, aside: impl FnOnce(&mut Ui)) {
+    let id = ui.scope_id().with("aside_below").with(heading);
+    let width = ui.available_width();
+    let is_narrow = ui.data(|data| data.get_temp::<f32>(id)).is_some_and(|too_small| width <= too_small);
+    let to_the_right = egui::Layout::right_to_left(egui::Align::Center);
+    if is_narrow {
+        ui.label(theme.heading(heading));
+        ui.horizontal(|ui| ui.with_layout(to_the_right, aside));
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.label(theme.heading(heading));
+        let least = ui.cursor().left();
+        if ui.with_layout(to_the_right, aside).response.rect.left() < least - 0.5 {
+            ui.data_mut(|data| data.insert_temp(id, width));
+            ui.ctx().request_repaint();
+        }
+    });
 }
 
 /// Draws a heading that opens or closes its section. Returns whether it was clicked.

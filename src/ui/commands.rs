@@ -113,7 +113,8 @@ fn program_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Comman
         act("shell.open", Action::AskOpen).with_shortcut(COMMAND, Key::O),
         act("shell.connect", Action::Connect(connect::ConnectAction::Open)),
         act("shell.virtual_device", Action::OpenVirtual),
-        act("shell.stop", Action::Stop).enabled_if(studio.is_moving() || studio.can_stop() || studio.has_control()),
+        act(if studio.has_drives() { "shell.stop_all" } else { "shell.stop" }, Action::Stop)
+            .enabled_if(studio.is_moving() || studio.can_stop() || studio.has_control()),
     ];
     let keys = TAB_KEYS.into_iter().map(Some).chain(std::iter::repeat_with(|| None));
     commands.extend(views.tabs.tabs().zip(keys).map(|(tab, key)| {

@@ -6,7 +6,7 @@ use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 pub use super::cards::card;
 pub(crate) use super::cards::{card_with_trailing, disclosure, folding_card, folding_card_with_trailing};
-pub(crate) use super::entries::{clear_secret, labelled_entry, mono_entry, secret_entry};
+pub(crate) use super::entries::{clear_secret, labelled_number_entry, mono_entry, secret_entry};
 pub use super::entries::{committed_entry, text_entry};
 pub(crate) use super::label_column::label_width;
 pub use super::label_column::{entry, row};
@@ -261,6 +261,8 @@ pub(crate) fn options<T: PartialEq + Copy>(
             response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
             if response.clicked() {
                 *value = own;
+                // Tab continues from here.
+                response.request_focus();
             }
         }
     });

@@ -56,8 +56,9 @@ pub(crate) fn clear_secret(ui: &Ui, response: &Response, text: &mut String) {
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// Draws a one-line entry to the right of its label. Screen readers name the entry by the label.
-pub(crate) fn labelled_entry(
+/// Draws a one-line entry of a number to the right of its label, with the decimal sign of the current language. Screen
+/// readers name the entry by the label.
+pub(crate) fn labelled_number_entry(
     ui: &mut Ui,
     theme: &Theme,
     what: impl Into<Text>,
@@ -66,7 +67,13 @@ pub(crate) fn labelled_entry(
     hint: &str,
 ) -> Response {
     let word = theme.format_text(&what.into());
-    entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
+    // Parsing accepts both decimal signs.
+    let mut shown = theme.digits(text);
+    let response = entry(ui, theme, &word, |ui| text_entry(ui, &mut shown, width, &word, hint));
+    if response.changed() {
+        *text = shown;
+    }
+    response
 }
 
 /// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. Until the text takes effect,

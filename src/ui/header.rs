@@ -215,18 +215,20 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Draws the STOP button. The button ends every running job and every motion in all sessions. Its width doubles while a
-/// drive moves. While this window moves a drive, the button acts on press instead of release and ends only motion.
+/// Draws the STOP button. The button ends every running job and every motion in all sessions. While this window moves a
+/// drive, the button acts on press instead of release and ends only motion, and its width is doubled. Without a drive,
+/// its label names the jobs. The tooltip says what a press stops at this moment.
 fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
     // Live values alone are no reason for an alarm.
     let is_alarming = moves || studio.is_working() || studio.has_control();
-    let (word, hint) = if studio.has_drives() {
-        (theme.translate("hd_bar.stop"), theme.translate("hd_bar.stop_hint"))
-    } else {
-        (theme.translate("shell.stop"), theme.translate("shell.stop_hint"))
+    let (word, hint) = match (studio.has_drives(), by_hand) {
+        (true, true) => ("hd_bar.stop", "shell.stop_motion_hint"),
+        (true, false) => ("hd_bar.stop", "shell.stop_all_hint"),
+        (false, _) => ("shell.stop", "shell.stop_hint"),
     };
+    let (word, hint) = (theme.translate(word), theme.translate(hint));
     let text = format!("{}  {word}", icons::STOP);
     let palette = theme.palette;
     let stop = if active && !is_alarming {

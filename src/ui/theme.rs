@@ -178,7 +178,7 @@ impl Theme {
         visuals.window_shadow = egui::Shadow::NONE;
         visuals.popup_shadow = egui::Shadow::NONE;
         visuals.extreme_bg_color = palette.sunken.into();
-        visuals.text_edit_bg_color = Some(palette.sunken.into());
+        visuals.text_edit_bg_color = Some(palette.entry.into());
         visuals.faint_bg_color = palette.sunken.into();
         visuals.code_bg_color = palette.sunken.into();
         visuals.hyperlink_color = palette.accent.into();

@@ -73,6 +73,17 @@ fn pads_state_and_travel_are_seen_together() {
     assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
 }
 
+/// Issue 26: the keyboard goes on from a speed that was chosen with the pointer.
+#[test]
+fn tab_continues_after_a_clicked_preset() {
+    let mut screen = in_control_on_screen("sim:", [1280.0, 800.0]);
+    preset(&screen, "50").click();
+    screen.steps();
+    assert!(preset(&screen, "50").accesskit_node().is_focused());
+    screen.key(egui::Key::Tab);
+    assert!(preset(&screen, "100").accesskit_node().is_focused());
+}
+
 /// Issue 26.2: a preset sets the speed and begins nothing; it also replaces what was typed, even where that is no
 /// percentage.
 #[test]

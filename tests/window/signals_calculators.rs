@@ -55,6 +55,23 @@ fn the_input_circuit_is_computed_while_typing() {
     assert!(screen.shows("338,6 kHz"));
 }
 
+/// Issue 26: the entries have the decimal sign of the language, from the start and after a change of the language.
+#[test]
+fn entries_are_shown_with_the_decimal_sign_of_the_language() {
+    let mut screen = Screen::calculator("page.synchronise");
+    let phase = |screen: &Screen| {
+        let label = screen.say("synchronise.phase");
+        let entry = screen.harness.get_by_role_and_label(egui::Role::TextInput, &label);
+        entry.accesskit_node().value().unwrap_or_default()
+    };
+    assert_eq!(phase(&screen), "0.02");
+    screen.act(Action::SetLanguage(Language::German));
+    assert_eq!(phase(&screen), "0,02");
+    assert!(screen.shows("339,02000"));
+    screen.retype("synchronise.phase", "0.25");
+    assert_eq!(phase(&screen), "0,25");
+}
+
 /// Section 4: A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods; a fifth of a period further φ is half a period off.
 #[test]
 fn absolute_and_analog_positions_are_synchronised_while_typing() {

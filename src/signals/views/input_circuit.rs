@@ -7,7 +7,7 @@ use crate::app::Text;
 use crate::signals::state::input_circuit::{Form, InputCircuitResult, OperatingPoint};
 use crate::signals::state::{TEXTS, Unit};
 use crate::signals::views::translate;
-use crate::ui::controls::{card, labelled_entry, paragraph, row, show_error_below, split};
+use crate::ui::controls::{card, labelled_number_entry, paragraph, row, show_error_below, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
@@ -51,7 +51,7 @@ fn entries_ui(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text
             ("input.resistance", &mut form.resistance, "10k"),
             ("input.capacitance", &mut form.capacitance, "47p"),
         ] {
-            labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint);
+            labelled_number_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint);
         }
         show_error_below(ui, theme, refused);
     });

@@ -8,7 +8,7 @@ use crate::signals::state::TEXTS;
 use crate::signals::state::interpolation::{INTERVALS, interpolate, table_errors};
 use crate::signals::views::translate;
 use crate::ui::Theme;
-use crate::ui::controls::{card, dropdown, entry, labelled_entry, paragraph, problem_ui, row, split};
+use crate::ui::controls::{card, dropdown, entry, labelled_number_entry, paragraph, problem_ui, row, split};
 
 pub(super) struct OctantUiState {
     sine: String,
@@ -49,7 +49,7 @@ fn tables_ui(ui: &mut Ui, theme: &Theme) {
 
 fn voltage_pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     for (id, text) in [("octant.sine", &mut view.sine), ("octant.cosine", &mut view.cosine)] {
-        labelled_entry(ui, theme, TEXTS.text(id), text, 88.0, "");
+        labelled_number_entry(ui, theme, TEXTS.text(id), text, 88.0, "");
     }
     let word = translate(theme, "octant.intervals");
     entry(ui, theme, &word, |ui| {

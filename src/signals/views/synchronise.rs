@@ -7,8 +7,8 @@ use crate::signals::state::synchronise::{Form, PhaseInput, SynchroniseAction as 
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::SynchronisationResult};
 use crate::signals::views::translate;
 use crate::ui::controls::{
-    card, card_with_trailing, dropdown, enabled_button, entry, icon_button, labelled_entry, paragraph, problem_ui, row,
-    show_error_below, split, verdict_ui,
+    card, card_with_trailing, dropdown, enabled_button, entry, icon_button, labelled_number_entry, paragraph,
+    problem_ui, row, show_error_below, split, verdict_ui,
 };
 use crate::ui::widgets::{StepRing, series_colour, step_ring};
 use crate::ui::{Theme, controls, icons};
@@ -67,7 +67,7 @@ fn to_action(action: Page) -> Action {
 }
 
 fn typed_entry_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
-    labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint);
+    labelled_number_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint);
 }
 
 fn positions_ui(

@@ -10,7 +10,7 @@ use crate::app::recorder::{Cursor, Series, TriggerState};
 use crate::ui::Theme;
 
 /// Lane height in points below which the names of the lines are omitted.
-const LOW_LANE_HEIGHT: f32 = 40.0;
+const LOW_LANE_HEIGHT: f32 = 64.0;
 
 pub(super) fn series_colour(theme: &Theme, line: &Series) -> Color32 {
     let series = &theme.palette.series;

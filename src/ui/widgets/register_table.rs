@@ -239,7 +239,9 @@ fn body_ui(
                         paint::bits(ui, theme, rect, columns, bits);
                         let own = ui.interact(rect, id.with((place, number)), Sense::hover());
                         let words = format!("{} {}", bits.bits, bits.name);
-                        own.widget_info(|| value_info(Role::Row, &words, &format!("{} {}", bits.value, bits.meaning)));
+                        let value = format!("{} {}", bits.value, bits.meaning);
+                        own.widget_info(|| value_info(Role::Row, &words, &value));
+                        own.on_hover_ui(|ui| paint::show_bits_tooltip(ui, theme, bits));
                     }
                 }
             }
@@ -290,7 +292,10 @@ fn paint_heading(
         view.refused = None;
         ui.memory_mut(|memory| memory.request_focus(id));
     }
-    paint::paint_heading(ui, theme, rect, own, view.is_folded(group), paint::State::from_response(selected, &response));
+    let state = paint::State::from_response(selected, &response);
+    if !paint::paint_heading(ui, theme, rect, own, view.is_folded(group), state) {
+        response.on_hover_text(&own.note);
+    }
 }
 
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]

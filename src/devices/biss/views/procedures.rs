@@ -13,8 +13,8 @@ use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
 use crate::devices::biss::views::translate;
 use crate::ui::controls::{
-    button_with_reason, card, empty_placeholder, enabled_button, folding_card, labelled_entry, options, paragraph, row,
-    show_error_below, two_columns,
+    button_with_reason, card, empty_placeholder, enabled_button, folding_card, labelled_number_entry, options,
+    paragraph, row, show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -143,7 +143,7 @@ fn mounting_ui(
         procedure_checkbox_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_requirements_text());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
-                theme.add_gap(ui);
+                indent_like_checkbox(ui);
                 ui.checkbox(own.save_result, translate(theme, "mounting_card.save"));
             });
         });
@@ -167,9 +167,14 @@ fn mounting_ui(
 fn procedure_checkbox_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, translate(theme, id));
     ui.horizontal_top(|ui| {
-        theme.add_gap(ui);
+        indent_like_checkbox(ui);
         paragraph(ui, theme.caption(theme.format_text(words)));
     });
+}
+
+/// Adds the space that aligns the next widget of a row with the text of a checkbox above.
+fn indent_like_checkbox(ui: &mut Ui) {
+    ui.add_space(ui.spacing().icon_width + ui.spacing().icon_spacing);
 }
 
 /// Returns the requested procedures, or the reason why they cannot be reviewed yet.
@@ -223,8 +228,8 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         paragraph(ui, theme.label(translate(theme, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
-        labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
-        labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
+        labelled_number_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
+        labelled_number_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
         // Only the first error is shown, with the name of its field.
         show_error_below(
             ui,

@@ -13,7 +13,7 @@ use crate::devices::hiperface::state::commutation::{
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{
-    button_with_reason, card, card_with_trailing, dropdown, entry, folding_card, icon_button, labelled_entry,
+    button_with_reason, card, card_with_trailing, dropdown, entry, folding_card, icon_button, labelled_number_entry,
     paragraph, split, text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
@@ -21,7 +21,7 @@ use crate::ui::{Theme, icons};
 const ENTRY_WIDTH: f32 = 96.0;
 const LIMIT: f32 = 56.0;
 const READ_BUTTON_WIDTH: f32 = 160.0;
-const POSITION_WIDTH: f32 = 80.0;
+const POSITION_WIDTH: f32 = 104.0;
 /// Minimum width in points for showing the position on the same line as its buttons.
 const MIN_ONE_LINE_WIDTH: f32 = 430.0;
 /// Minimum width in points for two entries in one row.
@@ -173,7 +173,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
 }
 
 fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
-    labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint)
+    labelled_number_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint)
 }
 
 fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {

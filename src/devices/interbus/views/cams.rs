@@ -7,14 +7,14 @@ mod scale;
 mod table;
 mod window;
 
-use egui::{RichText, Ui};
+use egui::{Label, RichText, Ui};
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::cams::Chart;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::translate;
-use crate::ui::controls::{card, empty_placeholder, enabled_button, paragraph, two_columns};
+use crate::ui::controls::{card, empty_placeholder, enabled_button, two_columns};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -74,16 +74,16 @@ fn unread_program_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: Pro
         }
         empty_placeholder(ui, theme, &translate(theme, "ib_cams.unread"), None);
         let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
-        paragraph(ui, RichText::new(theme.format_text(&cost)).color(theme.palette.warn));
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
+            ui.add(Label::new(RichText::new(theme.format_text(&cost)).color(theme.palette.warn)).wrap());
             if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "ib_cams.read_one")).clicked() {
                 actions.push(Action::device(id, Interbus::ReadPrograms(vec![program])));
             }
             if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "ib_cams.read_all")).clicked() {
                 actions.push(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
             }
+            ui.add(Label::new(theme.caption(translate(theme, "ib_cams.read_words"))).wrap());
         });
-        paragraph(ui, theme.caption(translate(theme, "ib_cams.read_words")));
     });
 }

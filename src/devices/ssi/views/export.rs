@@ -1,6 +1,6 @@
 //! The export page: the layout in formats of other programs, to copy or save. Pictures are shown as pictures.
 
-use egui::{ScrollArea, Ui};
+use egui::{FontId, Ui};
 
 use super::picture::picture_ui;
 use crate::app::{Action, DeviceCommand};
@@ -52,10 +52,11 @@ pub(super) fn page_ui(
     card_with_trailing(ui, theme, TEXTS.text(own.keyword()), aside, |ui| match (&picture, &text) {
         (Some(picture), _) => picture_ui(ui, theme, picture),
         (None, Ok(text)) => {
-            let height = (ui.ctx().content_rect().height() - 330.0).max(160.0);
-            ScrollArea::both().id_salt(own.keyword()).max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-                ui.add(egui::Label::new(theme.monospace(text)).selectable(true).extend());
-            });
+            let glyph = ui.fonts_mut(|fonts| fonts.glyph_width(&FontId::monospace(theme.sizes.body), '0'));
+            let columns = (ui.available_width() / glyph) as usize;
+            // Copied code must not contain the line breaks of the window.
+            let text = if own == ExportFormat::Sheet { wrap_sheet(text, columns) } else { text.clone() };
+            ui.add(egui::Label::new(theme.monospace(text)).selectable(true).wrap());
         }
         (None, Err(why)) => problem_ui(ui, theme, Some(why)),
     });
@@ -71,4 +72,48 @@ pub(super) fn page_ui(
             }
         });
     });
+}
+
+/// Wraps the lines of a sheet at spaces. A line continues below its value, which follows two spaces.
+fn wrap_sheet(text: &str, columns: usize) -> String {
+    text.lines().map(|line| wrap_line(line, columns)).collect::<Vec<_>>().join("\n")
+}
+
+fn wrap_line(line: &str, columns: usize) -> String {
+    if line.chars().count() <= columns {
+        return line.to_owned();
+    }
+    let indent = line.len() - line.trim_start().len();
+    let start = line.trim_start().rfind("  ").map_or(indent, |at| indent + at + 2);
+    let (label, value) = line.split_at(start);
+    let start = label.chars().count();
+    let (mut wrapped, mut at) = (label.to_owned(), start);
+    for (number, word) in value.split(' ').enumerate() {
+        let length = word.chars().count();
+        if number > 0 && at + 1 + length > columns {
+            wrapped.push('\n');
+            wrapped.extend(std::iter::repeat_n(' ', start));
+            at = start;
+        } else if number > 0 {
+            wrapped.push(' ');
+            at += 1;
+        }
+        wrapped.push_str(word);
+        at += length;
+    }
+    wrapped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_line_of_a_sheet_continues_below_its_value() {
+        let sheet = "Monoflopzeit   15 bis 25 µs (die Pause muss länger sein)\n\n  Code  Dual\nDer Geber wird nicht programmiert.";
+        let expected = "Monoflopzeit   15 bis 25 µs (die\n               Pause muss länger\n               sein)\n\n  Code  Dual\nDer Geber wird nicht\nprogrammiert.";
+        assert_eq!(wrap_sheet(sheet, 32), expected);
+        assert_eq!(wrap_sheet(sheet, 80), sheet);
+        assert_eq!(wrap_sheet("  one_long_word", 5), "  one_long_word", "a word is not broken");
+    }
 }

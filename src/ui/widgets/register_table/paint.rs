@@ -63,7 +63,15 @@ pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &C
     ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, theme.palette.line));
 }
 
-pub(super) fn paint_heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
+/// Draws the heading of a group. Returns whether its note fits.
+pub(super) fn paint_heading(
+    ui: &Ui,
+    theme: &Theme,
+    rect: Rect,
+    group: &RegisterGroup,
+    folded: bool,
+    state: State,
+) -> bool {
     let painter = ui.painter();
     painter.rect_filled(rect, 2.0, theme.palette.raised);
     state.paint(ui, theme, rect);
@@ -76,7 +84,9 @@ pub(super) fn paint_heading(ui: &Ui, theme: &Theme, rect: Rect, group: &Register
     let right = rect.left() + CARET_OFFSET + title.size().x;
     painter.galley(pos2(rect.left() + CARET_OFFSET, middle - title.size().y / 2.0), title, palette.text.into());
     let room = Rangef::new(right - rect.left() + theme.space.groups, rect.width());
-    draw_label(ui, theme, rect, middle, room, theme.caption(&group.note), false);
+    let note = theme.caption(&group.note);
+    draw_label(ui, theme, rect, middle, room, note.clone(), false);
+    !is_too_long(ui, theme, room, &note)
 }
 
 /// Draws a register. Its value is left out while it is being edited. Returns whether its name fits in the usual size.
@@ -235,7 +245,7 @@ pub(super) fn show_tooltip(ui: &mut Ui, theme: &Theme, (kind, columns): (Registe
         (Column::Default, &row.default),
     ];
     for (column, value) in values {
-        if columns.column_range(column).is_none() && !value.is_empty() {
+        if (columns.is_narrow() || columns.column_range(column).is_none()) && !value.is_empty() {
             ui.horizontal(|ui| {
                 ui.label(theme.caption(theme.translate(title(kind, column))));
                 ui.label(theme.monospace(value));
@@ -264,4 +274,10 @@ pub(super) fn show_tooltip(ui: &mut Ui, theme: &Theme, (kind, columns): (Registe
     if let Some(kept) = &row.kept {
         note(ui, icons::FLOPPY_DISK, kept, palette.muted.into());
     }
+}
+
+pub(super) fn show_bits_tooltip(ui: &mut Ui, theme: &Theme, bits: &RegisterBits) {
+    ui.spacing_mut().item_spacing.y = theme.space.inside;
+    ui.label(egui::RichText::new(format!("{} {}", bits.bits, bits.name)).color(theme.palette.text));
+    ui.label(egui::RichText::new(format!("{} {}", bits.value, bits.meaning)).color(theme.palette.muted));
 }

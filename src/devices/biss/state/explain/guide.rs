@@ -81,6 +81,8 @@ pub fn blocker_text(blocker: StartBlocker) -> Text {
         StartBlocker::Measuring => TEXTS.text("guide.measuring"),
         StartBlocker::NoPosition => TEXTS.text("guide.no_position"),
         StartBlocker::Standing => TEXTS.text("guide.standing"),
+        // With fewer decimals, such a speed would be shown as zero.
+        StartBlocker::Turning { rpm } if rpm.abs() < 0.05 => TEXTS.text("guide.creeping"),
         StartBlocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
         StartBlocker::WrongDirection => TEXTS.text("guide.wrong_direction"),
         StartBlocker::Speed { rpm, allowed } => {
@@ -272,6 +274,16 @@ mod tests {
         let texts = outcome_texts(&Outcome::PresetStored { value, singleturn_bits: 17 });
         assert_eq!(texts[0].to_string_in(English), "Preset value saved: 270.000° (step 98304), turn 2.");
         assert!(texts[0].to_string_in(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
+    }
+
+    /// A speed that rounds to zero is not shown as the reason for a shaft that is not at rest.
+    #[test]
+    fn a_creeping_shaft_is_not_said_to_turn_at_zero() {
+        let words = |rpm| blocker_text(StartBlocker::Turning { rpm }).to_string_in(German);
+        assert!(words(0.06).contains("0,1 1/min") && words(-3.0).contains("-3,0 1/min"));
+        for rpm in [0.049, -0.03, 0.0] {
+            assert!(words(rpm).contains("ändert sich noch"), "{rpm}: {}", words(rpm));
+        }
     }
 
     #[test]
