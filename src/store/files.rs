@@ -157,7 +157,7 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     });
     written
         .recv_timeout(WRITE_TIMEOUT)
-        .unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
+        .unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "no process reads the file")))
 }
 
 /// Follows a chain of links and returns the file at its end. The file need not exist.

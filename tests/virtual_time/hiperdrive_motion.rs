@@ -274,6 +274,6 @@ fn a_restarted_drive_does_not_resume_its_job() {
         let stood = bench.position();
         bench.run(3000);
         assert_eq!(bench.position(), stood, "{after} ms");
-        assert_eq!(bench.status() & 0x0004, 0, "nobody has enabled it");
+        assert_eq!(bench.status() & 0x0004, 0, "it is not enabled");
     }
 }

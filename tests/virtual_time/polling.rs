@@ -53,8 +53,8 @@ fn samples_arrive_without_a_job_and_jobs_run_in_between() {
     assert_eq!(bench.worker.polling_interval(), None);
     bench.worker.poll(BACK_TO_BACK);
     let blind = samples(&bench.worker, 3);
-    assert_eq!(position(&blind[0]), Some(None), "nobody has asked what encoder it is");
-    assert_eq!(bench.wakes.load(Ordering::SeqCst), 0, "nobody is woken for a sample");
+    assert_eq!(position(&blind[0]), Some(None), "the encoder has not been identified");
+    assert_eq!(bench.wakes.load(Ordering::SeqCst), 0, "a sample wakes no thread");
     for _ in 0..20 {
         bench.worker.submit(identify()).unwrap();
         let events = until_end(&bench.worker);

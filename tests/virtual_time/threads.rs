@@ -93,7 +93,7 @@ fn a_second_job_is_refused_and_a_stop_ends_a_search_immediately() {
     // The earlier cancellation does not stop the next job.
     *bench.tap.lock().unwrap() = Tap::default();
     bench.worker.submit(HiperfaceJob::Status).unwrap();
-    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "nobody is at 40h at 9600");
+    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "no encoder has address 40h at 9600");
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
     let motion = unit(&desk).moves.motion().unwrap().clone();
     let began = std::time::Instant::now();
     while motion.motion_permit(DriveNumber::FIRST).limits != Some((-204_400, 1000)) {
-        assert!(began.elapsed() < crate::support::LONG, "nobody looks at the limits");
+        assert!(began.elapsed() < crate::support::LONG, "the limits are not read");
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
     run(&mut desk, Run::Press(AxisButton::Confirm));
@@ -117,7 +117,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     assert_eq!(unit(&desk).session.cycles, Some(0));
     let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(
-        told.contains("have their previous value again: 5 of 5") && words::differences(&seen(&desk)).is_none(),
+        told.contains("restored to their previous values: 5 of 5") && words::differences(&seen(&desk)).is_none(),
         "{told}"
     );
     let report = unit(&desk).axis_report(Language::English).unwrap();

@@ -62,7 +62,7 @@ fn lost_control_shows_the_reason_until_taken_again() {
     assert_eq!(unit(&desk).loss_reason(), None);
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given back", |studio| !is_open(studio));
-    assert_eq!(unit(&desk).loss_reason(), None, "nobody has lost it");
+    assert_eq!(unit(&desk).loss_reason(), None, "control is not lost");
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
     });
     // Limits read before cannot be confirmed.
     drive(&mut desk, MotorCommand::ConfirmLimits(ONE));
-    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"], "the user is told why the button has no effect");
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready()

@@ -20,7 +20,7 @@ fn effort(speed: u8, torque: u8) -> SpeedTorque {
     SpeedTorque { speed: Percent::new(speed).unwrap(), torque: Percent::new(torque).unwrap() }
 }
 
-/// Issue 26: a run used the values of moves, which begin at 25 % speed and 100 % torque, without an entry of its own.
+/// Issue 26: a run used the values of moves, which begin at 25 % speed and 100 % torque, without a separate entry.
 #[test]
 fn a_run_has_its_own_speed_and_torque() {
     let mut desk = in_control("sim:");

@@ -87,7 +87,7 @@ fn a_link_from_an_earlier_attempt_is_not_used() {
     desk.outside.opens.store(true, Ordering::SeqCst);
     std::thread::sleep(Duration::from_millis(50));
     desk.settle();
-    assert_eq!(desk.wire().count(0x52), surveys, "nobody reads it a second time");
+    assert_eq!(desk.wire().count(0x52), surveys, "it is not read a second time");
     assert_eq!((desk.studio.devices().len(), desk.phase()), (1, &Phase::Connected));
     desk.act(Action::Close);
     desk.until("its thread has ended", |studio| studio.can_close());

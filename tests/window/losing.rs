@@ -357,7 +357,7 @@ fn access_codes_are_not_sent_to_another_encoder() {
     desk.command(DeviceCommand::Reconnect);
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
-    assert_eq!(desk.encoder().field(0).unwrap().bytes, None, "nobody has given its code");
+    assert_eq!(desk.encoder().field(0).unwrap().bytes, None, "no access code was entered");
 }
 
 #[test]

@@ -134,7 +134,7 @@ fn saving_over_a_changed_file_asks_first() {
     let (mut desk, path) = begun();
     desk.act(Action::Resolve(ConflictResolution::Take(1, Side::Theirs)));
     desk.act(Action::Resolve(ConflictResolution::Merge));
-    desk.until("the edit is none any more", is_saved);
+    desk.until("the edit is gone", is_saved);
     assert_eq!(file_text(&path), theirs);
 }
 

@@ -188,7 +188,7 @@ fn parameters_can_be_typed_into_their_table() {
     begin(&mut screen, "166 Maximum speed");
     screen.put("166 Maximum speed", "9999");
     screen.key(Key::Enter);
-    assert!(screen.shows("Allowed: 5 to 350"));
+    assert!(screen.shows("Allowed values: 5 to 350"));
     // Other lines: the invalid text moves with its own line.
     screen.press(Role::RadioButton, "Show: All");
     assert!(row(&screen, "105 Status word").is_some());
@@ -199,7 +199,7 @@ fn parameters_can_be_typed_into_their_table() {
         own.staged.differences().iter().map(|own| (own.number.get(), own.from, own.to)).collect::<Vec<_>>()
     };
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
-    assert!(!screen.shows("Allowed: 5 to 350"));
+    assert!(!screen.shows("Allowed values: 5 to 350"));
     // A read-only value cannot be typed over, with a message.
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) is read-only"));

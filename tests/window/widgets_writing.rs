@@ -80,7 +80,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
-/// Issue 26: Ctrl is a key of its own, and a key right before Enter made its press doubtful: in the hex editor, which is
+/// Issue 26: Ctrl is a separate key, and a key right before Enter made its press doubtful: in the hex editor, which is
 /// no text entry, Ctrl+Enter did nothing if both were pressed together.
 #[test]
 fn ctrl_and_enter_pressed_together_open_the_review() {

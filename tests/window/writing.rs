@@ -246,7 +246,7 @@ fn a_field_with_an_unknown_access_code_is_not_changed() {
     ] {
         assert_eq!(refused(&mut desk, change), why);
     }
-    assert_eq!(desk.wire().sent(), sent, "nobody is asked");
+    assert_eq!(desk.wire().sent(), sent, "nothing is sent");
     assert_eq!(rules::status(desk.encoder().field(0).unwrap()), Err(why));
 }
 

@@ -184,7 +184,7 @@ fn noise_is_reported_separately_from_spectral_lines() {
     assert_eq!(severity, Severity::Warning);
     near(volts, 0.01, 2e-4);
     near(share, 0.02, 4e-4);
-    assert_eq!(found.len(), 3, "the distance from the ellipse needs no words of its own: {found:?}");
+    assert_eq!(found.len(), 3, "the distance from the ellipse has no separate sentence: {found:?}");
 }
 
 #[test]

@@ -147,7 +147,7 @@ fn the_last_batch_before_a_silence_wakes_the_reader() {
     wakes.recv_timeout(HANGS).unwrap();
     assert_eq!(check(&stream.take_batches(), 0), 2);
     assert!(!stream.is_finished());
-    assert!(wakes.recv_timeout(Duration::from_millis(120)).is_err(), "silence wakes nobody");
+    assert!(wakes.recv_timeout(Duration::from_millis(120)).is_err(), "silence wakes no thread");
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
             let not_known = locks.split_first().is_some_and(|(first, rest)| {
                 *first == MotionLock::Unread && rest.iter().all(|own| *own == MotionLock::NoAnswer)
             });
-            assert!(not_known, "{label} {at}: what a drive may do is not known any more: {locks:?}");
+            assert!(not_known, "{label} {at}: the limits of the drive are unknown: {locks:?}");
             match ended {
                 Ok(done) => assert_eq!(done.written.verified, 3, "{label} {at}"),
                 Err(JobError::Device(error)) => assert!(error.is_lost(), "{label} {at}: {error}"),

@@ -162,14 +162,14 @@ impl Operator for OperatorPresence {
     fn on_task_start(&mut self) {
         match self {
             OperatorPresence::Attended(seat) => seat.on_task_start(),
-            OperatorPresence::Unattended(nobody) => nobody.on_task_start(),
+            OperatorPresence::Unattended(operator) => operator.on_task_start(),
         }
     }
 
     fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer {
         match self {
             OperatorPresence::Attended(seat) => seat.ask(demand),
-            OperatorPresence::Unattended(nobody) => nobody.ask(demand),
+            OperatorPresence::Unattended(operator) => operator.ask(demand),
         }
     }
 }

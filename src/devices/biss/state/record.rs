@@ -365,7 +365,7 @@ mod tests {
         add(&mut record, run(110, 90, 10), 0);
         assert_eq!((record.position_count(), record.dropped_count()), (190, 10), "at the adapter");
         add(&mut record, run(500, 10, 0), 3);
-        assert_eq!((record.position_count(), record.dropped_count()), (200, 310), "nobody took three runs of them");
+        assert_eq!((record.position_count(), record.dropped_count()), (200, 310), "three batches were not taken");
         // The frame numbers of another stream start at zero.
         let later = ConsecutiveFrames { at: Moment::from_elapsed(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);

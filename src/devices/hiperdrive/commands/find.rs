@@ -34,7 +34,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
         return Ok(Success::Well);
     }
     let summary = match others.len() {
-        0 => "Nobody answered.".to_owned(),
+        0 => "No device answered.".to_owned(),
         others => format!("No HIPERDRIVE answered; other EtherNet/IP devices: {others}."),
     };
     let hint = match &common.link {

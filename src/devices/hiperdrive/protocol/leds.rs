@@ -139,7 +139,7 @@ const ADAPTER_LEDS: [LedRow; 7] = [
         "the drive is not requested and has an error",
         "request the drive (parameter 152 = 1), then read its errors",
     ),
-    drive(DriveLedState::Green, "the drive has no error", "no action needed"),
+    drive(DriveLedState::Green, "the drive has no errors", "no action needed"),
 ];
 
 /// States of the RS485 LED of a hub with switch S3 at 0, which apply to all drives (manual 3.3).
@@ -184,7 +184,7 @@ const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLedState::RedGreen, "drive error", "read the errors, correct their causes, then acknowledge them"),
     drive(
         DriveLedState::Green,
-        "the drive has no error",
+        "the drive has no errors",
         "set switch S3 back to 0; otherwise, the drive cannot be moved over the bus",
     ),
 ];

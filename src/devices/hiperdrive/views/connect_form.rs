@@ -101,7 +101,9 @@ fn discovery_ui(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actio
     });
     match discovery.and_then(|own| own.found.as_ref()) {
         Some(Err(why)) => problem_ui(ui, theme, Some(why)),
-        Some(Ok(found)) if found.is_empty() => paragraph(ui, theme.caption(translate(theme, "connect.nobody"))),
+        Some(Ok(found)) if found.is_empty() => {
+            paragraph(ui, theme.caption(translate(theme, "connect.no_device_found")))
+        }
         _ => {}
     }
     for (at, device) in discovery.map(Discovery::devices).unwrap_or_default().iter().enumerate() {

@@ -375,10 +375,10 @@ mod tests {
 
     #[test]
     fn an_unattended_run_starts_when_ready_and_times_out() {
-        let mut nobody = UnattendedOperator { patience: Duration::from_secs(10) };
+        let mut operator = UnattendedOperator { patience: Duration::from_secs(10) };
         let task = OperatorTask::Turn(MotorRun::WiegandClockwise);
         let mut ask =
-            |measured, seconds| nobody.ask(&OperatorPrompt::new(task, measured, Duration::from_secs(seconds)));
+            |measured, seconds| operator.ask(&OperatorPrompt::new(task, measured, Duration::from_secs(seconds)));
         let fits = ShaftReading { celsius: None, ..turning(1000.0, 0.0) };
         let stands = ShaftReading { celsius: None, ..turning(0.0, 0.0) };
         assert_eq!(ask(fits, 0), OperatorAnswer::Go);

@@ -105,7 +105,7 @@ fn restore_plans_for_each_case() {
         let restore = planned(&wanted, &device(&now));
         assert_eq!(ops(&restore), expected, "{label}");
         assert_eq!(restore.plan.write_cycles(), cycles, "{label}");
-        // After the restore nothing differs any more.
+        // After the restore, no item differs.
         if cycles > 0 {
             assert_eq!(planned(&wanted, &device(&wanted)).plan.ops, [], "{label}");
         }

@@ -209,7 +209,7 @@ fn a_reversing_motor_reverses_when_a_procedure_waits() {
     host.put("0x00:0x00", 0x02);
     host.wait(5.0);
     host.expect("0x00:0x01", 0x22);
-    assert_eq!(host.encoder.motor().rpm(), 500.0, "nothing waits any more");
+    assert_eq!(host.encoder.motor().rpm(), 500.0, "no request is pending");
     host.put("0x6A", 0x00);
     // After the calibration the motor turns in the direction that the Wiegand test needs first: 61.8 s each way.
     host.enter(0x02);

@@ -58,7 +58,7 @@ fn insufficient_torque_causes_a_following_error() {
     assert_eq!(bench.position(), 65_536);
 }
 
-/// 50 °C ambient and 40 K of its own at full torque: above 80 °C after 60 s · ln 4 = 83 s of motion.
+/// 50 °C ambient and 40 K of self-heating at full torque: above 80 °C after 60 s · ln 4 = 83 s of motion.
 #[test]
 fn a_hot_drive_faults() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
@@ -89,7 +89,7 @@ fn a_target_beyond_the_limits_is_a_fault() {
     assert_eq!(bench.error(), ErrorCode::OVER_CURRENT);
     assert_eq!(bench.read(109), Value::Number(0x8503));
     assert_eq!((bench.read(110), bench.read(197)), (Value::Number(0), Value::Number(2)));
-    assert_ne!(bench.actual(FIRST).status.to_u16() & 0x4000, 0, "over-current is a bit of its own");
+    assert_ne!(bench.actual(FIRST).status.to_u16() & 0x4000, 0, "over-current has a separate bit");
     acknowledge(&mut bench);
     assert_eq!(bench.actual(FIRST).status.to_u16() & 0x4080, 0);
     (0..20).for_each(|_| bench.drive().inject_error(now, ErrorCode::SINCOS));

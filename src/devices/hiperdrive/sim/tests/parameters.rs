@@ -230,7 +230,7 @@ fn parameter_words_are_answered() {
     assert_eq!(ask(Pkw::request(Task::WriteWord, 158, 0, 1)), refused(PkwError::TYPE));
     assert_eq!(ask(Pkw::request(Task::WriteDouble, 107, 0, 1)), refused(PkwError::READ_ONLY));
     assert_eq!(ask(read(25)), refused(PkwError::NO_PARAMETER));
-    assert_eq!(ask(read(307)), refused(PkwError::STATE), "nobody is there");
+    assert_eq!(ask(read(307)), refused(PkwError::STATE), "no drive is connected");
     assert_eq!(ask(read(121)), refused(PkwError::TYPE));
     // "HDA70": two elements, "HDA7" and "0", the first character lowest.
     let element = |element| Pkw::request(Task::ReadElement, 121, element, 0);

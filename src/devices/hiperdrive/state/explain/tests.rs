@@ -183,6 +183,6 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
     }
     for own in [ActionEnd::Done, ActionEnd::Arrived, ActionEnd::Stopped, ActionEnd::Replaced] {
         assert_complete(&end_text(own, literal_text), 1);
-        assert_eq!(end_severity(own), Severity::Note, "nobody has to do anything");
+        assert_eq!(end_severity(own), Severity::Note, "no action is needed");
     }
 }

@@ -57,7 +57,7 @@ fn invalid_edits_are_refused_with_a_reason() {
     assert_eq!(
         staged.apply_edit(&Edit::Set(number(198), 0)),
         Err(EditError::NotAValue(number(198))),
-        "a change of its own"
+        "a separate change"
     );
     assert_eq!(staged.apply_edit(&Edit::Set(number(104), 0)), Err(EditError::NotAValue(number(104))), "it moves");
     assert_eq!(
