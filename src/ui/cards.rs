@@ -42,7 +42,7 @@ fn heading_ui(ui: &mut Ui, theme: &Theme, heading: &str, aside: impl FnOnce(&mut
     let is_narrow = ui.data(|data| data.get_temp::<f32>(id)).is_some_and(|too_small| width <= too_small);
     let to_the_right = egui::Layout::right_to_left(egui::Align::Center);
     if is_narrow {
-        ui.label(theme.heading(heading));
+        ui.horizontal(|ui| ui.label(theme.heading(heading)));
         ui.horizontal(|ui| ui.with_layout(to_the_right, aside));
         return;
     }

@@ -63,7 +63,7 @@ fn content_ui(
             operations_ui(ui, theme, (&sheet.lines, room), None);
             remarks_ui(ui, theme, sheet);
             options_ui(ui, theme, device, sheet, actions);
-            ui.label(theme.label(theme.translate(sheet.execution_mode.summary_id())));
+            paragraph(ui, theme.label(theme.translate(sheet.execution_mode.summary_id())));
             buttons_ui(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon =
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };

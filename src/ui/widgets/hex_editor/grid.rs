@@ -49,8 +49,9 @@ impl Grid {
         // In a small window, first the columns are closer together and then the bytes, so no characters are truncated.
         let (far, near) = (theme.space.between, theme.space.inside);
         let room = ui.available_width() - Self::width_around(ui, theme);
-        let closest = places(near, byte - 1.0);
-        let fitting = [places(far, byte), places(near, byte)].into_iter().find(|own| own.4 <= room);
+        let closest = places(near, byte - 3.0);
+        let wider = [places(far, byte), places(near, byte), places(near, byte - 1.0)];
+        let fitting = wider.into_iter().find(|own| own.4 <= room);
         let (gap, byte, hex_left, text_left, width) = fitting.unwrap_or(closest);
         let row = snap_to_grid(row + 2.0);
         Grid { font, glyph, row, width, gap, text_left, hex_left, byte, letter, len }
