@@ -54,7 +54,7 @@ fn clicking_leds_sets_the_observed_states() {
     let mut screen = page("sim:", "page.diagnosis");
     assert!(screen.shows("All requested drives are connected, and no others. No drive has an error."));
     screen.press(Role::RadioButton, "Device: Bus adapter");
-    assert!(screen.shows("The drive has no error."));
+    assert!(screen.shows("The drive has no errors."));
     screen.press(Role::Button, "RS485: green");
     assert!(screen.shows("No supply voltage.") && screen.shows("Check the control supply and its fuse."));
     screen.press(Role::RadioButton, "Device: Hub");
