@@ -7,6 +7,7 @@ use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
 use super::logbook::LogbookMatches;
+use super::logbook_server::ServerExchange;
 use super::payload::Payload;
 use super::recorder::{self, ExportResult};
 use super::review::Permit;
@@ -167,6 +168,12 @@ pub enum TaskResult {
     /// The logbook was searched. The number identifies the search.
     LogbookRead(u64, Result<LogbookMatches, LogbookError>),
     NoteAdded(Result<(), LogbookError>),
+    /// Entries were exchanged with the server of the logbook, or that failed.
+    EntriesExchanged {
+        /// Whether entries of other benches were received.
+        received: bool,
+        state: ServerExchange,
+    },
     /// Reading a backup has succeeded or failed.
     Backup {
         session: SessionId,

@@ -4,6 +4,7 @@
 use jiff::Timestamp;
 
 use super::action::{Action, TaskResult};
+use super::logbook_server::ServerExchange;
 use super::services::Services;
 use super::studio::Studio;
 use super::tab::Tab;
@@ -27,6 +28,7 @@ pub struct LogbookPage {
     /// Whether entries may have been added since the last search.
     is_stale: bool,
     is_saving_note: bool,
+    exchange: ServerExchange,
 }
 
 /// Entries that match the filter, and all devices of the logbook.
@@ -63,6 +65,14 @@ impl LogbookPage {
 
     pub fn is_saving_note(&self) -> bool {
         self.is_saving_note
+    }
+
+    pub(super) fn exchange(&self) -> &ServerExchange {
+        &self.exchange
+    }
+
+    pub(super) fn exchange_mut(&mut self) -> &mut ServerExchange {
+        &mut self.exchange
     }
 
     pub(super) fn mark_stale(&mut self) {

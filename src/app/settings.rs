@@ -43,6 +43,9 @@ pub struct Settings {
     /// Name of the user in the logbook.
     #[serde(skip_serializing_if = "is_default")]
     pub user_name: UserName,
+    /// Address of the server that shares the logbook, empty without a server. It contains no password.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub logbook: String,
     /// Data about drives, by the name of the device to which the drives are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
@@ -60,6 +63,7 @@ impl Default for Settings {
             live_stopped: false,
             values_alone: false,
             user_name: UserName::default(),
+            logbook: String::new(),
             drives: BTreeMap::new(),
         }
     }
@@ -109,6 +113,7 @@ impl Settings {
             live_stopped: entry!(live_stopped: bool, usual.live_stopped),
             values_alone: entry!(values_alone: bool, usual.values_alone),
             user_name: entry!(user_name: UserName, usual.user_name),
+            logbook: entry!(logbook: String, usual.logbook),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay unconfirmed, even if other parts are invalid.
@@ -127,7 +132,7 @@ impl Settings {
         macro_rules! take {
             ($($name:ident),*) => { $(if ours.$name != known.$name { self.$name = ours.$name.clone(); })* };
         }
-        take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone, user_name);
+        take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone, user_name, logbook);
         self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
             let used = links_used_since(known.links_of(tab), ours.links_of(tab));

@@ -14,6 +14,7 @@ use jiff::Zoned;
 
 use super::action::{Action, TaskResult};
 use super::kinds::KindRegistry;
+use super::logbook_server::server_address;
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::store::{FileError, FileErrorKind, read_text, update_text};
@@ -126,6 +127,7 @@ impl SettingsStore {
         };
         *settings = found.clone().with_changes(&Settings::initial(kinds), settings);
         settings.user_name.apply();
+        services.world.store.logbook_server().set_address(server_address(settings));
         self.known = found;
     }
 

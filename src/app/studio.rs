@@ -10,6 +10,7 @@ use super::diverged::ProfileConflict;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::logbook::{LOGBOOK_TAB, LogbookPage};
+use super::logbook_server::ServerThread;
 use super::question::{FollowUpAction, Question};
 use super::services::{Services, StudioEnvironment};
 use super::settings_store::SettingsStore;
@@ -41,6 +42,7 @@ pub struct Studio {
     path_question: Option<FileQuestion>,
     pub(super) comparison: Option<ProfileComparison>,
     pub(super) logbook: LogbookPage,
+    pub(super) server_thread: Option<ServerThread>,
 }
 
 impl Studio {
@@ -66,6 +68,7 @@ impl Studio {
             path_question: None,
             comparison: None,
             logbook: LogbookPage::default(),
+            server_thread: None,
         }
     }
 
@@ -182,6 +185,7 @@ impl Studio {
         self.feed_exports();
         self.remember_drives();
         self.refresh_settings();
+        self.start_exchange();
         self.stop_hidden_motion();
         self.write_if_changed();
     }
@@ -359,6 +363,7 @@ impl Studio {
                 self.with_device(id, |device, _| device.set_history(&of, *listed));
                 self.logbook.mark_stale();
             }
+            TaskResult::EntriesExchanged { received, state } => self.show_exchange(received, state),
             TaskResult::LogbookRead(number, matches) => self.show_logbook_matches(number, matches),
             TaskResult::NoteAdded(result) => self.finish_note(result),
             TaskResult::Backup { session, of, path, result } => {

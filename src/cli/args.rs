@@ -20,7 +20,7 @@ use super::commands::{Commands, KindOptions};
 use super::undo::UndoneWrite;
 use crate::app::TypeMap;
 use crate::link::LinkUrl;
-use crate::store::{AssetName, EntryId};
+use crate::store::{AssetName, EntryId, LogbookServer};
 use crate::worker::SessionLog;
 
 /// Help heading of the options that every command has.
@@ -63,6 +63,9 @@ pub struct CommonArgs {
     /// The part of the logbook that the command adds. Its session shares it.
     #[arg(skip)]
     pub(super) log: SessionLog,
+    /// The server that shares the logbook.
+    #[arg(skip)]
+    pub(super) server: LogbookServer,
 }
 
 impl CommonArgs {

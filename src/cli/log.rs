@@ -7,12 +7,13 @@ use jiff::civil::Date;
 use jiff::tz::TimeZone;
 use serde_json::{Value as Json, json};
 
-use super::args::LogArgs;
+use super::args::{CommonArgs, LogArgs};
 use super::output::{Output, count};
 use super::runner::to_failure;
+use super::user_store::{exchange_entries, user_store};
 use super::{Failure, Result, Success};
 use crate::app::explain;
-use crate::store::{Entry, EntryFilter, EntryId, EntryKind, Logbook, Outcome, Store};
+use crate::store::{Entry, EntryFilter, EntryId, EntryKind, Logbook, Outcome};
 
 /// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
 pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
@@ -26,8 +27,8 @@ pub(super) fn parse_entry(text: &str) -> std::result::Result<EntryId, String> {
 }
 
 /// Returns the entry with this number.
-pub(super) fn entry_with_number(id: EntryId) -> Result<Entry> {
-    let entry = match existing_logbook()? {
+pub(super) fn entry_with_number(common: &CommonArgs, id: EntryId) -> Result<Entry> {
+    let entry = match existing_logbook(common)? {
         None => None,
         Some(logbook) => logbook.entry(id).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))?,
     };
@@ -44,15 +45,15 @@ pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
 }
 
 /// Returns the path of a profile. `log:ENTRY` means the backup of an entry.
-pub(super) fn profile_path(argument: &Path) -> Result<PathBuf> {
+pub(super) fn profile_path(common: &CommonArgs, argument: &Path) -> Result<PathBuf> {
     let Some(number) = argument.to_str().and_then(|text| text.strip_prefix("log:")) else {
         return Ok(argument.to_owned());
     };
     let id = parse_entry(number).map_err(|why| Failure::Usage(format!("log:{number}: {why}")))?;
-    profile_of(&entry_with_number(id)?)
+    profile_of(&entry_with_number(common, id)?)
 }
 
-pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
+pub(super) fn log(common: &CommonArgs, output: &Output, arguments: &LogArgs) -> Result {
     let LogArgs { device, serial_number, asset, since, search, limit } = arguments;
     let filter = EntryFilter {
         device: None,
@@ -63,7 +64,7 @@ pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
         since: *since,
         search: search.clone().unwrap_or_default(),
     };
-    let entries = entries(&filter, *limit)?;
+    let entries = entries(common, &filter, *limit)?;
     if entries.is_empty() && !output.is_json() {
         output.write_stdout("no entries\n")?;
     }
@@ -73,14 +74,16 @@ pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
     Ok(Success::Well)
 }
 
-fn entries(filter: &EntryFilter, limit: u32) -> Result<Vec<Entry>> {
-    let Some(logbook) = existing_logbook()? else { return Ok(Vec::new()) };
+fn entries(common: &CommonArgs, filter: &EntryFilter, limit: u32) -> Result<Vec<Entry>> {
+    let Some(logbook) = existing_logbook(common)? else { return Ok(Vec::new()) };
     logbook.entries(filter, limit).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
 }
 
-/// Opens the logbook. Returns `None` if nothing has been recorded yet.
-fn existing_logbook() -> Result<Option<Logbook>> {
-    let path = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?.logbook_path();
+/// Opens the logbook with the entries of all benches. Returns `None` if nothing has been recorded yet.
+fn existing_logbook(common: &CommonArgs) -> Result<Option<Logbook>> {
+    let store = user_store(common)?;
+    exchange_entries(&store);
+    let path = store.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
         return Ok(None);
     }

@@ -17,6 +17,7 @@ pub(crate) mod runner;
 pub(crate) mod simulate;
 pub(crate) mod slow_reply_notice;
 pub(crate) mod undo;
+mod user_store;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -91,7 +92,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: ProfileFormats, c
         }
         Some(command) => {
             output::log_to_stderr();
-            Invocation::Command(exit_code(run_command(&common, command, &Output::new(common.json, formats, commands))))
+            let output = Output::new(common.json, formats, commands);
+            let status = exit_code(run_command(&common, command, &output));
+            user_store::finish_entries(&common, &output);
+            Invocation::Command(status)
         }
         None => open_window(common, profile),
     }
@@ -150,7 +154,7 @@ fn run_command(common: &CommonArgs, called: ParsedCommand, output: &Output) -> R
 fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
     let (id, chosen, own) = match command {
         Command::Ports => return ports::ports(output),
-        Command::Log(log) => return log::log(output, log),
+        Command::Log(log) => return log::log(common, output, log),
         Command::Undo(undo) => return undo::undo(common, output, undo),
         Command::Diff(diff) => return profiles::diff(common, output, diff),
         Command::Verify(verify) => return profiles::verify_profile(common, output, &verify.file),

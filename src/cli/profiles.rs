@@ -13,10 +13,11 @@ use super::log::profile_path;
 use super::output::{Lines, Output, write_stderr};
 use super::plan::{NOTHING_TO_WRITE, PlanReport, WriteSummary};
 use super::runner::to_failure;
+use super::user_store::user_store;
 use super::{Failure, Result, Success};
 use crate::app::{KindRegistry, explain, review};
 use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
-use crate::store::{Event, Store, read_text, write_atomically};
+use crate::store::{Event, read_text, write_atomically};
 use crate::worker::commit::PlannedWrite;
 
 /// Reads a profile of any kind, for viewing or comparison.
@@ -58,7 +59,7 @@ pub fn save_profile(common: &CommonArgs, path: &Path, body: Body) -> Result<()> 
     let document = ProfileDocument::new(second.to_string(), body);
     write_atomically(path, document.emit().as_bytes())
         .map_err(|error| to_failure(&explain::file_error_text(&error)))?;
-    let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
+    let store = user_store(common)?;
     common.log.record(&store, &Event::saved_profile(path));
     Ok(())
 }
@@ -67,11 +68,11 @@ pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Res
     if diff.right.is_some() == common.link.is_some() {
         return Err(Failure::Usage("diff takes either a second file or --link URL".to_owned()));
     }
-    let left = load(output, &profile_path(&diff.left)?)?;
+    let left = load(output, &profile_path(common, &diff.left)?)?;
     let kind = output.commands().device(left.kind())?;
     let (right, name) = match &diff.right {
         Some(argument) => {
-            let path = profile_path(argument)?;
+            let path = profile_path(common, argument)?;
             (load(output, &path)?, path)
         }
         None => (kind.read_for_comparison(common, output, None)?, PathBuf::from("the device")),

@@ -15,11 +15,11 @@ use super::commands::DeviceCommands;
 use super::consent::{can_prompt, read_answer};
 use super::output::write_stderr;
 use super::slow_reply_notice::{ReplyTiming, SlowReplyNotice};
+use super::user_store::user_store;
 use super::{Failure, Result};
 use crate::app::session::Kind;
-use crate::app::{Settings, Text, TypeMap, explain};
+use crate::app::{Text, TypeMap, explain};
 use crate::link::{LinkError, LinkUrl, write_entry, write_header};
-use crate::store::{Store, read_text};
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// A device on which the command line can run jobs.
@@ -108,10 +108,7 @@ impl<D: CliDevice> Runner<D> {
         if common.only_master && !D::HAS_ONE_MASTER {
             return Err(Failure::Usage(common.commands.option_rejection("--only-master", D::COMMANDS.name())));
         }
-        let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
-        if let Ok(text) = read_text(&store.settings_path()) {
-            Settings::of_file(&text).user_name.apply();
-        }
+        let store = user_store(common)?;
         let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open_error_text(&error).terminal_text()),
             error => to_failure(&D::open_error(&error)),

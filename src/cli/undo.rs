@@ -35,7 +35,7 @@ struct KeptItem {
 }
 
 pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Result {
-    let entry = entry_with_number(undo.entry)?;
+    let entry = entry_with_number(common, undo.entry)?;
     check_kind(&entry)?;
     let file = profile_of(&entry)?;
     let kind = output.commands().device(&entry.device.kind)?;

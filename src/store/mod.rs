@@ -30,8 +30,9 @@ pub use files::{
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
-    AssetName, AssetNameError, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Logbook, LogbookError,
-    LogbookErrorKind, Origin, Outcome, UserName, WriteResult,
+    AssetName, AssetNameError, Contact, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, KeyringError,
+    Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, Outcome, Password, ServerAddress,
+    ServerAddressError, ServerError, ServerErrorKind, Transferred, UserName, WriteResult,
 };
 
 use crate::profile::Cause;
@@ -40,6 +41,7 @@ use crate::profile::Cause;
 pub struct Store {
     data: PathBuf,
     config: PathBuf,
+    server: LogbookServer,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -64,12 +66,13 @@ impl Store {
             // If the home folder were relative, the location of backups would depend on the working directory.
             .filter(|folders| folders.data_dir().is_absolute() && folders.config_dir().is_absolute())
             .ok_or(StoreError::NoHome)?;
-        Ok(Store { data: folders.data_dir().to_owned(), config: folders.config_dir().to_owned() })
+        let [data, config] = [folders.data_dir(), folders.config_dir()].map(Path::to_owned);
+        Ok(Store { data, config, server: LogbookServer::default() })
     }
 
     /// Returns a store in the folders `data` and `config` under `root`, for tests or a portable copy.
     pub fn at_root(root: &Path) -> Self {
-        Store { data: root.join("data"), config: root.join("config") }
+        Store { data: root.join("data"), config: root.join("config"), server: LogbookServer::default() }
     }
 
     /// Removes temporary files that a killed program has left in the program's folders.
@@ -105,6 +108,17 @@ impl Store {
     /// Returns the path of the logbook, for use with [`Logbook::open`].
     pub fn logbook_path(&self) -> PathBuf {
         self.data.join("logbook.sqlite")
+    }
+
+    /// Returns this store with another server of the logbook.
+    #[must_use]
+    pub fn with_server(self, server: LogbookServer) -> Self {
+        Store { server, ..self }
+    }
+
+    /// Returns the server of the logbook. All copies of this store use the same one.
+    pub fn logbook_server(&self) -> &LogbookServer {
+        &self.server
     }
 
     /// Returns the path of the file with user-defined devices of a kind. The file need not exist.

@@ -8,6 +8,7 @@ mod tests;
 
 use std::hash::Hash;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use jiff::Timestamp;
 
@@ -17,6 +18,9 @@ use crate::profile::{
     Write, WriteRecord,
 };
 use crate::store::{DeviceKey, EntryId, EntryKind, FileError, Intent, Logbook, LogbookError, Outcome, Store};
+
+/// Maximum time for each request to the server of the logbook, before the write cycles of this computer have to do.
+const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A plan approved by the user, with the values on which it is based.
 #[derive(Clone, Debug)]
@@ -205,6 +209,7 @@ pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
 /// be read.
 pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     let path = store.logbook_path();
+    store.logbook_server().transfer_unless_away(&path, SERVER_TIMEOUT);
     if matches!(path.try_exists(), Ok(false)) {
         return Some(0);
     }

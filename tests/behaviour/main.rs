@@ -43,6 +43,8 @@ mod interbus_offline;
 mod interbus_reading;
 mod interbus_simulate;
 mod interbus_writing;
+mod logbook_server;
+mod postgres;
 mod recorded;
 mod source;
 mod ssi_export;

@@ -80,6 +80,7 @@ impl Bench {
             .env("XDG_DATA_HOME", self.path("data"))
             .env("XDG_CONFIG_HOME", self.path("config"))
             .env_remove("ENCODER_STUDIO_CODES")
+            .env_remove("ENCODER_STUDIO_LOGBOOK")
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());

@@ -3,6 +3,7 @@
 
 mod detail;
 mod expected;
+mod server;
 pub mod signal;
 
 use std::path::Path;
@@ -12,6 +13,7 @@ pub(crate) use detail::syntax_error_text;
 pub(crate) use detail::tests::check as assert_in_both_languages;
 pub use detail::{logbook_problem, profile_error_text, setting_error_text, trace_error_text, url_error_text};
 pub use expected::expected_text;
+pub use server::{server_address_error_text, server_error_text};
 
 use super::action::OpenFailure;
 use super::{KindRegistry, Text};

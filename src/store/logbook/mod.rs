@@ -12,8 +12,10 @@ mod asset;
 mod entry;
 mod error;
 mod insert;
+mod outbox;
 mod query;
 mod schema;
+mod server;
 mod user_name;
 
 use std::path::{Path, PathBuf};
@@ -25,6 +27,10 @@ use rusqlite::{Connection, named_params};
 pub use asset::{AssetName, AssetNameError};
 pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, WriteResult};
 pub use error::{LogbookError, LogbookErrorKind};
+pub use server::{
+    Contact, KeyringError, LogbookServer, Password, ServerAddress, ServerAddressError, ServerError, ServerErrorKind,
+    Transferred,
+};
 pub use user_name::UserName;
 
 use insert::Further;
@@ -206,6 +212,14 @@ impl Logbook {
     /// Returns an error if the logbook cannot be read.
     pub fn status_entries(&self, device: &DeviceKey, limit: u32) -> Result<Vec<Entry>, LogbookError> {
         query::status_entries(&self.database, device, limit).map_err(|error| self.database_error(error))
+    }
+
+    /// Returns the number of entries that the server of the logbook does not have yet.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be read.
+    pub fn count_waiting(&self) -> Result<u64, LogbookError> {
+        outbox::count_waiting(&self.database).map_err(|error| self.database_error(error))
     }
 
     fn database_error(&self, error: rusqlite::Error) -> LogbookError {

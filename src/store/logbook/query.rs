@@ -13,17 +13,21 @@ const COLUMNS: &str = "id, event.at AS at, what, kind, device_type, serial_numbe
     planned_cycles, backup, bench, user, version, result.at AS concluded_at, outcome, failure, cycles_spent";
 const TABLES: &str = "event LEFT JOIN result ON result.event = event.uid";
 
+/// Order of entries: by time, because entries of other benches arrive later than they were made. Without the Z, times
+/// with and without a fraction can be compared as text.
+const NEWEST_FIRST: &str = "rtrim(event.at, 'Z') DESC, event.id DESC";
+
 /// Asset of an entry: the last assignment of its device up to the entry.
 const ASSET: &str = "(SELECT assigned.asset FROM event AS assigned
     WHERE assigned.asset IS NOT NULL AND assigned.kind = event.kind AND assigned.serial_number = event.serial_number
         AND assigned.device_type = event.device_type AND assigned.is_virtual = event.is_virtual
-        AND assigned.id <= event.id
-    ORDER BY assigned.id DESC LIMIT 1)";
+        AND (rtrim(assigned.at, 'Z'), assigned.id) <= (rtrim(event.at, 'Z'), event.id)
+    ORDER BY rtrim(assigned.at, 'Z') DESC, assigned.id DESC LIMIT 1)";
 
 /// Returns the last `limit` entries that match the filter, newest first.
 pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    // `instr` takes any character as it is, unlike LIKE. Without the Z, times with and without a fraction can be compared
-    // as text. The list of devices that ever had the asset spares the search for the asset of each entry.
+    // `instr` takes any character as it is, unlike LIKE. The list of devices that ever had the asset spares the search
+    // for the asset of each entry.
     let condition = format!(
         "(:kind IS NULL OR kind = :kind)
         AND (:serial_number IS NULL OR serial_number = :serial_number)
@@ -84,7 +88,7 @@ pub(super) fn entry(database: &Connection, id: EntryId) -> rusqlite::Result<Opti
 /// Returns the asset to which a device is assigned.
 pub(super) fn present_asset(database: &Connection, device: &DeviceKey) -> rusqlite::Result<Option<String>> {
     let sql = "SELECT asset FROM event WHERE asset IS NOT NULL AND kind = ?1 AND serial_number = ?2
-        AND device_type = ?3 AND is_virtual = ?4 ORDER BY id DESC LIMIT 1";
+        AND device_type = ?3 AND is_virtual = ?4 ORDER BY rtrim(at, 'Z') DESC, id DESC LIMIT 1";
     let key = (&device.kind, &device.serial_number, &device.device_type, device.is_virtual);
     database.query_row(sql, key, |row| row.get(0)).optional()
 }
@@ -102,7 +106,8 @@ fn select(
     parameters: impl Params,
 ) -> rusqlite::Result<Vec<Entry>> {
     let sql = format!(
-        "SELECT {COLUMNS}, {ASSET} AS asset_then FROM {TABLES} WHERE {condition} ORDER BY id DESC LIMIT {limit}"
+        "SELECT {COLUMNS}, {ASSET} AS asset_then FROM {TABLES} WHERE {condition}
+         ORDER BY {NEWEST_FIRST} LIMIT {limit}"
     );
     database.prepare(&sql)?.query_map(parameters, read_entry)?.collect()
 }

@@ -13,7 +13,7 @@ use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
 /// exist.
-pub(super) const STEPS: [&str; 4] = [
+pub(super) const STEPS: [&str; 5] = [
     "
     CREATE TABLE entry (
         id             INTEGER PRIMARY KEY,
@@ -100,6 +100,29 @@ pub(super) const STEPS: [&str; 4] = [
     ALTER TABLE event ADD COLUMN asset TEXT; -- the asset to which the device is assigned from now on, of 'assigned' only
     CREATE INDEX event_assigned ON event (kind, serial_number, device_type, is_virtual) WHERE asset IS NOT NULL;
     CREATE INDEX event_of_asset ON event (asset) WHERE asset IS NOT NULL;
+",
+    // A server may share the logbook. Entries of other benches arrive later than they were made, so entries are ordered
+    // by their time. Without the Z, times with and without a fraction can be compared as text.
+    "
+    CREATE INDEX event_in_time ON event (rtrim(at, 'Z'), id);
+    CREATE TABLE server (
+        id             INTEGER PRIMARY KEY CHECK (id = 1),
+        identity       TEXT    NOT NULL,
+        event          INTEGER NOT NULL, -- numbers of the last event and result of the server that are in this file
+        result         INTEGER NOT NULL
+    ) STRICT;
+    CREATE TABLE outbox (                -- rows that the server does not have yet, in the order of their numbers
+        id             INTEGER PRIMARY KEY,
+        uid            TEXT    NOT NULL, -- of the event
+        is_result      INTEGER NOT NULL CHECK (is_result IN (0, 1)),
+        UNIQUE (uid, is_result)
+    ) STRICT;
+    CREATE TRIGGER event_waits AFTER INSERT ON event WHEN EXISTS (SELECT 1 FROM server) BEGIN
+        INSERT INTO outbox (uid, is_result) VALUES (new.uid, 0);
+    END;
+    CREATE TRIGGER result_waits AFTER INSERT ON result WHEN EXISTS (SELECT 1 FROM server) BEGIN
+        INSERT INTO outbox (uid, is_result) VALUES (new.event, 1);
+    END;
 ",
 ];
 

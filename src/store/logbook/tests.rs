@@ -335,8 +335,9 @@ fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
     .unwrap();
     drop(old);
     let mut logbook = Logbook::open(&path).unwrap();
-    logbook.assign(at(0), &device("1"), &"M-17".parse().unwrap()).unwrap();
-    logbook.record(at(1), &device("1"), &Event::new(EntryKind::Connected, "identified")).unwrap();
+    let [noon, later] = ["2026-11-26T12:00:00Z", "2026-11-26T12:00:00.5Z"].map(|time| time.parse().unwrap());
+    logbook.assign(noon, &device("1"), &"M-17".parse().unwrap()).unwrap();
+    logbook.record(later, &device("1"), &Event::new(EntryKind::Connected, "identified")).unwrap();
     let entries = logbook.entries(&EntryFilter::default(), 10).unwrap();
     let told: Vec<_> = entries.iter().map(|entry| (entry.kind.keyword(), entry.asset.as_deref())).collect();
     assert_eq!(told, [("connected", Some("M-17")), ("assigned", Some("M-17")), ("status", None), ("write", None)]);

@@ -1,0 +1,37 @@
+//! Reasons why the server of the logbook cannot be used: what happened, and what to do.
+
+use super::{literal_text, logbook_problem};
+use crate::app::Text;
+use crate::store::{ServerAddressError, ServerError, ServerErrorKind};
+
+pub fn server_error_text(error: &ServerError) -> Text {
+    let of_server = |id| Text::new(id).with("server", &error.server);
+    match &error.problem {
+        ServerErrorKind::Address(problem) => server_address_error_text(problem),
+        ServerErrorKind::UnknownHost => of_server("server.unknown_host"),
+        ServerErrorKind::Unreachable { why } => of_server("server.unreachable").with("why", why),
+        ServerErrorKind::NoReply => of_server("server.no_reply"),
+        ServerErrorKind::PasswordMissing => of_server("server.password_missing"),
+        ServerErrorKind::WrongPassword => of_server("server.wrong_password"),
+        ServerErrorKind::Rejected { why } => of_server("server.rejected").with("why", why),
+        ServerErrorKind::NoDatabase => of_server("server.no_database"),
+        ServerErrorKind::Encryption { why } => of_server("server.encryption").with("why", why),
+        ServerErrorKind::Certificates { path, why } => {
+            Text::new("server.certificates").with("path", path.display()).with("why", why)
+        }
+        ServerErrorKind::NoRights { what } => of_server("server.no_rights").with("what", what),
+        ServerErrorKind::DiskFull => of_server("server.disk_full"),
+        ServerErrorKind::Newer { found, known } => of_server("server.newer").with("found", found).with("known", known),
+        ServerErrorKind::Older { found, known } => of_server("server.older").with("found", found).with("known", known),
+        ServerErrorKind::Local(error) => of_server("server.local").with_text("why", logbook_problem(error)),
+        ServerErrorKind::Database { what, .. } => of_server("server.other").with_text("why", literal_text(what)),
+    }
+}
+
+pub fn server_address_error_text(error: &ServerAddressError) -> Text {
+    match error {
+        ServerAddressError::NotAnAddress => Text::new("server.not_an_address"),
+        ServerAddressError::ContainsPassword => Text::new("server.contains_password"),
+        ServerAddressError::UnknownEncryption { found } => Text::new("server.encryption_mode").with("found", found),
+    }
+}

@@ -1,0 +1,113 @@
+//! The server of a shared logbook: which one it is, and the thread that exchanges entries with it. The window never waits
+//! for the server.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+
+use super::action::{Action, TaskResult};
+use super::studio::Studio;
+use super::tasks::ActionMailbox;
+use super::{Settings, Severity, explain};
+use crate::store::{Contact, Logbook, ServerAddress, ServerAddressError, Store};
+
+/// Environment variable that names the server instead of the settings.
+const VARIABLE: &str = "ENCODER_STUDIO_LOGBOOK";
+
+/// Interval at which the thread looks for entries to send.
+const SEND_INTERVAL: Duration = Duration::from_secs(1);
+/// Interval at which the thread asks for entries of other benches.
+const RECEIVE_INTERVAL: Duration = Duration::from_secs(10);
+/// Maximum time for each request to the server.
+const TIMEOUT: Duration = Duration::from_secs(5);
+
+/// Returns the server that the environment or else the settings name, or `None` if there is none.
+pub fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
+    match std::env::var(VARIABLE) {
+        Ok(address) if !address.trim().is_empty() => Some(ServerAddress::from_environment(&address)),
+        _ if settings.logbook.trim().is_empty() => None,
+        _ => Some(ServerAddress::from_setting(&settings.logbook)),
+    }
+}
+
+/// State of the exchange with the server.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ServerExchange {
+    pub contact: Contact,
+    /// Number of entries that the server does not have yet.
+    pub waiting: u64,
+}
+
+/// The thread that exchanges entries with the server. It ends when this value is dropped.
+#[derive(Debug)]
+pub(super) struct ServerThread {
+    _stop: Sender<()>,
+}
+
+impl ServerThread {
+    fn start(store: Store, mailbox: ActionMailbox) -> Self {
+        let (stop, stopped) = bounded(0);
+        // Without a thread, entries wait in the local file, as they do without the server.
+        let spawned = thread::Builder::new()
+            .name("logbook server".to_owned())
+            .spawn(move || exchange(&store, &mailbox, &stopped));
+        if let Err(error) = spawned {
+            tracing::warn!("entries are not sent to the server of the logbook: {error}");
+        }
+        ServerThread { _stop: stop }
+    }
+}
+
+fn exchange(store: &Store, mailbox: &ActionMailbox, stopped: &Receiver<()>) {
+    let (server, path) = (store.logbook_server(), store.logbook_path());
+    let count_waiting = || match path.try_exists() {
+        Ok(false) => 0,
+        _ => Logbook::open(&path).and_then(|logbook| logbook.count_waiting()).unwrap_or(0),
+    };
+    let (mut last, mut known): (Option<Instant>, Option<ServerExchange>) = (None, None);
+    loop {
+        let is_due = last.is_none_or(|at| at.elapsed() >= RECEIVE_INTERVAL);
+        if server.is_set() && (is_due || count_waiting() > 0) {
+            let result = server.transfer_unless_away(&path, TIMEOUT);
+            last = Some(Instant::now());
+            let received = result.and_then(Result::ok).is_some_and(|done| done.received > 0);
+            let state = ServerExchange { contact: server.contact(), waiting: count_waiting() };
+            if received || known.as_ref() != Some(&state) {
+                known = Some(state.clone());
+                mailbox.send(Action::Done(TaskResult::EntriesExchanged { received, state }));
+            }
+        }
+        if stopped.recv_timeout(SEND_INTERVAL) != Err(RecvTimeoutError::Timeout) {
+            return;
+        }
+    }
+}
+
+impl Studio {
+    /// Returns the state of the exchange with the server of the logbook, or `None` if entries are not shared.
+    pub fn server_exchange(&self) -> Option<&ServerExchange> {
+        self.services.world.store.logbook_server().is_set().then_some(self.logbook.exchange())
+    }
+
+    /// Starts the thread that exchanges entries, as soon as there is a server.
+    pub(super) fn start_exchange(&mut self) {
+        let store = &self.services.world.store;
+        if self.server_thread.is_none() && store.logbook_server().is_set() {
+            self.server_thread = Some(ServerThread::start(store.clone(), self.mailbox()));
+        }
+    }
+
+    /// Takes in the state of the exchange. A server that is away is reported once, until it was reached again.
+    pub(super) fn show_exchange(&mut self, received: bool, state: ServerExchange) {
+        let before = std::mem::replace(self.logbook.exchange_mut(), state);
+        if received {
+            self.logbook.mark_stale();
+        }
+        let contact = &self.logbook.exchange().contact;
+        let is_new = before.contact.problem.is_none();
+        if let Some(problem) = contact.problem.clone().filter(|_| is_new) {
+            self.services.notify(Severity::Warning, vec![explain::server_error_text(&problem)], None);
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The local side of a shared logbook: which rows the server does not have yet, and up to which number the rows of the
+//! server are in the local file.
+
+use jiff::Timestamp;
+use rusqlite::{Connection, OptionalExtension, TransactionBehavior, named_params};
+
+use super::entry::EntryKind;
+use crate::profile::ChangedItem;
+
+/// A row of the table `event`, with the values as they are stored.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct EventRow {
+    pub uid: String,
+    pub at: String,
+    pub what: String,
+    pub kind: String,
+    pub device_type: String,
+    pub serial_number: String,
+    pub is_virtual: i32,
+    pub description: String,
+    pub items: String,
+    pub planned_cycles: i64,
+    pub backup: Option<String>,
+    pub bench: String,
+    pub user: Option<String>,
+    pub version: String,
+    pub asset: Option<String>,
+}
+
+/// A row of the table `result`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ResultRow {
+    pub event: String,
+    pub at: String,
+    pub outcome: String,
+    pub failure: Option<String>,
+    pub cycles_spent: i64,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Rows {
+    pub events: Vec<EventRow>,
+    pub results: Vec<ResultRow>,
+}
+
+/// Rows that wait to be sent, in their order.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Waiting {
+    /// Numbers in the outbox.
+    numbers: Vec<i64>,
+    pub rows: Rows,
+}
+
+/// Numbers of the last event and the last result of the server that are in the local file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Marks {
+    pub event: i64,
+    pub result: i64,
+}
+
+impl Rows {
+    pub(super) fn is_empty(&self) -> bool {
+        self.events.is_empty() && self.results.is_empty()
+    }
+}
+
+/// Prepares the local file for a server. If it is another one than the last, or has lost rows, all local rows are to be
+/// sent again, and those that the server has are ignored there. `last` are the last numbers of the server.
+pub(super) fn begin(database: &mut Connection, identity: &str, last: Marks) -> rusqlite::Result<Marks> {
+    let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let known = transaction
+        .query_row("SELECT identity, event, result FROM server", [], |row| {
+            Ok((row.get::<_, String>(0)?, Marks { event: row.get(1)?, result: row.get(2)? }))
+        })
+        .optional()?;
+    if let Some((own, marks)) = known
+        && own == identity
+        && marks.event <= last.event
+        && marks.result <= last.result
+    {
+        return Ok(marks);
+    }
+    transaction.execute("INSERT OR REPLACE INTO server VALUES (1, ?1, 0, 0)", [identity])?;
+    transaction.execute_batch(
+        "DELETE FROM outbox;
+         INSERT INTO outbox (uid, is_result) SELECT uid, 0 FROM event ORDER BY id;
+         INSERT INTO outbox (uid, is_result) SELECT event, 1 FROM result ORDER BY rowid;",
+    )?;
+    transaction.commit()?;
+    Ok(Marks::default())
+}
+
+/// Returns the number of entries that the server does not have yet. Before the first contact, these are all entries.
+pub(super) fn count_waiting(database: &Connection) -> rusqlite::Result<u64> {
+    let sql = "SELECT CASE WHEN EXISTS (SELECT 1 FROM server) THEN (SELECT count(DISTINCT uid) FROM outbox)
+               ELSE (SELECT count(*) FROM event) END";
+    database.query_row(sql, [], |row| row.get(0).and_then(super::schema::parse_cycles))
+}
+
+/// Returns the first rows that wait.
+pub(super) fn first_waiting(database: &Connection, limit: u32) -> rusqlite::Result<Waiting> {
+    let mut waiting = Waiting::default();
+    let mut outbox = database.prepare_cached("SELECT id, uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
+    let mut event = database.prepare_cached(
+        "SELECT uid, at, what, kind, device_type, serial_number, is_virtual, description, items, planned_cycles, backup,
+                bench, user, version, asset FROM event WHERE uid = ?1",
+    )?;
+    let mut result =
+        database.prepare_cached("SELECT event, at, outcome, failure, cycles_spent FROM result WHERE event = ?1")?;
+    let rows = outbox.query_map([limit], |row| Ok((row.get(0)?, row.get::<_, String>(1)?, row.get(2)?)))?;
+    for row in rows {
+        let (number, uid, is_result) = row?;
+        waiting.numbers.push(number);
+        if is_result {
+            waiting.rows.results.push(result.query_row([uid], read_result)?);
+        } else {
+            waiting.rows.events.push(event.query_row([uid], read_event)?);
+        }
+    }
+    Ok(waiting)
+}
+
+/// Adds rows of the server to the local file, removes from the outbox what the server has, and records up to which
+/// number its rows are in the local file. Returns how many events and results are new.
+pub(super) fn adopt(
+    database: &mut Connection,
+    received: &Rows,
+    sent: &Waiting,
+    marks: Marks,
+) -> rusqlite::Result<usize> {
+    let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let mut new = 0;
+    {
+        let mut remove = transaction.prepare_cached("DELETE FROM outbox WHERE uid = ?1 AND is_result = ?2")?;
+        for row in &received.events {
+            if is_valid(row) {
+                new += add_event(&transaction, row)?;
+                remove.execute((&row.uid, false))?;
+            } else {
+                tracing::warn!("entry {} of the logbook server is not valid and is left out", row.uid);
+            }
+        }
+        for row in &received.results {
+            new += add_result(&transaction, row)?;
+            remove.execute((&row.event, true))?;
+        }
+        let mut remove = transaction.prepare_cached("DELETE FROM outbox WHERE id = ?1")?;
+        for number in &sent.numbers {
+            remove.execute([number])?;
+        }
+        let sql = "UPDATE server SET event = max(event, ?1), result = max(result, ?2)";
+        transaction.execute(sql, (marks.event, marks.result))?;
+    }
+    transaction.commit()?;
+    Ok(new)
+}
+
+/// Returns whether the local logbook can show a row.
+fn is_valid(row: &EventRow) -> bool {
+    EntryKind::parse(&row.what).is_some()
+        && row.at.parse::<Timestamp>().is_ok()
+        && serde_json::from_str::<Vec<ChangedItem>>(&row.items).is_ok()
+}
+
+fn add_event(database: &Connection, row: &EventRow) -> rusqlite::Result<usize> {
+    let mut statement = database.prepare_cached(
+        "INSERT OR IGNORE INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
+                                      planned_cycles, backup, bench, user, version, asset)
+         VALUES (:uid, :at, :what, :kind, :device_type, :serial_number, :is_virtual, :description, :items,
+                 :planned_cycles, :backup, :bench, :user, :version, :asset)",
+    )?;
+    statement.execute(named_params! {
+        ":uid": row.uid,
+        ":at": row.at,
+        ":what": row.what,
+        ":kind": row.kind,
+        ":device_type": row.device_type,
+        ":serial_number": row.serial_number,
+        ":is_virtual": row.is_virtual,
+        ":description": row.description,
+        ":items": row.items,
+        ":planned_cycles": row.planned_cycles,
+        ":backup": row.backup,
+        ":bench": row.bench,
+        ":user": row.user,
+        ":version": row.version,
+        ":asset": row.asset,
+    })
+}
+
+fn add_result(database: &Connection, row: &ResultRow) -> rusqlite::Result<usize> {
+    // The event is missing if it was left out.
+    let mut statement = database.prepare_cached(
+        "INSERT OR IGNORE INTO result (event, at, outcome, failure, cycles_spent)
+         SELECT uid, ?2, ?3, ?4, ?5 FROM event WHERE uid = ?1",
+    )?;
+    statement.execute((&row.event, &row.at, &row.outcome, &row.failure, row.cycles_spent))
+}
+
+fn read_event(row: &rusqlite::Row<'_>) -> rusqlite::Result<EventRow> {
+    Ok(EventRow {
+        uid: row.get(0)?,
+        at: row.get(1)?,
+        what: row.get(2)?,
+        kind: row.get(3)?,
+        device_type: row.get(4)?,
+        serial_number: row.get(5)?,
+        is_virtual: row.get(6)?,
+        description: row.get(7)?,
+        items: row.get(8)?,
+        planned_cycles: row.get(9)?,
+        backup: row.get(10)?,
+        bench: row.get(11)?,
+        user: row.get(12)?,
+        version: row.get(13)?,
+        asset: row.get(14)?,
+    })
+}
+
+fn read_result(row: &rusqlite::Row<'_>) -> rusqlite::Result<ResultRow> {
+    Ok(ResultRow {
+        event: row.get(0)?,
+        at: row.get(1)?,
+        outcome: row.get(2)?,
+        failure: row.get(3)?,
+        cycles_spent: row.get(4)?,
+    })
+}

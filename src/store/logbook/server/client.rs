@@ -1,0 +1,151 @@
+//! A connection to the server of the logbook. Each request has a time limit. A connection that fails is not used again.
+
+use std::future::Future;
+use std::path::Path;
+use std::time::Duration;
+
+use rustls::pki_types::CertificateDer;
+use rustls::pki_types::pem::PemObject as _;
+use rustls::{ClientConfig, RootCertStore};
+use tokio::runtime::{Builder, Runtime};
+use tokio_postgres::config::{Host, SslMode};
+use tokio_postgres::{Config, NoTls};
+use tokio_postgres_rustls::MakeRustlsConnect;
+
+use super::address::{Encryption, Password, ServerAddress};
+use super::error::ServerErrorKind;
+
+const DEFAULT_PORT: u16 = 5432;
+
+/// A connection to a server.
+pub(super) struct Client {
+    runtime: OwnRuntime,
+    limit: Duration,
+    pub(super) postgres: tokio_postgres::Client,
+}
+
+/// A runtime whose end does not wait for the lookup of a host.
+struct OwnRuntime(Option<Runtime>);
+
+impl Client {
+    /// Connects to a server. The limit applies to the connection and to each later request.
+    pub(super) fn connect(
+        address: &ServerAddress,
+        password: Option<&Password>,
+        limit: Duration,
+    ) -> Result<Self, ServerErrorKind> {
+        let runtime = OwnRuntime::new()?;
+        let mut config = address.config.clone();
+        // Without a password, the server rejects an empty one, which needs no other treatment.
+        config.password(password.map_or("", Password::reveal)).application_name("encoder-studio");
+        let connected = runtime.run(limit, async {
+            check_host(&config).await?;
+            match &address.encryption {
+                Encryption::Off => {
+                    let (client, connection) = config.ssl_mode(SslMode::Disable).connect(NoTls).await?;
+                    tokio::spawn(connection);
+                    Ok(client)
+                }
+                Encryption::Verified(authorities) => {
+                    let tls = MakeRustlsConnect::new(tls_config(authorities.as_deref())?);
+                    let (client, connection) =
+                        config.ssl_mode(SslMode::Require).connect(tls).await.map_err(not_encrypted)?;
+                    tokio::spawn(connection);
+                    Ok(client)
+                }
+            }
+        });
+        let postgres = connected.map_err(|problem| match problem {
+            ServerErrorKind::WrongPassword if password.is_none() => ServerErrorKind::PasswordMissing,
+            problem => problem,
+        })?;
+        Ok(Client { runtime, limit, postgres })
+    }
+
+    /// Performs requests, all of them within the time limit.
+    pub(super) fn run<'c, T, F>(
+        &'c mut self,
+        requests: impl FnOnce(&'c mut tokio_postgres::Client) -> F,
+    ) -> Result<T, ServerErrorKind>
+    where
+        F: Future<Output = Result<T, ServerErrorKind>>,
+    {
+        self.runtime.run(self.limit, requests(&mut self.postgres))
+    }
+
+    pub(super) fn set_limit(&mut self, limit: Duration) {
+        self.limit = limit;
+    }
+}
+
+impl OwnRuntime {
+    fn new() -> Result<Self, ServerErrorKind> {
+        let runtime = Builder::new_current_thread().enable_all().build();
+        runtime
+            .map(|runtime| OwnRuntime(Some(runtime)))
+            .map_err(|error| ServerErrorKind::Unreachable { why: error.to_string() })
+    }
+
+    fn run<T>(
+        &self,
+        limit: Duration,
+        work: impl Future<Output = Result<T, ServerErrorKind>>,
+    ) -> Result<T, ServerErrorKind> {
+        let Some(runtime) = &self.0 else { return Err(ServerErrorKind::NoReply) };
+        runtime.block_on(async { tokio::time::timeout(limit, work).await.unwrap_or(Err(ServerErrorKind::NoReply)) })
+    }
+}
+
+impl Drop for OwnRuntime {
+    fn drop(&mut self) {
+        if let Some(runtime) = self.0.take() {
+            runtime.shutdown_background();
+        }
+    }
+}
+
+/// Checks that the name of the host has an address.
+async fn check_host(config: &Config) -> Result<(), ServerErrorKind> {
+    let port = config.get_ports().first().copied().unwrap_or(DEFAULT_PORT);
+    match config.get_hosts().first() {
+        Some(Host::Tcp(name)) if config.get_hostaddrs().is_empty() => {
+            let found = tokio::net::lookup_host((name.as_str(), port)).await;
+            found.map(drop).map_err(|_| ServerErrorKind::UnknownHost)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Returns the settings of TLS: the certificate must be valid for the host and signed by an authority of the file, or
+/// of the system.
+fn tls_config(authorities: Option<&Path>) -> Result<ClientConfig, ServerErrorKind> {
+    let mut roots = RootCertStore::empty();
+    match authorities {
+        Some(path) => {
+            let bad = |why: String| ServerErrorKind::Certificates { path: path.to_owned(), why };
+            for certificate in CertificateDer::pem_file_iter(path).map_err(|error| bad(error.to_string()))? {
+                let certificate = certificate.map_err(|error| bad(error.to_string()))?;
+                roots.add(certificate).map_err(|error| bad(error.to_string()))?;
+            }
+            if roots.is_empty() {
+                return Err(bad("it is empty".to_owned()));
+            }
+        }
+        None => {
+            roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
+        }
+    }
+    let provider = rustls::crypto::ring::default_provider().into();
+    let builder = ClientConfig::builder_with_provider(provider)
+        .with_safe_default_protocol_versions()
+        .map_err(|error| ServerErrorKind::Encryption { why: error.to_string() })?;
+    Ok(builder.with_root_certificates(roots).with_no_client_auth())
+}
+
+/// Returns the reason why an encrypted connection failed. A server without TLS says so in an error of its own.
+fn not_encrypted(error: tokio_postgres::Error) -> ServerErrorKind {
+    match ServerErrorKind::from(error) {
+        ServerErrorKind::Database { code: None, what } => ServerErrorKind::Encryption { why: what },
+        problem => problem,
+    }
+}

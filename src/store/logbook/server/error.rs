@@ -1,0 +1,119 @@
+//! Reasons why the server of the logbook cannot be used, grouped by what the user can do about them.
+
+use std::error::Error as _;
+use std::io;
+use std::path::PathBuf;
+
+use tokio_postgres::error::SqlState;
+
+use super::super::LogbookError;
+use super::address::ServerAddressError;
+
+/// An error of the server, with the name of the server.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("logbook server {server}: {problem}")]
+pub struct ServerError {
+    /// Host, port and database.
+    pub server: String,
+    pub problem: ServerErrorKind,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ServerErrorKind {
+    /// The setting or the environment variable does not name a server.
+    #[error(transparent)]
+    Address(ServerAddressError),
+    /// The name of the host has no address.
+    #[error("the host is unknown")]
+    UnknownHost,
+    /// Nothing accepts connections, or the connection was lost.
+    #[error("the server cannot be reached: {why}")]
+    Unreachable { why: String },
+    #[error("the server did not reply in time")]
+    NoReply,
+    /// The server asks for a password, and none is known.
+    #[error("the server requires a password")]
+    PasswordMissing,
+    #[error("the password or the user name is wrong")]
+    WrongPassword,
+    /// The server does not admit this user, computer or kind of connection.
+    #[error("the server rejects the connection: {why}")]
+    Rejected { why: String },
+    #[error("the database does not exist")]
+    NoDatabase,
+    /// The certificate of the server is not trusted or is for another host.
+    #[error("the encrypted connection failed: {why}")]
+    Encryption { why: String },
+    /// A file with certificates cannot be used.
+    #[error("{path} contains no usable certificate: {why}")]
+    Certificates { path: PathBuf, why: String },
+    /// The user of the database may not do what is necessary.
+    #[error("the user of the database lacks a right: {what}")]
+    NoRights { what: String },
+    #[error("the disk of the server is full")]
+    DiskFull,
+    /// The tables were created by a newer version of the program.
+    #[error("the server uses schema {found} of a newer version; this version supports schemas up to {known}")]
+    Newer {
+        found: i64,
+        /// Latest schema that this version of the program supports.
+        known: i64,
+    },
+    /// The tables are those of an older version, and this user may not change them.
+    #[error("the server uses the older schema {found}, and the user of the database may not update it to {known}")]
+    Older { found: i64, known: i64 },
+    /// The logbook of this computer cannot be used.
+    #[error(transparent)]
+    Local(LogbookError),
+    #[error("{what}")]
+    Database {
+        /// Code of the SQL standard, or `None` if the error is not from the server.
+        code: Option<String>,
+        what: String,
+    },
+}
+
+impl ServerErrorKind {
+    pub(super) fn into_error(self, server: &str) -> ServerError {
+        ServerError { server: server.to_owned(), problem: self }
+    }
+}
+
+impl From<tokio_postgres::Error> for ServerErrorKind {
+    fn from(error: tokio_postgres::Error) -> Self {
+        if let Some(database) = error.as_db_error() {
+            let what = database.message().to_owned();
+            return match database.code() {
+                code if *code == SqlState::INVALID_PASSWORD => ServerErrorKind::WrongPassword,
+                code if *code == SqlState::INVALID_AUTHORIZATION_SPECIFICATION => {
+                    ServerErrorKind::Rejected { why: what }
+                }
+                code if *code == SqlState::INVALID_CATALOG_NAME => ServerErrorKind::NoDatabase,
+                code if *code == SqlState::INSUFFICIENT_PRIVILEGE => ServerErrorKind::NoRights { what },
+                code if *code == SqlState::DISK_FULL => ServerErrorKind::DiskFull,
+                code if NOT_RUNNING.contains(&code.code()) => ServerErrorKind::Unreachable { why: what },
+                code => ServerErrorKind::Database { code: Some(code.code().to_owned()), what },
+            };
+        }
+        let cause = error.source();
+        if let Some(source) = cause.and_then(|cause| cause.downcast_ref()) {
+            return from_io(source);
+        }
+        if error.is_closed() {
+            return ServerErrorKind::Unreachable { why: error.to_string() };
+        }
+        ServerErrorKind::Database { code: None, what: cause.map_or_else(|| error.to_string(), ToString::to_string) }
+    }
+}
+
+/// Codes of a server that shuts down, crashes, starts, or has no free connection.
+const NOT_RUNNING: [&str; 5] = ["57P01", "57P02", "57P03", "53300", "08006"];
+
+fn from_io(error: &io::Error) -> ServerErrorKind {
+    let why = error.to_string();
+    match error.kind() {
+        _ if error.get_ref().is_some_and(|inner| inner.is::<rustls::Error>()) => ServerErrorKind::Encryption { why },
+        io::ErrorKind::TimedOut => ServerErrorKind::NoReply,
+        _ => ServerErrorKind::Unreachable { why },
+    }
+}

@@ -1,0 +1,200 @@
+//! The server of a shared logbook. Several benches send their entries to one PostgreSQL database and receive those of
+//! the others. The local file comes first: a write is recorded there and never waits for the server.
+
+mod address;
+mod client;
+mod error;
+mod keyring;
+mod schema;
+mod transfer;
+
+use std::fmt;
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use jiff::Timestamp;
+
+pub use address::{Password, ServerAddress, ServerAddressError};
+pub use error::{ServerError, ServerErrorKind};
+pub use keyring::KeyringError;
+pub use transfer::Transferred;
+
+use client::Client;
+
+/// Interval at which a thread checks whether another thread has finished its transfer.
+const RETRY: Duration = Duration::from_millis(5);
+/// How long a failed attempt stands for the next one, so that several steps of a command do not wait for a server
+/// that is away.
+const FAILURE_VALID: Duration = Duration::from_secs(5);
+
+/// The server that this process uses, if any. Clones refer to the same server.
+#[derive(Clone, Default)]
+pub struct LogbookServer(Arc<Shared>);
+
+#[derive(Default)]
+struct Shared {
+    state: Mutex<State>,
+    /// The connection, which only one thread uses at a time.
+    connection: Mutex<Option<Connection>>,
+}
+
+#[derive(Default)]
+struct State {
+    address: Option<Result<ServerAddress, ServerAddressError>>,
+    contact: Contact,
+    failed: Option<(Instant, ServerError)>,
+}
+
+struct Connection {
+    client: Client,
+    address: ServerAddress,
+    identity: String,
+}
+
+/// Whether the server could be used.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Contact {
+    /// Whether the last transfer was complete.
+    pub is_reached: bool,
+    /// Reason why the last transfer failed.
+    pub problem: Option<ServerError>,
+    /// Time of the first failure since the last complete transfer.
+    pub away_since: Option<Timestamp>,
+}
+
+impl LogbookServer {
+    /// Sets the server, or uses none. An invalid address counts as a server that is away.
+    pub fn set_address(&self, address: Option<Result<ServerAddress, ServerAddressError>>) {
+        let mut state = self.state();
+        if state.address != address {
+            *state = State { address, ..State::default() };
+        }
+    }
+
+    /// Returns whether the entries are shared over a server, which may be away.
+    pub fn is_set(&self) -> bool {
+        self.state().address.is_some()
+    }
+
+    pub fn contact(&self) -> Contact {
+        self.state().contact.clone()
+    }
+
+    /// Sends the entries of the local file to the server and receives those of other benches. Each request to the
+    /// server may take as long as `limit`. Returns `None` if no server is set.
+    ///
+    /// # Errors
+    /// Returns an error if the server or the local file cannot be used. Entries that were not sent are sent the next time.
+    pub fn transfer(&self, path: &Path, limit: Duration) -> Option<Result<Transferred, ServerError>> {
+        let address = self.state().address.clone()?;
+        let address = match address {
+            Ok(address) => address,
+            Err(problem) => {
+                let failed = Err(ServerErrorKind::Address(problem).into_error(""));
+                self.note(None, &failed);
+                return Some(failed);
+            }
+        };
+        let began = Instant::now();
+        let mut connection = loop {
+            match self.0.connection.try_lock() {
+                Ok(connection) => break connection,
+                Err(TryLockError::Poisoned(poisoned)) => break poisoned.into_inner(),
+                Err(TryLockError::WouldBlock) if began.elapsed() > limit => {
+                    return Some(Err(ServerErrorKind::NoReply.into_error(&address.name())));
+                }
+                Err(TryLockError::WouldBlock) => thread::sleep(RETRY),
+            }
+        };
+        let result = transfer_over(&mut connection, &address, path, limit);
+        let result = result.map_err(|problem| problem.into_error(&address.name()));
+        if result.is_err() {
+            *connection = None;
+        }
+        self.note(Some(&address), &result);
+        Some(result)
+    }
+
+    /// Like [`transfer`](Self::transfer), but a failure of the last seconds is returned at once.
+    ///
+    /// # Errors
+    /// Returns an error if the server or the local file cannot be used.
+    pub fn transfer_unless_away(&self, path: &Path, limit: Duration) -> Option<Result<Transferred, ServerError>> {
+        let failed = self.state().failed.clone();
+        match failed {
+            Some((at, error)) if at.elapsed() < FAILURE_VALID => Some(Err(error)),
+            _ => self.transfer(path, limit),
+        }
+    }
+
+    fn note(&self, address: Option<&ServerAddress>, result: &Result<Transferred, ServerError>) {
+        let mut state = self.state();
+        // The server may have been exchanged meanwhile.
+        if state.address.as_ref().and_then(|address| address.as_ref().ok()) != address {
+            return;
+        }
+        let now = Timestamp::now();
+        match result {
+            Ok(_) => {
+                state.contact = Contact { is_reached: true, problem: None, away_since: None };
+                state.failed = None;
+            }
+            Err(error) => {
+                state.contact.is_reached = false;
+                state.contact.away_since.get_or_insert(now);
+                state.contact.problem = Some(error.clone());
+                state.failed = Some((Instant::now(), error.clone()));
+            }
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn transfer_over(
+    connection: &mut Option<Connection>,
+    address: &ServerAddress,
+    path: &Path,
+    limit: Duration,
+) -> Result<Transferred, ServerErrorKind> {
+    let usable = connection.take().filter(|own| own.address == *address && !own.client.postgres.is_closed());
+    let open = match usable {
+        Some(open) => open,
+        None => Connection::open(address, limit)?,
+    };
+    let Connection { client, identity, .. } = connection.insert(open);
+    client.set_limit(limit);
+    transfer::transfer(client, identity, path)
+}
+
+impl Connection {
+    fn open(address: &ServerAddress, limit: Duration) -> Result<Self, ServerErrorKind> {
+        let known = address.password.clone().or_else(Password::from_environment);
+        // Without a keyring, the server says whether it requires a password.
+        let password = known.or_else(|| {
+            let found = keyring::password(address);
+            found.inspect_err(|error| tracing::debug!("{error}")).ok().flatten()
+        });
+        let mut client = Client::connect(address, password.as_ref(), limit)?;
+        let identity = schema::prepare(&mut client)?;
+        Ok(Connection { client, address: address.clone(), identity })
+    }
+}
+
+impl fmt::Debug for LogbookServer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("LogbookServer").field(&self.state().address).finish()
+    }
+}
+
+impl PartialEq for LogbookServer {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Eq for LogbookServer {}

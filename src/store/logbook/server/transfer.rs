@@ -1,0 +1,209 @@
+//! Copies rows between the local file and the server, in both directions. The local file is complete at any time: rows
+//! are recorded there first, and rows of other benches are copied to it. So reading never waits for the server.
+//!
+//! A row that was sent twice, because the connection was lost before the reply, is ignored the second time: its `uid`
+//! is unique. Rows are sent in the order in which they were recorded.
+
+use std::path::Path;
+
+use tokio_postgres::{Client as Postgres, GenericClient, IsolationLevel, Row};
+
+use super::super::outbox::{self, EventRow, Marks, ResultRow, Rows, Waiting};
+use super::super::{LogbookErrorKind, schema as local_schema};
+use super::client::Client;
+use super::error::ServerErrorKind;
+use super::schema;
+use crate::store::logbook::LOCK_TIMEOUT;
+
+/// Number of rows that are received in one request.
+const RECEIVED: usize = 5_000;
+/// Number of rows that are sent in one transaction.
+const SENT: u32 = 1_000;
+
+/// Number of rows that were copied.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Transferred {
+    /// Events and results that the local file did not contain.
+    pub received: usize,
+    /// Events and results that were sent.
+    pub sent: usize,
+}
+
+/// Copies all rows that one side lacks.
+pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Result<Transferred, ServerErrorKind> {
+    let local = |problem: LogbookErrorKind| ServerErrorKind::Local(problem.into_error(path));
+    let sqlite = |error: rusqlite::Error| local(error.into());
+    let mut database = local_schema::open(path, LOCK_TIMEOUT).map_err(local)?;
+    let last = client.run(async |postgres| last_numbers(postgres).await)?;
+    let mut marks = outbox::begin(&mut database, identity, last).map_err(sqlite)?;
+    let mut done = Transferred::default();
+    loop {
+        let (rows, after) = client.run(async |postgres| receive(postgres, marks).await)?;
+        marks = after;
+        if rows.is_empty() {
+            break;
+        }
+        done.received += outbox::adopt(&mut database, &rows, &Waiting::default(), marks).map_err(sqlite)?;
+        if rows.events.len().max(rows.results.len()) < RECEIVED {
+            break;
+        }
+    }
+    loop {
+        let waiting = outbox::first_waiting(&database, SENT).map_err(sqlite)?;
+        if waiting.rows.is_empty() {
+            return Ok(done);
+        }
+        let (rows, after) = client.run(async |postgres| send(postgres, &waiting.rows, marks).await)?;
+        marks = after;
+        done.received += outbox::adopt(&mut database, &rows, &waiting, marks).map_err(sqlite)?;
+        done.sent += waiting.rows.events.len() + waiting.rows.results.len();
+    }
+}
+
+async fn last_numbers(client: &impl GenericClient) -> Result<Marks, ServerErrorKind> {
+    let sql = "SELECT coalesce((SELECT max(id) FROM event), 0), coalesce((SELECT max(id) FROM result), 0)";
+    let row = client.query_one(sql, &[]).await?;
+    Ok(Marks { event: row.try_get(0)?, result: row.try_get(1)? })
+}
+
+/// Receives the next rows of the server. A result never comes before its event, because both are read at one moment.
+async fn receive(postgres: &mut Postgres, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
+    let builder = postgres.build_transaction().isolation_level(IsolationLevel::RepeatableRead).read_only(true);
+    let transaction = builder.start().await?;
+    let rows = rows_after(&transaction, after).await?;
+    transaction.commit().await?;
+    Ok(rows)
+}
+
+async fn rows_after(client: &impl GenericClient, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
+    let limit = RECEIVED as i64;
+    let sql = r#"SELECT id, uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
+                        planned_cycles, backup, bench, "user", version, asset
+                 FROM event WHERE id > $1 ORDER BY id LIMIT $2"#;
+    let (mut rows, mut marks) = (Rows::default(), after);
+    for row in client.query(sql, &[&after.event, &limit]).await? {
+        marks.event = row.try_get(0)?;
+        rows.events.push(read_event(&row)?);
+    }
+    if rows.events.len() < RECEIVED {
+        let sql = "SELECT id, event, at, outcome, failure, cycles_spent FROM result WHERE id > $1 ORDER BY id LIMIT $2";
+        for row in client.query(sql, &[&after.result, &limit]).await? {
+            marks.result = row.try_get(0)?;
+            rows.results.push(read_result(&row)?);
+        }
+    }
+    Ok((rows, marks))
+}
+
+/// Adds rows, and receives the rows that other benches have added since. Returns the marks after both.
+async fn send(postgres: &mut Postgres, own: &Rows, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
+    let transaction = postgres.transaction().await?;
+    schema::lock(&transaction).await?;
+    let (rows, mut marks) = rows_after(&transaction, after).await?;
+    add_events(&transaction, &own.events).await?;
+    add_results(&transaction, &own.results).await?;
+    // All rows up to the own ones are known now, unless there are more than one request returns.
+    if rows.events.len().max(rows.results.len()) < RECEIVED {
+        marks = last_numbers(&transaction).await?;
+    }
+    transaction.commit().await?;
+    Ok((rows, marks))
+}
+
+async fn add_events(client: &impl GenericClient, events: &[EventRow]) -> Result<(), ServerErrorKind> {
+    if events.is_empty() {
+        return Ok(());
+    }
+    let texts = |of: fn(&EventRow) -> &String| events.iter().map(|row| storable(of(row))).collect::<Vec<_>>();
+    let options = |of: fn(&EventRow) -> &Option<String>| {
+        events.iter().map(|row| of(row).as_deref().map(storable)).collect::<Vec<_>>()
+    };
+    let sql = r#"INSERT INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
+                                    planned_cycles, backup, bench, "user", version, asset)
+        SELECT uid, at, what, kind, device_type, serial_number, is_virtual, description, items, planned_cycles, backup,
+               bench, "user", version, asset
+        FROM unnest($1::text[], $2::text[], $3::text[], $4::text[], $5::text[], $6::text[], $7::int[], $8::text[],
+                    $9::text[], $10::bigint[], $11::text[], $12::text[], $13::text[], $14::text[], $15::text[])
+            WITH ORDINALITY AS own (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
+                                    planned_cycles, backup, bench, "user", version, asset, place)
+        ORDER BY place
+        ON CONFLICT (uid) DO NOTHING"#;
+    let virtuals: Vec<i32> = events.iter().map(|row| row.is_virtual).collect();
+    let cycles: Vec<i64> = events.iter().map(|row| row.planned_cycles).collect();
+    client
+        .execute(
+            sql,
+            &[
+                &texts(|row| &row.uid),
+                &texts(|row| &row.at),
+                &texts(|row| &row.what),
+                &texts(|row| &row.kind),
+                &texts(|row| &row.device_type),
+                &texts(|row| &row.serial_number),
+                &virtuals,
+                &texts(|row| &row.description),
+                &texts(|row| &row.items),
+                &cycles,
+                &options(|row| &row.backup),
+                &texts(|row| &row.bench),
+                &options(|row| &row.user),
+                &texts(|row| &row.version),
+                &options(|row| &row.asset),
+            ],
+        )
+        .await?;
+    Ok(())
+}
+
+async fn add_results(client: &impl GenericClient, results: &[ResultRow]) -> Result<(), ServerErrorKind> {
+    if results.is_empty() {
+        return Ok(());
+    }
+    let texts = |of: fn(&ResultRow) -> &String| results.iter().map(|row| storable(of(row))).collect::<Vec<_>>();
+    let failures: Vec<_> = results.iter().map(|row| row.failure.as_deref().map(storable)).collect();
+    let cycles: Vec<i64> = results.iter().map(|row| row.cycles_spent).collect();
+    let sql = "INSERT INTO result (event, at, outcome, failure, cycles_spent)
+        SELECT event, at, outcome, failure, cycles_spent
+        FROM unnest($1::text[], $2::text[], $3::text[], $4::text[], $5::bigint[])
+            WITH ORDINALITY AS own (event, at, outcome, failure, cycles_spent, place)
+        ORDER BY place
+        ON CONFLICT (event) DO NOTHING";
+    let (events, times, outcomes) = (texts(|row| &row.event), texts(|row| &row.at), texts(|row| &row.outcome));
+    client.execute(sql, &[&events, &times, &outcomes, &failures, &cycles]).await?;
+    Ok(())
+}
+
+/// Returns a text in the form that PostgreSQL can store, which is without the character 0.
+fn storable(text: impl AsRef<str>) -> String {
+    text.as_ref().replace('\0', "\u{fffd}")
+}
+
+fn read_event(row: &Row) -> Result<EventRow, tokio_postgres::Error> {
+    Ok(EventRow {
+        uid: row.try_get(1)?,
+        at: row.try_get(2)?,
+        what: row.try_get(3)?,
+        kind: row.try_get(4)?,
+        device_type: row.try_get(5)?,
+        serial_number: row.try_get(6)?,
+        is_virtual: row.try_get(7)?,
+        description: row.try_get(8)?,
+        items: row.try_get(9)?,
+        planned_cycles: row.try_get(10)?,
+        backup: row.try_get(11)?,
+        bench: row.try_get(12)?,
+        user: row.try_get(13)?,
+        version: row.try_get(14)?,
+        asset: row.try_get(15)?,
+    })
+}
+
+fn read_result(row: &Row) -> Result<ResultRow, tokio_postgres::Error> {
+    Ok(ResultRow {
+        event: row.try_get(1)?,
+        at: row.try_get(2)?,
+        outcome: row.try_get(3)?,
+        failure: row.try_get(4)?,
+        cycles_spent: row.try_get(5)?,
+    })
+}

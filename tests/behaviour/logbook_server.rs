@@ -1,0 +1,328 @@
+//! Several benches share a logbook on a PostgreSQL server, which may be away, be killed, or refuse them.
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Event, Intent, Logbook, Outcome, ServerAddress, Store};
+use jiff::Timestamp;
+use serde_json::Value;
+
+use super::postgres::{PASSWORD, Postgres};
+use super::support::{Bench, Ran};
+
+const WRITE: [&str; 7] = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
+const LIMIT: Duration = Duration::from_secs(5);
+
+/// Returns the entries that `log` prints, oldest first.
+fn entries(ran: &Ran) -> Vec<Value> {
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    ran.out.lines().rev().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn kinds(entries: &[Value]) -> Vec<&str> {
+    entries.iter().map(|entry| entry["what"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn benches_see_the_entries_of_each_other_and_their_wear_adds_up() {
+    let Some(server) = Postgres::start() else { return };
+    let (one, two) = (Bench::new(), Bench::new());
+    for (bench, expected) in [(&one, vec!["connected", "write"]), (&two, ["connected", "write"].repeat(2))] {
+        let ran = bench.run_with_server(&server.url(), &WRITE);
+        assert_eq!((ran.status, ran.err.contains("server")), (Some(0), false), "{ran:?}");
+        let log = bench.run_with_server(&server.url(), &["log", "--json"]);
+        assert_eq!(kinds(&entries(&log)), expected, "{log:?}");
+    }
+    let log = one.run_with_server(&server.url(), &["log", "--json"]);
+    assert_eq!(kinds(&entries(&log)), ["connected", "write"].repeat(2));
+    assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"].repeat(2));
+    assert_eq!(server.sql("SELECT outcome, cycles_spent FROM result"), ["done|1", "done|1"]);
+    let device = DeviceKey::new("hiperface", "37h", "GB0450179", true);
+    assert_eq!((one.logbook().write_cycles(&device), two.logbook().write_cycles(&device)), (Ok(2), Ok(2)));
+    // Without the server, everything that was received is still here.
+    assert_eq!(entries(&one.run(&["log", "--json"])).len(), 4);
+}
+
+/// The setting does the same as the environment variable.
+#[test]
+fn the_setting_names_the_server() {
+    let Some(server) = Postgres::start() else { return };
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
+    bench.write("config/encoder-studio/settings.ron", format!("(theme: Light, logbook: \"{}\")", server.url()));
+    let mut command = bench.program(&WRITE);
+    command.env("PGPASSWORD", PASSWORD);
+    assert_eq!(super::support::finish(command).status, Some(0));
+    assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"]);
+}
+
+#[test]
+fn entries_wait_while_the_server_is_away() {
+    let Some(mut server) = Postgres::start() else { return };
+    let bench = Bench::new();
+    server.kill();
+    let ran = bench.run_with_server(&server.url(), &WRITE);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    let name = format!("127.0.0.1:{}/logs", server.port);
+    for words in [name.as_str(), "cannot be reached", "sent later", "Entries that wait to be sent: 2."] {
+        assert!(ran.err.contains(words), "{words}: {ran:?}");
+    }
+    assert_eq!(ran.err.matches(&name).count(), 1, "said once: {ran:?}");
+    // What is not connected to the server does not mention it.
+    let offline = bench.run_with_server(&server.url(), &["decode", "hiperface", "40 42 02"]);
+    assert!(!offline.err.contains(&name), "{offline:?}");
+    server.run(&[]);
+    let log = bench.run_with_server(&server.url(), &["log", "--json"]);
+    assert_eq!((entries(&log).len(), log.err.as_str()), (2, ""));
+    assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"]);
+}
+
+/// A server that accepts connections but says nothing delays a command by seconds, not for ever.
+#[test]
+fn a_silent_server_delays_a_command_only_for_a_moment() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("postgres://bench@{}/logs", listener.local_addr().unwrap());
+    let bench = Bench::new();
+    let ran = bench.run_with_server(&url, &WRITE);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert!(ran.err.contains("does not reply"), "{ran:?}");
+    assert!(ran.took < Duration::from_secs(8), "{:?}", ran.took);
+}
+
+#[test]
+fn each_problem_of_the_server_is_explained_and_work_goes_on() {
+    let Some(server) = Postgres::start() else { return };
+    let bench = Bench::new();
+    let port = server.port;
+    let check = |url: &str, password: &str, words: &[&str]| {
+        let mut command = bench.program(&WRITE);
+        command.env("ENCODER_STUDIO_LOGBOOK", url);
+        match password {
+            "" => command.env_remove("PGPASSWORD"),
+            password => command.env("PGPASSWORD", password),
+        };
+        let ran = super::support::finish(command);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        for word in words {
+            assert!(ran.err.contains(word), "{word:?} is not in {ran:?}");
+        }
+        assert!(!ran.err.contains(PASSWORD) && !ran.err.contains("wr0ng"), "{ran:?}");
+    };
+    let url = server.url();
+    check(&url, "wr0ng", &["rejects the user name or the password"]);
+    check(&url, "", &["requires a password", "PGPASSWORD"]);
+    check(&format!("postgres://bench:wr0ng@127.0.0.1:{port}/logs"), "", &["rejects the user name or the password"]);
+    check(&format!("postgres://bench@127.0.0.1:{port}/other"), PASSWORD, &["no database", "/other"]);
+    check(
+        "postgres://bench@no-such-host.invalid/logs",
+        PASSWORD,
+        &["no-such-host.invalid", "not found in the network"],
+    );
+    check(&format!("{url}?sslmode=verify-full"), PASSWORD, &["encrypted connection", "sslrootcert"]);
+    check(&format!("{url}?sslmode=prefer"), PASSWORD, &["sslmode=prefer", "verify-full"]);
+    check("mysql://db.plant/logs", PASSWORD, &["postgres://USER@HOST/DATABASE"]);
+    server.sql("CREATE ROLE guest LOGIN PASSWORD 'k3y-of-the-bench'");
+    check(&format!("postgres://guest@127.0.0.1:{port}/logs"), PASSWORD, &["lacks a right", "schema public"]);
+    // The tables, then a newer and an older schema.
+    check(&url, PASSWORD, &[]);
+    let guest = format!("postgres://guest@127.0.0.1:{port}/logs");
+    check(&guest, PASSWORD, &["lacks a right", "logbook"]);
+    server.sql("UPDATE logbook SET schema = 99");
+    check(&url, PASSWORD, &["schema 99", "newer version", "Update the program"]);
+    server.sql("UPDATE logbook SET schema = 1; DROP TABLE hold; GRANT SELECT ON logbook TO guest");
+    check(&guest, PASSWORD, &["older schema 1", "owner of the tables"]);
+    let count = |table: &str| server.sql(&format!("SELECT count(*) FROM {table}"))[0].parse::<usize>().unwrap();
+    let (written, sent) = (entries(&bench.run(&["log", "--json"])).len(), count("event"));
+    assert!(sent < written, "{sent} of {written}");
+    // The owner updates the tables, and everything that waited is sent.
+    check(&url, PASSWORD, &[]);
+    assert_eq!((count("hold"), count("event")), (0, written + 2));
+    assert_eq!(server.sql("SELECT schema FROM logbook"), ["2"]);
+    assert!(!bench.everything_kept().contains(PASSWORD));
+}
+
+/// A password in the setting is refused, and neither used nor repeated.
+#[test]
+fn a_password_in_the_setting_is_refused() {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
+    bench.write("config/encoder-studio/settings.ron", "(logbook: \"postgres://bench:0pen@127.0.0.1:1/logs\")");
+    let ran = bench.run(&WRITE);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert!(ran.err.contains("must not contain a password") && !ran.err.contains("0pen"), "{ran:?}");
+}
+
+/// The server is replaced by an empty one, as after a loss of its disk: all entries are sent again.
+#[test]
+fn an_empty_server_receives_all_entries_again() {
+    let Some(server) = Postgres::start() else { return };
+    let bench = Bench::new();
+    bench.run_with_server(&server.url(), &WRITE);
+    server.sql("DROP TABLE event, result, hold, logbook CASCADE");
+    bench.run_with_server(&server.url(), &WRITE);
+    assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"].repeat(2));
+    assert_eq!(server.sql("SELECT count(*) FROM result"), ["2"]);
+    // A backup of the server's disk lacks the newest rows.
+    server.sql("DELETE FROM result WHERE id = (SELECT max(id) FROM result)");
+    bench.run_with_server(&server.url(), &["log"]);
+    assert_eq!(server.sql("SELECT count(*) FROM result"), ["2"]);
+}
+
+#[test]
+fn a_connection_is_encrypted_and_the_certificate_is_checked() {
+    let Some(mut server) = Postgres::start() else { return };
+    let openssl = |arguments: &[&str]| {
+        let ran = Command::new("openssl").args(arguments).stderr(Stdio::null()).stdout(Stdio::null()).status();
+        assert!(ran.unwrap().success(), "{arguments:?}");
+    };
+    let path = |name: &str| server.path(name).to_str().unwrap().to_owned();
+    let (ca, ca_key, other) = (path("ca.pem"), path("ca.key"), path("other.pem"));
+    let (request, key, certificate) = (path("server.csr"), path("server.key"), path("server.pem"));
+    let new = ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2"];
+    openssl(&[&new[..], &["-subj", "/CN=plant", "-keyout", &ca_key, "-out", &ca]].concat());
+    openssl(
+        &[&new[..], &["-subj", "/CN=elsewhere", "-keyout", &ca_key.replace("ca", "other"), "-out", &other]].concat(),
+    );
+    openssl(&["req", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=x", "-keyout", &key, "-out", &request]);
+    std::fs::write(path("names"), "subjectAltName=IP:127.0.0.1").unwrap();
+    let names = path("names");
+    openssl(&[
+        "x509",
+        "-req",
+        "-in",
+        &request,
+        "-CA",
+        &ca,
+        "-CAkey",
+        &ca_key,
+        "-days",
+        "2",
+        "-extfile",
+        &names,
+        "-out",
+        &certificate,
+    ]);
+    for file in [&key, &certificate] {
+        // The server reads a key only if it is its own and no other user can read it.
+        let _ = Command::new("chown").args(["postgres", file]).status();
+        assert!(Command::new("chmod").args(["600", file]).status().unwrap().success());
+    }
+    server.kill();
+    server.run(&["-c", "ssl=on", "-c", &format!("ssl_cert_file={certificate}"), "-c", &format!("ssl_key_file={key}")]);
+    let bench = Bench::new();
+    let url = |authority: &str| format!("{}?sslrootcert={authority}", server.url());
+    let ran = bench.run_with_server(&url(&ca), &WRITE);
+    assert_eq!((ran.status, ran.err.contains("server")), (Some(0), false), "{ran:?}");
+    assert_eq!(server.sql("SELECT count(*) FROM event"), ["2"]);
+    let ran = bench.run_with_server(&url(&other), &WRITE);
+    assert!(ran.status == Some(0) && ran.err.contains("encrypted connection"), "{ran:?}");
+    let ran = bench.run_with_server(&url("/nowhere.pem"), &WRITE);
+    assert!(ran.status == Some(0) && ran.err.contains("/nowhere.pem"), "{ran:?}");
+    // Another name than that in the certificate.
+    let ran = bench.run_with_server(&url(&ca).replace("127.0.0.1", "localhost"), &WRITE);
+    assert!(ran.status == Some(0) && ran.err.contains("encrypted connection"), "{ran:?}");
+}
+
+const WRITES: usize = 500;
+
+fn device() -> DeviceKey {
+    DeviceKey::new("hiperface", "37h", "GB1", false)
+}
+
+/// The part of the next test that runs in a process of its own: it records entries as fast as it can, prints each one
+/// that is acknowledged, and sends them at the same time.
+#[test]
+#[ignore = "is started by another test"]
+fn writer() {
+    let Ok(root) = std::env::var("WRITER_ROOT") else { return };
+    let (store, name) = (Store::at_root(Path::new(&root)), std::env::var("WRITER_NAME").unwrap());
+    let address = ServerAddress::from_environment(&std::env::var("WRITER_SERVER").unwrap());
+    store.logbook_server().set_address(Some(address));
+    let sender = store.clone();
+    std::thread::spawn(move || {
+        loop {
+            sender.logbook_server().transfer(&sender.logbook_path(), LIMIT);
+            sleep(Duration::from_millis(5));
+        }
+    });
+    let mut logbook = Logbook::open(&store.logbook_path()).unwrap();
+    for number in 1..=WRITES {
+        let description = format!("{name} {number}");
+        if number % 5 == 0 {
+            let items = vec![encoder_studio::profile::ChangedItem::new(&description, None, None)];
+            let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 2, backup: None };
+            let id = logbook.record_intent(Timestamp::now(), &device(), &intent).unwrap();
+            logbook.record_outcome(id, Timestamp::now(), Outcome::Done, 1).unwrap();
+        } else {
+            logbook.record(Timestamp::now(), &device(), &Event::new(EntryKind::Note, description)).unwrap();
+        }
+        println!("acknowledged {number}");
+        sleep(Duration::from_millis(2));
+    }
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while logbook.count_waiting().unwrap() > 0 && Instant::now() < deadline {
+        sleep(Duration::from_millis(20));
+    }
+    println!("waiting {}", logbook.count_waiting().unwrap());
+}
+
+fn start_writer(root: &Path, name: &str, server: &Postgres) -> Child {
+    Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "logbook_server::writer", "--ignored", "--nocapture"])
+        .envs([("WRITER_ROOT", root.to_str().unwrap()), ("WRITER_NAME", name), ("WRITER_SERVER", &server.url())])
+        .env("PGPASSWORD", PASSWORD)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// Issue 30: PostgreSQL is killed in the middle of 1,000 writes of two programs at once, and restarted.
+#[test]
+fn every_acknowledged_entry_arrives_exactly_once_and_in_order() {
+    let Some(mut server) = Postgres::start() else { return };
+    let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let roots = [one.path(), two.path()];
+    let mut writers = [start_writer(roots[0], "a", &server), start_writer(roots[1], "b", &server)];
+    let outputs = writers.each_mut().map(|writer| BufReader::new(writer.stdout.take().unwrap()).lines());
+    let readers = outputs.map(|mut lines| {
+        let first = lines.by_ref().map(Result::unwrap).find(|line| *line == format!("acknowledged {}", WRITES / 2));
+        assert!(first.is_some());
+        std::thread::spawn(move || lines.map(Result::unwrap).collect::<Vec<_>>())
+    });
+    let before: usize = server.sql("SELECT count(*) FROM event")[0].parse().unwrap();
+    server.kill();
+    sleep(Duration::from_secs(1));
+    server.run(&[]);
+    for (reader, mut writer) in readers.into_iter().zip(writers) {
+        let lines = reader.join().unwrap();
+        assert!(lines.iter().any(|line| line == "waiting 0"), "{lines:?}");
+        assert!(lines.iter().any(|line| *line == format!("acknowledged {WRITES}")));
+        assert!(writer.wait().unwrap().success());
+    }
+    assert!((1..2 * WRITES).contains(&before), "killed in the middle: {before}");
+    let expected = |name: &str| (1..=WRITES).map(|number| format!("{name} {number}")).collect::<Vec<_>>();
+    let on_server = server.sql("SELECT description FROM event ORDER BY id");
+    assert_eq!(on_server.len(), 2 * WRITES);
+    assert_eq!(server.sql("SELECT count(*) FROM result"), [(2 * WRITES / 5).to_string()]);
+    for root in roots {
+        let store = Store::at_root(root);
+        let address = format!("postgres://bench:{PASSWORD}@127.0.0.1:{}/logs", server.port);
+        store.logbook_server().set_address(Some(ServerAddress::from_environment(&address)));
+        store.logbook_server().transfer(&store.logbook_path(), LIMIT).unwrap().unwrap();
+        let logbook = Logbook::open(&store.logbook_path()).unwrap();
+        let entries = logbook.entries(&EntryFilter::default(), 10_000).unwrap();
+        let local: Vec<String> = entries.into_iter().rev().map(|entry| entry.description).collect();
+        for (place, found) in [("server", &on_server), ("file", &local)] {
+            assert_eq!(found.len(), 2 * WRITES, "{place}");
+            for name in ["a", "b"] {
+                let own: Vec<String> = found.iter().filter(|text| text.starts_with(name)).cloned().collect();
+                assert_eq!(own, expected(name), "{place}");
+            }
+        }
+        assert_eq!(logbook.write_cycles(&device()), Ok(2 * WRITES as u64 / 5));
+    }
+}
