@@ -8,6 +8,7 @@ mod biss;
 mod hiperdrive;
 mod history;
 mod interbus;
+mod logbook;
 mod plot;
 mod poll;
 mod soak;
@@ -39,6 +40,7 @@ const ALL: &[Benchmark] = &[
     ("hiperdrive", |_| hiperdrive::run()),
     ("history", history::run),
     ("interbus", |_| interbus::run()),
+    ("logbook", |_| logbook::run()),
     ("plot", plot::run),
     ("poll", |_| poll::run()),
     ("soak", soak::run),

@@ -27,24 +27,39 @@ impl<S, F> StepResult<S, F> {
     }
 }
 
+/// Write cycles of a device that the logbook contains. Writes by other programs are never included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CycleCount {
+    pub seen: u64,
+    /// Whether none is missing. Otherwise, the server of the logbook is away, or the file was damaged.
+    pub is_complete: bool,
+}
+
+impl CycleCount {
+    /// Returns a count of which none is missing.
+    pub const fn complete(seen: u64) -> Self {
+        CycleCount { seen, is_complete: true }
+    }
+}
+
 /// Known wear of a device's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryWear {
     /// Counted write cycles, if known.
-    pub seen: Option<u64>,
+    pub seen: Option<CycleCount>,
     pub warning: u64,
     pub limit: u64,
 }
 
 impl MemoryWear {
     /// Returns the number of counted write cycles and the verdict on it. Returns `None` if the number is unknown.
-    pub(crate) fn verdict(&self) -> Option<(Verdict, u64)> {
-        let seen = self.seen?;
-        let verdict = match seen {
-            _ if seen >= self.limit => Verdict::Bad,
-            _ if seen >= self.warning => Verdict::Attention,
+    pub(crate) fn verdict(&self) -> Option<(Verdict, CycleCount)> {
+        let count = self.seen?;
+        let verdict = match count.seen {
+            seen if seen >= self.limit => Verdict::Bad,
+            seen if seen >= self.warning => Verdict::Attention,
             _ => Verdict::Good,
         };
-        Some((verdict, seen))
+        Some((verdict, count))
     }
 }

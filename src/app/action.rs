@@ -11,6 +11,7 @@ use super::logbook_server::ServerExchange;
 use super::payload::Payload;
 use super::recorder::{self, ExportResult};
 use super::review::Permit;
+use super::server_form::ServerAction;
 use super::services::Services;
 use super::session::{DeviceHistory, DraftOutcome, Kind, ProfileFile, SaveRequest};
 use super::settings_store::{LoadedSettings, SavedSettings};
@@ -20,7 +21,7 @@ use super::tab::Tab;
 use super::{ColorScheme, Language, Picture, Settings, Text, connect};
 use crate::link::LinkError;
 use crate::profile::{PlanId, ProfileDocument, ProfileError};
-use crate::store::{DeviceKey, EntryFilter, FileError, LogbookError, UserName};
+use crate::store::{DeviceKey, EntryFilter, FileError, KeyringError, LogbookError, ServerError, UserName};
 use crate::worker::{OpenError, Worker};
 
 pub enum Action {
@@ -52,6 +53,8 @@ pub enum Action {
     Confirm,
     Dismiss,
     Connect(connect::ConnectAction),
+    /// Act on the form for the server of the logbook.
+    Server(ServerAction),
     OpenVirtual,
     Save(SessionId),
     /// Resolve the conflict of a profile that another program has changed.
@@ -168,6 +171,10 @@ pub enum TaskResult {
     /// The logbook was searched. The number identifies the search.
     LogbookRead(u64, Result<LogbookMatches, LogbookError>),
     NoteAdded(Result<(), LogbookError>),
+    /// The connection to a server was tested. Contains the number of the test and the number of entries on the server.
+    ServerTested(u64, Result<Option<u64>, ServerError>),
+    /// The password of a server was saved in the keyring, or could not be saved.
+    PasswordSaved(Result<(), KeyringError>),
     /// Entries were exchanged with the server of the logbook, or that failed.
     EntriesExchanged {
         /// Whether entries of other benches were received.

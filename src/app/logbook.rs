@@ -1,6 +1,8 @@
 //! The logbook as a page: the filter, the entries that match it, and the user's notes. The file is read and written in
 //! tasks.
 
+use std::path::PathBuf;
+
 use jiff::Timestamp;
 
 use super::action::{Action, TaskResult};
@@ -42,6 +44,8 @@ pub struct LogbookMatches {
     pub devices: Vec<DeviceKey>,
     /// Assets to which a device was ever assigned, in their order.
     pub assets: Vec<String>,
+    /// A damaged file that was replaced. Its entries are missing.
+    pub damaged: Option<PathBuf>,
 }
 
 impl LogbookPage {
@@ -90,7 +94,8 @@ impl LogbookMatches {
         let mut entries = logbook.entries(filter, LogbookPage::LIMIT + 1)?;
         let has_more = entries.len() > LogbookPage::LIMIT as usize;
         entries.truncate(LogbookPage::LIMIT as usize);
-        Ok(LogbookMatches { entries, has_more, devices: logbook.devices()?, assets: logbook.assets()? })
+        let (devices, assets, damaged) = (logbook.devices()?, logbook.assets()?, logbook.damaged_file()?);
+        Ok(LogbookMatches { entries, has_more, devices, assets, damaged })
     }
 }
 

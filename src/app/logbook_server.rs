@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::action::{Action, TaskResult};
+use super::logbook::LOGBOOK_TAB;
 use super::studio::Studio;
 use super::tasks::ActionMailbox;
 use super::{Settings, Severity, explain};
@@ -24,11 +25,20 @@ const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Returns the server that the environment or else the settings name, or `None` if there is none.
 pub fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
-    match std::env::var(VARIABLE) {
-        Ok(address) if !address.trim().is_empty() => Some(ServerAddress::from_environment(&address)),
-        _ if settings.logbook.trim().is_empty() => None,
-        _ => Some(ServerAddress::from_setting(&settings.logbook)),
+    match given_server() {
+        Some(address) => Some(ServerAddress::from_environment(&address)),
+        None if settings.logbook.trim().is_empty() => None,
+        None => Some(ServerAddress::from_setting(&settings.logbook)),
     }
+}
+
+fn given_server() -> Option<String> {
+    std::env::var(VARIABLE).ok().filter(|address| !address.trim().is_empty())
+}
+
+/// Returns whether the environment names the server, so that the setting does not apply.
+pub(super) fn is_server_given() -> bool {
+    given_server().is_some()
 }
 
 /// State of the exchange with the server.
@@ -104,10 +114,18 @@ impl Studio {
         if received {
             self.logbook.mark_stale();
         }
-        let contact = &self.logbook.exchange().contact;
-        let is_new = before.contact.problem.is_none();
-        if let Some(problem) = contact.problem.clone().filter(|_| is_new) {
-            self.services.notify(Severity::Warning, vec![explain::server_error_text(&problem)], None);
+        let contact = self.logbook.exchange().contact.clone();
+        if let Some(problem) = contact.problem.filter(|_| before.contact.problem.is_none()) {
+            let text = vec![explain::server_error_text(&problem)];
+            // The page of the logbook shows it beside its entries.
+            if self.settings.tab == LOGBOOK_TAB {
+                self.services.log_only(Severity::Warning, text, None);
+            } else {
+                self.services.notify(Severity::Warning, text, None);
+            }
+        }
+        for holder in contact.others.iter().filter(|holder| !before.contact.others.contains(holder)) {
+            self.services.notify(Severity::Warning, vec![explain::other_holder_text(holder)], None);
         }
     }
 }

@@ -10,7 +10,7 @@ use super::session::Kind;
 use super::{Severity, Text, explain};
 use crate::profile::{Plan, PlanId};
 use crate::worker::commit::PlannedWrite;
-use crate::worker::{CommitResult, is_uncounted};
+use crate::worker::{CommitResult, is_incomplete, is_uncounted};
 
 pub struct Review<K: Reviewable> {
     pub title: Text,
@@ -199,6 +199,8 @@ pub struct ReviewSheet {
     pub force_wear: Option<bool>,
     /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,
+    /// Whether the logbook lacks write cycles, and the memory wears out quickly.
+    pub is_incomplete: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -260,7 +262,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
 
     /// Returns whether the device reaches its limit of write cycles with this plan.
     fn reaches_wear_limit(prepared: &Self::Prepared) -> bool {
-        let seen = prepared.cycles_seen().unwrap_or(0);
+        let seen = prepared.cycles_seen().map_or(0, |count| count.seen);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
 
@@ -339,6 +341,9 @@ impl<K: Reviewable> Review<K> {
         let shown = prepared.filter(|_| !is_over);
         let costs = shown.filter(|_| plan.is_some());
         let uncounted = |own: &K::Prepared| is_uncounted(own.cycles_seen(), own.plan().write_cycles());
+        let incomplete =
+            |own: &K::Prepared| is_incomplete(own.cycles_seen(), own.plan().write_cycles(), own.wear_limit());
+        let needs_permit = |own: &&K::Prepared| uncounted(own) || incomplete(own) || K::reaches_wear_limit(own);
         let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
         ReviewSheet {
             title: self.title.clone(),
@@ -351,8 +356,9 @@ impl<K: Reviewable> Review<K> {
             execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
             toggles: self.permit_toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),
-            force_wear: costs.filter(|own| uncounted(own) || K::reaches_wear_limit(own)).map(|_| self.force_wear),
+            force_wear: costs.filter(needs_permit).map(|_| self.force_wear),
             is_uncounted: costs.is_some_and(uncounted),
+            is_incomplete: costs.is_some_and(incomplete),
         }
     }
 }

@@ -12,6 +12,7 @@ use super::file_question::FileQuestion;
 use super::logbook::{LOGBOOK_TAB, LogbookPage};
 use super::logbook_server::ServerThread;
 use super::question::{FollowUpAction, Question};
+use super::server_form::ServerForm;
 use super::services::{Services, StudioEnvironment};
 use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
@@ -43,6 +44,7 @@ pub struct Studio {
     pub(super) comparison: Option<ProfileComparison>,
     pub(super) logbook: LogbookPage,
     pub(super) server_thread: Option<ServerThread>,
+    pub(super) server_form: Option<ServerForm>,
 }
 
 impl Studio {
@@ -69,6 +71,7 @@ impl Studio {
             comparison: None,
             logbook: LogbookPage::default(),
             server_thread: None,
+            server_form: None,
         }
     }
 
@@ -117,6 +120,7 @@ impl Studio {
             Action::Confirm => self.confirm_question(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.apply_connect_action(action),
+            Action::Server(action) => self.apply_server_action(action),
             Action::OpenVirtual => {
                 let tab = self.settings.tab;
                 if let Some(link) = self.virtual_link(tab) {
@@ -363,6 +367,8 @@ impl Studio {
                 self.with_device(id, |device, _| device.set_history(&of, *listed));
                 self.logbook.mark_stale();
             }
+            TaskResult::ServerTested(number, result) => self.show_server_test(number, result),
+            TaskResult::PasswordSaved(saved) => self.finish_password(saved),
             TaskResult::EntriesExchanged { received, state } => self.show_exchange(received, state),
             TaskResult::LogbookRead(number, matches) => self.show_logbook_matches(number, matches),
             TaskResult::NoteAdded(result) => self.finish_note(result),
@@ -403,6 +409,9 @@ impl Studio {
         }
         if self.connect.is_some() {
             self.close_dialog();
+            return;
+        }
+        if self.server_form.take().is_some() {
             return;
         }
         if let Some(id) = self.selected_device().filter(|device| device.is_reviewing()).map(|device| device.id()) {

@@ -12,7 +12,7 @@ use super::output::{Output, count};
 use super::runner::to_failure;
 use super::user_store::{exchange_entries, user_store};
 use super::{Failure, Result, Success};
-use crate::app::explain;
+use crate::app::{Text, explain};
 use crate::store::{Entry, EntryFilter, EntryId, EntryKind, Logbook, Outcome};
 
 /// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
@@ -64,7 +64,16 @@ pub(super) fn log(common: &CommonArgs, output: &Output, arguments: &LogArgs) -> 
         since: *since,
         search: search.clone().unwrap_or_default(),
     };
-    let entries = entries(common, &filter, *limit)?;
+    let entries = match existing_logbook(common)? {
+        None => Vec::new(),
+        Some(logbook) => {
+            let unreadable = |error| to_failure(&explain::logbook_unreadable(&error));
+            if let Some(kept) = logbook.damaged_file().map_err(unreadable)? {
+                output.print_message(&Text::new("logbook.lacks_damaged").with("kept", kept.display()).terminal_text());
+            }
+            logbook.entries(&filter, *limit).map_err(unreadable)?
+        }
+    };
     if entries.is_empty() && !output.is_json() {
         output.write_stdout("no entries\n")?;
     }
@@ -72,11 +81,6 @@ pub(super) fn log(common: &CommonArgs, output: &Output, arguments: &LogArgs) -> 
         output.show(&entry_json(entry), &entry_text(entry))?;
     }
     Ok(Success::Well)
-}
-
-fn entries(common: &CommonArgs, filter: &EntryFilter, limit: u32) -> Result<Vec<Entry>> {
-    let Some(logbook) = existing_logbook(common)? else { return Ok(Vec::new()) };
-    logbook.entries(filter, limit).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
 }
 
 /// Opens the logbook with the entries of all benches. Returns `None` if nothing has been recorded yet.

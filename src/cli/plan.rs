@@ -9,6 +9,7 @@ use crate::app::explain;
 use crate::profile::{Operation, Plan, WrittenChanges};
 use crate::store::LogbookError;
 use crate::worker::CommitResult;
+use crate::worker::commit::CycleCount;
 
 pub struct PlanReport {
     pub operations: Vec<Json>,
@@ -21,7 +22,7 @@ impl PlanReport {
     pub fn from_plan<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
         steps: Vec<PlanStep>,
-        seen: Option<u64>,
+        seen: Option<CycleCount>,
         limit: Option<u64>,
     ) -> Self {
         let operations = steps.iter().map(PlanStep::json).collect();
@@ -64,13 +65,13 @@ pub fn step_lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
-    seen: Option<u64>,
+    seen: Option<CycleCount>,
     limit: Option<u64>,
 ) -> String {
     if plan.is_empty() {
         return NOTHING_TO_WRITE.to_owned();
     }
-    let seen = seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
+    let seen = seen.map_or_else(|| "not known".to_owned(), |count| format!("at least {}", count.seen));
     let limit = limit.map(|limit| format!(", of {limit}")).unwrap_or_default();
     lines.add_line("write cycles", format!("{} (counted here so far: {seen}{limit})", plan.write_cycles()));
     lines.text()

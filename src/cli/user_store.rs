@@ -35,6 +35,10 @@ pub(super) fn finish_entries(common: &CommonArgs, output: &Output) {
         return;
     }
     let Ok(store) = Store::for_user() else { return };
+    for holder in common.server.contact().others {
+        output.print_message(&explain::other_holder_text(&holder).terminal_text());
+    }
+    common.log.release_device();
     let path = store.logbook_path();
     let waiting = || Logbook::open(&path).and_then(|logbook| logbook.count_waiting()).unwrap_or(0);
     if waiting() > 0 {

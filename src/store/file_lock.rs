@@ -66,7 +66,8 @@ pub fn update_text<T>(
     Ok(made)
 }
 
-fn wait_for(path: &Path) -> Result<FileLock, FileError> {
+/// Waits for the lock of a file.
+pub(super) fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let beside = lock_path(path);
     let began = Instant::now();
     loop {

@@ -30,9 +30,9 @@ pub use files::{
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
-    AssetName, AssetNameError, Contact, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, KeyringError,
-    Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, Outcome, Password, ServerAddress,
-    ServerAddressError, ServerError, ServerErrorKind, Transferred, UserName, WriteResult,
+    AssetName, AssetNameError, Contact, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent,
+    KeyringError, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder, Outcome, Password,
+    ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UserName, WriteResult,
 };
 
 use crate::profile::Cause;

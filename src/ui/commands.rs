@@ -9,7 +9,9 @@ use super::backups::time;
 use super::device_view::DeviceView;
 use super::{Theme, Views};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, SessionId, Studio, Tab, Text, connect};
+use crate::app::{
+    Action, AnyDevice, ColorScheme, DeviceCommand, Language, ServerAction, SessionId, Studio, Tab, Text, connect,
+};
 use crate::store::{Backup, UserName};
 
 const COMMAND: Modifiers = Modifiers::COMMAND;
@@ -137,6 +139,7 @@ fn program_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Comman
     ] {
         commands.push(act(word, Action::SetUserName(name)).enabled_if(name != settings.user_name));
     }
+    commands.push(act("shell.logbook_server", Action::Server(ServerAction::Open)));
     let (word, opens) = if settings.lower_open { ("status_line.close", false) } else { ("status_line.open", true) };
     commands.push(act(word, Action::OpenLowerPanel(opens)).with_shortcut(COMMAND, Key::T));
     commands.push(command("shell.help", CommandEffect::ToggleHelp).with_shortcut(Modifiers::NONE, HELP_KEY));

@@ -305,7 +305,11 @@ fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewShee
             actions.push(Action::Review(device.id(), ReviewAction::Toggle(permit)));
         }
     }
-    let force_wear = if sheet.is_uncounted { "review.force_uncounted" } else { "review.force_wear" };
+    let force_wear = match sheet {
+        sheet if sheet.is_uncounted => "review.force_uncounted",
+        sheet if sheet.is_incomplete => "review.force_incomplete",
+        _ => "review.force_wear",
+    };
     if let Some(mut force) = sheet.force_wear
         && ui.checkbox(&mut force, theme.translate(force_wear)).changed()
     {

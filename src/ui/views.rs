@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
-use super::dialogs::{ConnectView, FileView, PaletteUiState};
+use super::dialogs::{ConnectView, FileView, PaletteUiState, ServerView};
 use super::logbook::{self, LogbookView};
 use super::panels::TraceView;
 use super::plot;
@@ -14,6 +14,7 @@ pub struct Views {
     sessions: BTreeMap<SessionId, Box<dyn SessionView>>,
     tools: Vec<(Tab, Box<dyn ToolPages>)>,
     pub(super) connect: ConnectView,
+    pub(super) server: ServerView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
@@ -32,6 +33,7 @@ impl Views {
             sessions: BTreeMap::new(),
             tools: tabs.tool_views().iter().map(|view| (view.kind().tab(), view.create_pages())).collect(),
             connect: ConnectView::default(),
+            server: ServerView::default(),
             file: None,
             about: false,
             help: false,

@@ -13,6 +13,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 
 use super::{JobError, Progress};
+pub use crate::analysis::check::CycleCount;
 use crate::profile::{
     Body, ChangedItem, ConfirmedPlan, Consent, InterruptedWriteOf, Operation, OperationError, Plan, ProfileDocument,
     Write, WriteRecord,
@@ -21,6 +22,10 @@ use crate::store::{DeviceKey, EntryId, EntryKind, FileError, Intent, Logbook, Lo
 
 /// Maximum time for each request to the server of the logbook, before the write cycles of this computer have to do.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Greatest limit of write cycles of a memory that wears out quickly. With such a limit, the write cycles that the
+/// logbook lacks may be as many as are left.
+const QUICKLY_WORN: u64 = 10_000;
 
 /// A plan approved by the user, with the values on which it is based.
 #[derive(Clone, Debug)]
@@ -61,6 +66,16 @@ pub enum NotStarted {
     WearUnknown {
         /// Number of write cycles required by the plan.
         cost: u64,
+    },
+    /// The logbook lacks write cycles, and the memory wears out quickly.
+    #[error("at least {seen} of {limit} write cycles seen, {cost} more are planned")]
+    WearIncomplete {
+        /// Number of known write cycles.
+        seen: u64,
+        /// Number of write cycles required by the plan.
+        cost: u64,
+        /// Number of write cycles beyond which the device is considered worn.
+        limit: u64,
     },
     /// The write would exceed the limit of write cycles of the device.
     #[error("{cost} more write cycles would exceed the limit of {limit} ({seen} counted so far)")]
@@ -113,7 +128,7 @@ pub trait PlannedWrite {
 
     /// Returns the write cycles recorded for the device in the logbook of this computer. Returns `None` if the logbook
     /// cannot be read.
-    fn cycles_seen(&self) -> Option<u64> {
+    fn cycles_seen(&self) -> Option<CycleCount> {
         self.header().cycles_seen
     }
 
@@ -129,8 +144,8 @@ pub struct PlanHeader<'p, P: PlannedWrite + ?Sized> {
     pub plan: &'p Plan<P::Base, P::Op>,
     /// Kind of change that the plan makes.
     pub kind: P::Kind,
-    /// Write cycles recorded for the device on this computer. `None` if the logbook cannot be read.
-    pub cycles_seen: Option<u64>,
+    /// Write cycles recorded for the device in the logbook. `None` if it cannot be read.
+    pub cycles_seen: Option<CycleCount>,
     /// Number of write cycles beyond which the device is considered worn.
     pub wear_limit: u64,
 }
@@ -195,26 +210,41 @@ pub fn backup_document(body: Body) -> ProfileDocument {
 
 /// Returns the minimum total of a device's write cycles after `cost` further cycles. Returns `None` if `cost` is zero
 /// or the total is below `warning`.
-pub(crate) fn total_cycles_to_report(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
-    let after = seen.unwrap_or(0).saturating_add(cost);
+pub(crate) fn total_cycles_to_report(seen: Option<CycleCount>, cost: u64, warning: u64) -> Option<u64> {
+    let after = seen.map_or(0, |count| count.seen).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)
 }
 
 /// Returns whether a write costs cycles on a device whose earlier write cycles are unknown.
-pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
+pub const fn is_uncounted(seen: Option<CycleCount>, cost: u64) -> bool {
     seen.is_none() && cost > 0
 }
 
-/// Returns the write cycles recorded for a device in the logbook of this computer. Returns `None` if the logbook cannot
-/// be read.
-pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
-    let path = store.logbook_path();
-    store.logbook_server().transfer_unless_away(&path, SERVER_TIMEOUT);
+/// Returns whether a write needs a permit because the logbook lacks write cycles.
+pub fn is_incomplete(seen: Option<CycleCount>, cost: u64, limit: u64) -> bool {
+    matches!(check_wear(seen, cost, limit, false), Err(NotStarted::WearIncomplete { .. }))
+}
+
+/// Returns the write cycles recorded for a device in the logbook, after asking other benches for theirs. Returns `None`
+/// if the logbook cannot be read.
+pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
+    store.logbook_server().transfer_unless_away(&store.logbook_path(), SERVER_TIMEOUT);
+    known_cycles(store, device)
+}
+
+/// Returns the write cycles recorded for a device in the local file. Returns `None` if the file cannot be read, or if an
+/// earlier file was damaged and is still there.
+pub fn known_cycles(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
+    let (path, server) = (store.logbook_path(), store.logbook_server());
+    let is_complete = !server.is_set() || server.contact().is_reached;
     if matches!(path.try_exists(), Ok(false)) {
-        return Some(0);
+        return Some(CycleCount { seen: 0, is_complete });
     }
-    match Logbook::open(&path).and_then(|logbook| logbook.write_cycles(device)) {
-        Ok(cycles) => Some(cycles),
+    let read = |logbook: Logbook| Ok((logbook.write_cycles(device)?, logbook.damaged_file()?));
+    match Logbook::open(&path).and_then(read) {
+        // The damaged file may contain any number of write cycles, until the user has dealt with it.
+        Ok((_, Some(damaged))) if damaged.exists() => None,
+        Ok((seen, damaged)) => Some(CycleCount { seen, is_complete: is_complete && damaged.is_none() }),
         Err(error) => {
             tracing::warn!("{error}");
             None
@@ -225,12 +255,17 @@ pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
 /// Checks whether a write with this cost may begin, according to the known write cycles.
 ///
 /// # Errors
-/// Returns [`NotStarted::WearUnknown`] or [`NotStarted::Worn`].
-pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bool) -> Result<(), NotStarted> {
+/// Returns [`NotStarted::WearUnknown`], [`NotStarted::WearIncomplete`] or [`NotStarted::Worn`].
+pub const fn check_wear(seen: Option<CycleCount>, cost: u64, limit: u64, force_wear: bool) -> Result<(), NotStarted> {
     match seen {
         _ if force_wear => Ok(()),
         None if cost > 0 => Err(NotStarted::WearUnknown { cost }),
-        Some(seen) if seen.saturating_add(cost) > limit => Err(NotStarted::Worn { seen, cost, limit }),
+        Some(CycleCount { seen, .. }) if seen.saturating_add(cost) > limit => {
+            Err(NotStarted::Worn { seen, cost, limit })
+        }
+        Some(CycleCount { seen, is_complete: false }) if cost > 0 && limit <= QUICKLY_WORN => {
+            Err(NotStarted::WearIncomplete { seen, cost, limit })
+        }
         _ => Ok(()),
     }
 }

@@ -30,7 +30,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
-pub use commit::{CommitResult, NotStarted, check_wear, is_uncounted};
+pub use commit::{CommitResult, NotStarted, check_wear, is_incomplete, is_uncounted};
 pub use interruption::{JobError, JobInterruption};
 pub use live::WorkerStopHandle;
 pub use open::OpenError;

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use jiff::Timestamp;
 
 use crate::analysis::check::Verdict;
-use crate::store::{AssetName, DeviceKey, EntryKind, Event, Logbook, LogbookError, Store};
+use crate::store::{AssetName, DeviceHold, DeviceKey, EntryKind, Event, Logbook, LogbookError, Store};
 
 /// The part of the logbook that belongs to one session. Copies refer to the same session.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ struct State {
     device: Option<DeviceKey>,
     /// Whether the last device was assigned to the asset, now or earlier.
     is_assigned: bool,
+    /// Announcement of the last device to other benches.
+    hold: Option<DeviceHold>,
 }
 
 impl SessionLog {
@@ -31,6 +33,11 @@ impl SessionLog {
     /// Returns the device that was identified last in this session.
     pub fn device(&self) -> Option<DeviceKey> {
         self.state().device.clone()
+    }
+
+    /// Tells other benches with the next transfer that the device is not connected any more.
+    pub fn release_device(&self) {
+        self.state().hold = None;
     }
 
     /// Returns whether the device that was identified last is assigned to the asset of the session.
@@ -45,6 +52,7 @@ impl SessionLog {
             return;
         }
         state.device = Some(device.clone());
+        state.hold = store.logbook_server().hold(device);
         // Devices without a serial number cannot be told apart.
         let asset = state.asset.clone().filter(|_| !device.serial_number.is_empty());
         state.is_assigned = write(store, |logbook| {

@@ -77,11 +77,27 @@ fn access_codes_are_not_in_the_logbook() {
 }
 
 #[test]
-fn a_damaged_logbook_is_named() {
+fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("data/encoder-studio")).unwrap();
     bench.write("data/encoder-studio/logbook.sqlite", "no database, and not a short one at that. ".repeat(30));
-    bench.run(&["log"]).fails(1, &["logbook.sqlite", "damaged"]);
+    let ran = bench.run(&["log"]);
+    assert_eq!((ran.status, ran.out.as_str()), (Some(0), "no entries\n"));
+    ran.assert_stderr(&["logbook-damaged-", "write cycles are missing"]);
+    let names = std::fs::read_dir(bench.path("data/encoder-studio")).unwrap().map(|entry| entry.unwrap().file_name());
+    let kept = names.map(|name| name.into_string().unwrap()).find(|name| name.starts_with("logbook-damaged-")).unwrap();
+    assert!(bench.read(&format!("data/encoder-studio/{kept}")).starts_with("no database"));
+    // Work goes on, but a write needs a permit, because the earlier write cycles are in the damaged file.
+    let store = ["write", "interbus", "preset", "7", "--yes", "--link", "sim:"];
+    let write = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
+    for words in [&store, &write] {
+        bench.run(words).fails(1, &["was damaged", "unknown", "--force-wear"]);
+        assert_eq!(bench.run(&[&words[..], &["--force-wear"]].concat()).status, Some(0));
+    }
+    // Without that file, the count is a minimum. What wears out quickly still needs a permit.
+    std::fs::remove_file(bench.path(&format!("data/encoder-studio/{kept}"))).unwrap();
+    assert_eq!(bench.run(&write).status, Some(0));
+    bench.run(&store).fails(1, &["at least 1 of", "the file was damaged", "--force-wear"]);
 }
 
 /// Returns the kinds of the entries, oldest first.
@@ -118,12 +134,11 @@ fn each_kind_of_event_is_logged() {
 #[test]
 fn reading_goes_on_without_a_logbook() {
     let bench = Bench::new();
-    std::fs::create_dir_all(bench.path("data/encoder-studio")).unwrap();
-    bench.write("data/encoder-studio/logbook.sqlite", "no database, and not a short one at that. ".repeat(30));
+    std::fs::create_dir_all(bench.path("data/encoder-studio/logbook.sqlite")).unwrap();
     let ran = bench.run(&["identify", "hiperface", "--link", "sim:", "--json"]);
     assert_eq!(ran.status, Some(0), "{ran:?}");
     assert_eq!(ran.json()["serial_number"], "GB0450179");
-    assert!(ran.err.contains("logbook.sqlite") && ran.err.contains("damaged"), "{ran:?}");
+    assert!(ran.err.contains("logbook.sqlite") && ran.err.contains("cannot be opened"), "{ran:?}");
 }
 
 #[test]

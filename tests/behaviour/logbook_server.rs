@@ -81,6 +81,56 @@ fn entries_wait_while_the_server_is_away() {
     assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"]);
 }
 
+/// The unknown writes of other benches may have used up a memory that wears out quickly; others have plenty left.
+#[test]
+fn what_wears_out_quickly_needs_a_permit_while_the_server_is_away() {
+    let bench = Bench::new();
+    let away = "postgres://bench@127.0.0.1:1/logs";
+    let write = |words: &[&str]| bench.run_with_server(away, &[words, &["--yes", "--link", "sim:"]].concat());
+    for words in [["write", "interbus", "preset", "7"], ["write", "biss", "0x24:0x10", "0xAA"]] {
+        let refused = write(&words);
+        assert_eq!(refused.status, Some(1), "{refused:?}");
+        for part in ["at least 0 of", "the server is away", "--force-wear", "127.0.0.1:1/logs"] {
+            assert!(refused.err.contains(part), "{part}: {refused:?}");
+        }
+        assert_eq!(write(&[&words[..], &["--force-wear"]].concat()).status, Some(0));
+    }
+    for words in [["write", "hiperface", "field:0@3+2", "C0FF"], ["write", "hiperdrive", "158", "-100000"]] {
+        let ran = write(&words[..]);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+    }
+}
+
+#[test]
+fn benches_that_hold_the_same_device_are_told_of_each_other() {
+    let Some(server) = Postgres::start() else { return };
+    let address = format!("postgres://bench:{PASSWORD}@127.0.0.1:{}/logs", server.port);
+    let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let [one, two] = [one.path(), two.path()].map(|root| {
+        let store = Store::at_root(root);
+        store.logbook_server().set_address(Some(ServerAddress::from_environment(&address)));
+        store
+    });
+    let others = |store: &Store| {
+        store.logbook_server().transfer(&store.logbook_path(), LIMIT).unwrap().unwrap();
+        store.logbook_server().contact().others.into_iter().map(|other| other.device).collect::<Vec<_>>()
+    };
+    let simulated = DeviceKey { is_virtual: true, ..device() };
+    assert!(one.logbook_server().hold(&simulated).is_none(), "each bench has the same one");
+    let _held = one.logbook_server().hold(&device());
+    assert_eq!(others(&one), []);
+    // Another program holds it, as its name in the table says.
+    server.sql("UPDATE hold SET program = 'other', bench = 'bench 2'");
+    let again = two.logbook_server().hold(&device());
+    assert_eq!((others(&one), others(&two)), (vec![device()], vec![device()]));
+    assert_eq!(two.logbook_server().contact().others[0].bench, "bench 2");
+    drop(again);
+    assert_eq!(others(&two), []);
+    // A program that was killed counts as gone after half a minute.
+    server.sql("UPDATE hold SET until = now() - interval '1 second'");
+    assert_eq!(others(&one), []);
+}
+
 /// A server that accepts connections but says nothing delays a command by seconds, not for ever.
 #[test]
 fn a_silent_server_delays_a_command_only_for_a_moment() {
@@ -131,6 +181,13 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
     check(&url, PASSWORD, &[]);
     let guest = format!("postgres://guest@127.0.0.1:{port}/logs");
     check(&guest, PASSWORD, &["lacks a right", "logbook"]);
+    server.sql(
+        "CREATE FUNCTION full_disk() RETURNS trigger LANGUAGE plpgsql AS
+         $$ BEGIN RAISE 'could not extend file' USING ERRCODE = 'disk_full'; END $$;
+         CREATE TRIGGER full_disk BEFORE INSERT ON event EXECUTE FUNCTION full_disk()",
+    );
+    check(&url, PASSWORD, &["disk of the logbook server", "is full", "sent later"]);
+    server.sql("DROP FUNCTION full_disk CASCADE");
     server.sql("UPDATE logbook SET schema = 99");
     check(&url, PASSWORD, &["schema 99", "newer version", "Update the program"]);
     server.sql("UPDATE logbook SET schema = 1; DROP TABLE hold; GRANT SELECT ON logbook TO guest");

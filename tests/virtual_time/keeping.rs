@@ -5,7 +5,7 @@ use std::fs;
 use encoder_studio::devices::hiperface::jobs::{Change, JobError};
 use encoder_studio::devices::hiperface::profile::FieldRange;
 use encoder_studio::devices::hiperface::protocol::{AccessCode, AccessCodeNumber};
-use encoder_studio::store::Store;
+use encoder_studio::store::{Logbook, Store};
 use encoder_studio::worker::NotStarted;
 
 use crate::support::{Desk, backup};
@@ -51,11 +51,13 @@ fn a_broken_logbook_stops_an_unforced_write() {
         assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })), "{error:?}");
         assert_eq!(desk.wear(), 0);
         let done = desk.commit_by_force(&prepared).unwrap();
-        assert!(done.logbook_warning.is_some());
+        // Issue 30: a damaged file is kept under another name, and a new one is begun.
+        assert_eq!(done.logbook_warning.is_some(), !garbage);
         assert_eq!(desk.memory()[0].1[3], 0xEE);
         assert_eq!(done.written.verified, 1);
         if garbage {
-            assert!(fs::read_to_string(&path).unwrap().starts_with("this is no database"), "left where it is");
+            let kept = Logbook::open(&path).unwrap().damaged_file().unwrap().unwrap();
+            assert!(fs::read_to_string(kept).unwrap().starts_with("this is no database"));
         }
     }
 }

@@ -29,7 +29,7 @@ use bench::*;
 #[test]
 fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
     let mut desk = until_saved(FRESH, 1);
-    assert_eq!(unit(&desk).session.cycles, Some(1));
+    assert_eq!(unit(&desk).session.cycles, Some(encoder_studio::worker::commit::CycleCount::complete(1)));
     let limits = unit(&desk).limits(DriveNumber::FIRST).unwrap();
     run(&mut desk, Run::Press(AxisButton::Give));
     desk.until("without control", |studio| {
@@ -114,7 +114,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     assert!(axis(&desk).changes().is_empty());
     let turned = 33_488_896;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 256, 1, -turned, turned]);
-    assert_eq!(unit(&desk).session.cycles, Some(0));
+    assert_eq!(unit(&desk).session.cycles, Some(encoder_studio::worker::commit::CycleCount::complete(0)));
     let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(
         told.contains("restored to their previous values: 5 of 5") && words::differences(&seen(&desk)).is_none(),

@@ -1,7 +1,7 @@
 //! The page of the logbook, with the real widgets: entries with old and new values, the filter, backups and notes.
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio, Text};
 use encoder_studio::devices::hiperface::state::{HiperfaceAction, ReviewState};
 use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Logbook};
 
@@ -146,14 +146,17 @@ fn a_saved_profile_is_recorded_and_found_by_its_asset() {
 }
 
 #[test]
-fn a_damaged_logbook_is_reported_and_the_rest_works() {
+fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
     let outside = crate::support::Outside::new("");
     let path = outside.store().logbook_path();
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     std::fs::write(&path, "this is not a database").unwrap();
     let mut screen = Screen::opened(outside, None, SIZE);
     screen.act(Action::ShowTab(LOGBOOK_TAB));
-    screen.until("it is reported", |studio| matches!(studio.logbook().matches(), Some(Err(_))));
-    assert!(screen.has_button("logbook.refresh"));
-    assert_eq!(std::fs::read(&path).unwrap(), b"this is not a database");
+    screen.until("a new one is begun", |studio| matches!(studio.logbook().matches(), Some(Ok(_))));
+    let matches = screen.studio().logbook().matches().unwrap().as_ref().unwrap();
+    let kept = matches.damaged.clone().unwrap();
+    assert_eq!(std::fs::read(&kept).unwrap(), b"this is not a database");
+    let text = Text::new("logbook.lacks_damaged").with("kept", kept.display()).to_string_in(Language::English);
+    assert!(screen.shows(&text));
 }

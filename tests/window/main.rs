@@ -32,6 +32,7 @@ mod hiperdrive_stop;
 mod interbus;
 mod leaving;
 mod logbook;
+mod logbook_server;
 mod losing;
 mod messages;
 mod monkey;

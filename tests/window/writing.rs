@@ -93,7 +93,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     desk.command(DeviceCommand::Restore(backup));
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
-    assert_eq!(prepared.cycles_seen, Some(1));
+    assert_eq!(prepared.cycles_seen, Some(encoder_studio::worker::commit::CycleCount::complete(1)));
     desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().field(0)[RATED], 0x22);
@@ -288,7 +288,7 @@ fn late_results_for_another_encoder_are_dropped() {
         asset: None,
         backups: Ok(Vec::new()),
         writes: Ok(Vec::new()),
-        cycles: Some(0),
+        cycles: Some(encoder_studio::worker::commit::CycleCount::complete(0)),
         statuses: Vec::new(),
     });
     desk.act(Action::Done(TaskResult::Listed(id, other.clone(), listed)));

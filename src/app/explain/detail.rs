@@ -120,6 +120,7 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
         LogbookErrorKind::Locked => Text::new("logbook.locked"),
         LogbookErrorKind::DiskFull => Text::new("logbook.full"),
         LogbookErrorKind::Damaged { what } => Text::new("logbook.damaged").with("what", what),
+        LogbookErrorKind::SetAside { kept } => Text::new("logbook.set_aside").with("kept", kept.display()),
         LogbookErrorKind::Newer { found, known } => {
             Text::new("logbook.newer").with("found", found).with("known", known)
         }

@@ -13,10 +13,11 @@ pub(crate) use detail::syntax_error_text;
 pub(crate) use detail::tests::check as assert_in_both_languages;
 pub use detail::{logbook_problem, profile_error_text, setting_error_text, trace_error_text, url_error_text};
 pub use expected::expected_text;
-pub use server::{server_address_error_text, server_error_text};
+pub use server::{other_holder_text, server_address_error_text, server_error_text};
 
 use super::action::OpenFailure;
 use super::{KindRegistry, Text};
+use crate::analysis::check::CycleCount;
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{ProfileDocument, ProfileError, SCHEMA};
 use crate::store::{AssetNameError, FileError, FileErrorKind, LogbookError, StoreError};
@@ -141,6 +142,9 @@ pub fn not_started_text(why: &NotStarted) -> Text {
         NotStarted::OtherPlan => Text::new("write.other_plan"),
         NotStarted::NotKept(error) => Text::new("write.not_kept").with_text("why", file_error_text(error)),
         NotStarted::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
+        NotStarted::WearIncomplete { seen, cost, limit } => {
+            Text::new("write.incomplete").with("seen", seen).with("cost", cost).with("limit", limit)
+        }
         NotStarted::Worn { seen, cost, limit } => {
             Text::new("write.worn").with("used", seen).with("cost", cost).with("limit", limit)
         }
@@ -149,6 +153,14 @@ pub fn not_started_text(why: &NotStarted) -> Text {
 
 pub fn logbook_error_text(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
+}
+
+/// Returns a number of write cycles: at least those that are known.
+pub fn cycle_count_text(count: CycleCount) -> Text {
+    match count.is_complete {
+        true => literal_text(count.seen),
+        false => Text::new("wear.at_least").with("count", count.seen),
+    }
 }
 
 /// Describes why the logbook cannot be read.

@@ -2,7 +2,7 @@
 
 use super::{literal_text, logbook_problem};
 use crate::app::Text;
-use crate::store::{ServerAddressError, ServerError, ServerErrorKind};
+use crate::store::{OtherHolder, ServerAddressError, ServerError, ServerErrorKind};
 
 pub fn server_error_text(error: &ServerError) -> Text {
     let of_server = |id| Text::new(id).with("server", &error.server);
@@ -26,6 +26,15 @@ pub fn server_error_text(error: &ServerError) -> Text {
         ServerErrorKind::Local(error) => of_server("server.local").with_text("why", logbook_problem(error)),
         ServerErrorKind::Database { what, .. } => of_server("server.other").with_text("why", literal_text(what)),
     }
+}
+
+/// Returns the warning that another program is connected to the same device.
+pub fn other_holder_text(holder: &OtherHolder) -> Text {
+    let text = match &holder.user {
+        Some(user) => Text::new("server.held_by_user").with("user", user),
+        None => Text::new("server.held"),
+    };
+    text.with("bench", &holder.bench).with("serial_number", &holder.device.serial_number)
 }
 
 pub fn server_address_error_text(error: &ServerAddressError) -> Text {

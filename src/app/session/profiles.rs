@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use jiff::Timestamp;
 
 use super::{FileSnapshot, ProfileFile, SaveRequest, SessionState, Source};
+use crate::analysis::check::CycleCount;
 use crate::app::action::TaskResult;
 use crate::app::documents::{new_document, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
 use crate::profile::{Body, ProfileDocument};
 use crate::store::{AssetName, Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
+use crate::worker::commit::known_cycles;
 
 impl SessionState {
     pub(crate) fn suggested_file(&self) -> PathBuf {
@@ -127,7 +129,7 @@ pub struct DeviceHistory {
     /// Writes in the logbook, newest first, or the reason why there are none.
     pub writes: Result<Vec<Entry>, LogbookError>,
     /// Total number of write cycles, or `None` if the logbook does not contain it.
-    pub cycles: Option<u64>,
+    pub cycles: Option<CycleCount>,
     /// Asset to which the device is assigned.
     pub asset: Option<String>,
     /// Status codes that were read, newest first. An error of the logbook is reported in `writes`.
@@ -140,15 +142,16 @@ impl DeviceHistory {
 
     pub(in crate::app) fn load(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list_for(&key.kind, &key.serial_number);
-        let (writes, cycles, asset, statuses) = match store.logbook_path() {
-            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0), None, Vec::new()),
+        let cycles = known_cycles(store, key);
+        let (writes, asset, statuses) = match store.logbook_path() {
+            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), None, Vec::new()),
             path => match Logbook::open(&path) {
                 Ok(logbook) => {
                     let statuses = logbook.status_entries(key, Self::STATUSES).unwrap_or_default();
                     let asset = logbook.asset(key).unwrap_or_default();
-                    (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok(), asset, statuses)
+                    (logbook.history(key, Self::WRITES), asset, statuses)
                 }
-                Err(error) => (Err(error), None, None, Vec::new()),
+                Err(error) => (Err(error), None, Vec::new()),
             },
         };
         DeviceHistory { backups, writes, cycles, asset, statuses }

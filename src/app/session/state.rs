@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{PendingOpen, Phase, Source, first};
+use crate::analysis::check::CycleCount;
 use crate::app::kinds::KindRegistry;
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
@@ -25,7 +26,7 @@ pub struct SessionState {
     /// Writes in the logbook, or the reason why there are none.
     pub writes: Option<Result<Vec<Entry>, Text>>,
     /// Number of write cycles in the logbook, or `None` if it is unknown.
-    pub cycles: Option<u64>,
+    pub cycles: Option<CycleCount>,
     /// Asset to which the device is assigned in the logbook.
     pub asset: Option<String>,
     /// Status codes in the logbook, newest first.

@@ -32,6 +32,9 @@ pub enum LogbookErrorKind {
     /// The file is damaged or not a database.
     #[error("the file is damaged: {what}")]
     Damaged { what: String },
+    /// The file was damaged. It is kept under another name, and a new file was begun.
+    #[error("the file was damaged and is kept as {kept}; a new one was begun")]
+    SetAside { kept: PathBuf },
     /// The file was created by a newer version of the program and is left unchanged.
     #[error("the file uses schema {found} of a newer version; this version supports schemas up to {known}")]
     Newer {

@@ -8,6 +8,7 @@
 //! frames. It does not decide whether a device may be written to. If it fails, the caller rejects writes that are not
 //! forced.
 
+mod aside;
 mod asset;
 mod entry;
 mod error;
@@ -28,8 +29,8 @@ pub use asset::{AssetName, AssetNameError};
 pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, WriteResult};
 pub use error::{LogbookError, LogbookErrorKind};
 pub use server::{
-    Contact, KeyringError, LogbookServer, Password, ServerAddress, ServerAddressError, ServerError, ServerErrorKind,
-    Transferred,
+    Contact, DeviceHold, KeyringError, LogbookServer, OtherHolder, Password, ServerAddress, ServerAddressError,
+    ServerError, ServerErrorKind, Transferred,
 };
 pub use user_name::UserName;
 
@@ -47,17 +48,27 @@ pub struct Logbook {
 }
 
 impl Logbook {
-    /// Opens the logbook, creating it and its folder if missing.
+    /// Opens the logbook, creating it and its folder if missing. A damaged file is kept under another name, and a new
+    /// one is begun.
     ///
     /// # Errors
-    /// Returns an error if the file is damaged, not a database, in use for longer than two seconds, not writable, or
-    /// created by a newer version of the program. In this case, the file is left unchanged.
+    /// Returns an error if the file is in use for longer than two seconds, not writable, or created by a newer version
+    /// of the program. In this case, the file is left unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
         Self::open_with_timeout(path, LOCK_TIMEOUT)
     }
 
     fn open_with_timeout(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
-        let database = schema::open(path, patience).map_err(|problem| problem.into_error(path))?;
+        let opened = match schema::open(path, patience) {
+            Err(LogbookErrorKind::Damaged { what }) => {
+                if let Some(kept) = aside::set_aside(path, patience).map_err(|problem| problem.into_error(path))? {
+                    tracing::warn!("{} ({what})", LogbookErrorKind::SetAside { kept }.into_error(path));
+                }
+                schema::open(path, patience)
+            }
+            opened => opened,
+        };
+        let database = opened.map_err(|problem| problem.into_error(path))?;
         Ok(Logbook { path: path.to_owned(), database, origin: Origin::of_this_process() })
     }
 
@@ -99,7 +110,7 @@ impl Logbook {
     /// Returns an error if the logbook cannot be read or written.
     pub fn assign(&mut self, at: Timestamp, device: &DeviceKey, asset: &AssetName) -> Result<(), LogbookError> {
         insert::assignment(&mut self.database, &self.origin, at, device, asset)
-            .map_err(|error| LogbookErrorKind::from(error).into_error(&self.path))
+            .map_err(|error| self.database_error(error))
     }
 
     /// Records the result of an intended write.
@@ -222,8 +233,21 @@ impl Logbook {
         outbox::count_waiting(&self.database).map_err(|error| self.database_error(error))
     }
 
+    /// Returns the damaged file that was replaced by this logbook, and whose entries and write cycles are missing here.
+    ///
+    /// # Errors
+    /// Returns an error if the logbook cannot be read.
+    pub fn damaged_file(&self) -> Result<Option<PathBuf>, LogbookError> {
+        aside::last_damaged(&self.database).map_err(|error| self.database_error(error))
+    }
+
+    /// Returns the error to report. If it means that the file is damaged, a new one is begun for the next time.
     fn database_error(&self, error: rusqlite::Error) -> LogbookError {
-        LogbookErrorKind::from(error).into_error(&self.path)
+        let problem = match aside::is_damage(&error).then(|| aside::set_aside(&self.path, LOCK_TIMEOUT)) {
+            Some(Ok(Some(kept))) => LogbookErrorKind::SetAside { kept },
+            _ => LogbookErrorKind::from(error),
+        };
+        problem.into_error(&self.path)
     }
 }
 

@@ -117,6 +117,10 @@ pub(super) const STEPS: [&str; 5] = [
         is_result      INTEGER NOT NULL CHECK (is_result IN (0, 1)),
         UNIQUE (uid, is_result)
     ) STRICT;
+    CREATE TABLE damage (                -- earlier files, which were damaged and whose entries are missing here
+        at             TEXT    NOT NULL, -- RFC 3339, UTC
+        kept           TEXT    NOT NULL
+    ) STRICT;
     CREATE TRIGGER event_waits AFTER INSERT ON event WHEN EXISTS (SELECT 1 FROM server) BEGIN
         INSERT INTO outbox (uid, is_result) VALUES (new.uid, 0);
     END;

@@ -7,6 +7,7 @@ mod diverged;
 mod file;
 mod palette;
 mod question;
+mod server;
 
 pub(super) use about::{about_ui, help_ui};
 pub(super) use comparison::comparison_ui;
@@ -15,3 +16,4 @@ pub(super) use diverged::diverged_ui;
 pub(super) use file::{FileView, ask_for_file, file_ui};
 pub(super) use palette::{PaletteUiState, palette_ui};
 pub(super) use question::question_ui;
+pub(super) use server::{ServerView, server_ui};

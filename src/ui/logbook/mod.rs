@@ -2,6 +2,7 @@
 //! with its old and new values, its backup and its origin.
 
 mod detail;
+mod sharing;
 
 use egui::{Align, Id, Label, Layout, Rect, RichText, Sense, Ui, UiBuilder};
 use egui_extras::{Column, TableBuilder, TableRow};
@@ -54,7 +55,17 @@ pub(super) fn logbook_ui(
     if page.needs_search() {
         actions.push(Action::SearchLogbook(page.filter().clone()));
     }
-    egui::Frame::NONE.inner_margin(page_margin(ui, theme)).show(ui, |ui| match page.matches() {
+    egui::Frame::NONE.inner_margin(page_margin(ui, theme)).show(ui, |ui| {
+        let room = ui.available_rect_before_wrap();
+        let (entries, line) = room.split_top_bottom_at_y(room.bottom() - sharing::HEIGHT);
+        ui.scope_builder(UiBuilder::new().max_rect(entries), |ui| entries_ui(ui, theme, studio, view, actions));
+        ui.scope_builder(UiBuilder::new().max_rect(line), |ui| sharing::sharing_ui(ui, theme, studio, actions));
+    });
+}
+
+fn entries_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &mut LogbookView, actions: &mut Vec<Action>) {
+    let page = studio.logbook();
+    match page.matches() {
         None => {
             ui.label(theme.label(theme.translate("logbook.reading")));
         }
@@ -66,7 +77,7 @@ pub(super) fn logbook_ui(
             }
         }
         Some(Ok(matches)) => matches_ui(ui, theme, studio, view, matches, actions),
-    });
+    }
 }
 
 fn matches_ui(

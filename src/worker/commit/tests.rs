@@ -107,7 +107,7 @@ impl Write for Spy {
 }
 
 struct Prepared {
-    seen: Option<u64>,
+    seen: Option<CycleCount>,
     plan: Plan<(), Op>,
 }
 
@@ -143,7 +143,7 @@ fn device() -> DeviceKey {
     DeviceKey { kind, device_type: one.clone(), serial_number: one, is_virtual: true }
 }
 
-fn confirm_plan(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
+fn confirm_plan(seen: Option<CycleCount>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
     let plan = Plan { base: (), ops: ops.iter().copied().map(Op).collect() };
     let consent = Consent::to(plan.id());
     ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear }
@@ -173,9 +173,9 @@ fn every_write_takes_all_steps_in_order() {
     for (label, seen, refuses, ends_early, steps, spent) in cases {
         let root = tempfile::tempdir().unwrap();
         let mut spy = Spy::new(&Store::at_root(root.path()), refuses, ends_early);
-        let ended = write(&mut spy, &confirm_plan(Some(seen), &[1, 2], false));
+        let ended = write(&mut spy, &confirm_plan(Some(CycleCount::complete(seen)), &[1, 2], false));
         assert_eq!(spy.steps, steps, "{label}");
-        assert_eq!(cycles_seen(&spy.store, &device()), Some(spent), "{label}");
+        assert_eq!(cycles_seen(&spy.store, &device()), Some(CycleCount::complete(spent)), "{label}");
         match ended {
             Ok(done) => assert!(label == "done" && done.written.verified == 2 && done.logbook_warning.is_none()),
             Err(JobError::Interrupted { interrupted, backup, planned: 2, kind: 'k' }) => {
@@ -193,10 +193,10 @@ fn every_write_takes_all_steps_in_order() {
 fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     let root = tempfile::tempdir().unwrap();
     let mut spy = Spy::new(&Store::at_root(root.path()), false, false);
-    let done = write(&mut spy, &confirm_plan(Some(0), &[], false)).ok().unwrap();
+    let done = write(&mut spy, &confirm_plan(Some(CycleCount::complete(0)), &[], false)).ok().unwrap();
     assert_eq!((done.written, done.backup), (WrittenChanges::default(), None));
-    let consent = confirm_plan(Some(0), &[2], false).consent;
-    let ended = write(&mut spy, &ApprovedPlan { consent, ..confirm_plan(Some(0), &[1], false) });
+    let consent = confirm_plan(Some(CycleCount::complete(0)), &[2], false).consent;
+    let ended = write(&mut spy, &ApprovedPlan { consent, ..confirm_plan(Some(CycleCount::complete(0)), &[1], false) });
     assert!(matches!(ended, Err(JobError::NotStarted(NotStarted::OtherPlan))) && spy.steps.is_empty());
 }
 
@@ -229,7 +229,7 @@ fn an_unusable_logbook_prevents_a_write() {
         write_plan(&store, true, &agreed, plain, &mut |_| {})
     };
     // Not read; or read before and not to be written now.
-    for seen in [seen, Some(0)] {
+    for seen in [seen, Some(CycleCount::complete(0))] {
         let mut plain = Plain(0);
         let ended = write(&mut plain, confirm_plan(seen, &[2], false));
         let refused = matches!(ended, Err(JobError::NotStarted(NotStarted::WearUnknown { cost: 2 })));
@@ -239,4 +239,20 @@ fn an_unusable_logbook_prevents_a_write() {
         // An operation without cost causes no wear.
         assert!(write(&mut plain, confirm_plan(seen, &[0], false)).is_ok() && plain.0 == 2, "{seen:?}");
     }
+}
+
+/// Issue 30: while the server of the logbook is away, a memory that wears out quickly needs a permit.
+#[test]
+fn an_incomplete_count_needs_a_permit_if_the_memory_wears_out_quickly() {
+    let seen = Some(CycleCount { seen: 7, is_complete: false });
+    for (limit, cost, refused) in
+        [(449, 1, true), (1_000, 2, true), (449, 0, false), (1_000_000, 1, false), (u64::MAX, 1, false)]
+    {
+        assert_eq!(is_incomplete(seen, cost, limit), refused, "{cost} of {limit}");
+        assert_eq!(check_wear(seen, cost, limit, false).is_err(), refused, "{cost} of {limit}");
+        assert!(
+            check_wear(seen, cost, limit, true).is_ok() && !is_incomplete(Some(CycleCount::complete(7)), cost, limit)
+        );
+    }
+    assert!(matches!(check_wear(seen, 443, 449, false), Err(NotStarted::Worn { seen: 7, .. })), "worn in any case");
 }

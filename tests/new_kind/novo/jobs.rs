@@ -9,7 +9,7 @@ use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkSchem
 use encoder_studio::profile::{InterruptedWrite, RestoreOptions, WrittenChanges};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
-use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
+use encoder_studio::worker::commit::{ApprovedPlan, CycleCount, cycles_seen, write_plan};
 use encoder_studio::worker::open::{check_parameters, connect_simulated, open_byte_stream, wrong_target_error};
 use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, WatchReply};
 
@@ -42,7 +42,7 @@ pub(crate) struct Change {
 pub(crate) struct Prepared {
     pub(crate) serial: u16,
     pub(crate) plan: NovoPlan,
-    pub(crate) seen: Option<u64>,
+    pub(crate) seen: Option<CycleCount>,
 }
 
 #[derive(Debug)]

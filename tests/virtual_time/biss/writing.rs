@@ -14,7 +14,7 @@ use encoder_studio::kinds::program;
 use encoder_studio::profile::{ChangedItem, Consent, ProfileDocument};
 use encoder_studio::store::{Entry, EntryKind, Intent, Logbook, Outcome as CountedFinding, read_text};
 use encoder_studio::worker::NotStarted;
-use encoder_studio::worker::commit::ApprovedPlan;
+use encoder_studio::worker::commit::{ApprovedPlan, CycleCount};
 use jiff::Timestamp;
 
 use super::hands::{
@@ -207,14 +207,17 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
 fn a_worn_encoder_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(preset(1, 1)).unwrap();
-    assert_eq!((prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT), (Some(0), 2, 1000));
+    assert_eq!(
+        (prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT),
+        (Some(CycleCount::complete(0)), 2, 1000)
+    );
     let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
     let items = vec![ChangedItem::new("long ago", None, None)];
     let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 999, backup: None };
     let id = logbook.record_intent(Timestamp::now(), &device_key(&prepared.identity, true), &intent).unwrap();
     logbook.record_outcome(id, Timestamp::now(), CountedFinding::Done, 999).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
-    assert_eq!(prepared.cycles_seen, Some(999));
+    assert_eq!(prepared.cycles_seen, Some(CycleCount::complete(999)));
     let before = bench.flash_cycles();
     let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(error, JobError::NotStarted(NotStarted::Worn { seen: 999, cost: 2, limit: 1000 })), "{error}");

@@ -242,7 +242,10 @@ fn the_device_check_has_a_verdict_per_line_and_sets_nothing() {
     assert_eq!(steps, [Gateway, WordOrder, InputWord, Handshake, Identity, Temperature, Wear]);
     let found = |finding: CheckFinding| lines.iter().any(|line| line.findings.contains(&finding));
     assert!(found(CheckFinding::SerialNumber("8".to_owned())) && found(CheckFinding::Temperature(410)));
-    assert!(found(CheckFinding::Gear { steps: 3600, turns: 1 }) && found(CheckFinding::Wear { seen: 0, limit: 450 }));
+    assert!(
+        found(CheckFinding::Gear { steps: 3600, turns: 1 })
+            && found(CheckFinding::Wear { seen: encoder_studio::worker::commit::CycleCount::complete(0), limit: 450 })
+    );
     assert_eq!((stand.left(), stand.stores()), ((0, StartupMode::Cams(program(2))), stores));
 }
 

@@ -166,7 +166,7 @@ pub(crate) fn carry_out(
         plan,
         identity: identity(),
         parameters,
-        cycles_seen: Some(0),
+        cycles_seen: Some(encoder_studio::worker::commit::CycleCount::complete(0)),
         unchanged: 0,
         missing: Vec::new(),
         mounting_left: Vec::new(),

@@ -14,6 +14,7 @@ use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, Star
 use encoder_studio::link::{CancelToken, Clock};
 use encoder_studio::profile::{Consent, ProfileDocument};
 use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
+use encoder_studio::worker::commit::CycleCount;
 use encoder_studio::worker::{Event, JobId, NotStarted, Progress};
 
 use super::support::{Stand, cam, program};
@@ -232,6 +233,7 @@ fn a_worn_eeprom_is_written_only_by_force() {
     let mut stand = Stand::new(SCALED);
     let mut prepared = stand.prepare(Change::Default);
     for (seen, refused) in [(Some(WEAR_LIMIT - 2), false), (Some(WEAR_LIMIT - 1), true), (None, true)] {
+        let seen = seen.map(CycleCount::complete);
         prepared.cycles_seen = seen;
         assert_eq!(matches!(prepared.wear_to_report(), Some(WearAfterPlan::Worn(_) | WearAfterPlan::Unknown)), refused);
         let prepared = stand.prepare(Change::Default);
@@ -257,7 +259,7 @@ fn the_logbook_counts_stores_by_serial_number() {
     let mut stand = Stand::new(SCALED);
     for value in [1, 2, 3] {
         let prepared = stand.prepare(Change::Preset { value });
-        assert_eq!(prepared.cycles_seen, Some(u64::from(value - 1)));
+        assert_eq!(prepared.cycles_seen, Some(CycleCount::complete(u64::from(value - 1))));
         stand.commit(prepared).unwrap();
     }
     let logbook = Logbook::open(&Store::at_root(stand.folder.path()).logbook_path()).unwrap();
@@ -291,7 +293,7 @@ fn reading_programs_counts_as_stores() {
     // Read for the plan, and again before it is written, which stores.
     let before = stand.stores();
     let prepared = stand.prepare(Change::Item(Item::CamMask(program(6)), ItemValue::Mask(0x5A)));
-    assert_eq!(prepared.cycles_seen, Some(5));
+    assert_eq!(prepared.cycles_seen, Some(CycleCount::complete(5)));
     let done = stand.commit(prepared).unwrap();
     assert_eq!((done.written.write_cycles, stand.stores() - before, stand.counted()), (1, 1, 7));
     // The original program is left as well.

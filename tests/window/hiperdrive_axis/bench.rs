@@ -331,7 +331,11 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(at_test_step(link, drive, rough));
     next(&mut desk, AxisStep::Save);
-    assert_eq!(unit(&desk).session.cycles, Some(0), "nothing was saved on the way");
+    assert_eq!(
+        unit(&desk).session.cycles,
+        Some(encoder_studio::worker::commit::CycleCount::complete(0)),
+        "nothing was saved on the way"
+    );
     step_with_writes(&mut desk, 47, rough);
     next(&mut desk, AxisStep::PowerCycle);
     desk

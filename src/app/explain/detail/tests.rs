@@ -42,6 +42,7 @@ fn recording_and_logbook_errors_are_explained_in_both_languages() {
         LogbookErrorKind::Locked,
         LogbookErrorKind::DiskFull,
         LogbookErrorKind::Damaged { what: "page 3".to_owned() },
+        LogbookErrorKind::SetAside { kept: "l-damaged.sqlite".into() },
         LogbookErrorKind::Newer { found: 3, known: 2 },
     ];
     for problem in problems {

@@ -18,7 +18,7 @@ use crate::devices::biss::protocol::{
     Area, DeviceMode, Identity as Kind, KIND, PositionFilter, PresetValue, RegisterAddress,
 };
 use crate::store::{DeviceKey, EntryKind, StoreError};
-use crate::worker::commit::{ApprovedPlan, total_cycles_to_report};
+use crate::worker::commit::{ApprovedPlan, CycleCount, total_cycles_to_report};
 
 /// Limit for the number of persistent writes to an encoder (manual 6.1: "1000 write cycles should not be
 /// exceeded").
@@ -123,7 +123,7 @@ pub struct Prepared {
     pub plan: BissPlan,
     pub identity: Identity,
     /// Number of persistent writes to the encoder recorded on this computer, or `None` if there is no record.
-    pub cycles_seen: Option<u64>,
+    pub cycles_seen: Option<CycleCount>,
     /// Number of registers that already have the intended value.
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.

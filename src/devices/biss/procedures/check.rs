@@ -8,7 +8,7 @@ use crate::devices::biss::protocol::{
     Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, IdentityMismatch, Name, RegisterAddress, WiegandResult,
 };
 
-pub use crate::analysis::check::{MemoryWear, Verdict};
+pub use crate::analysis::check::{CycleCount, MemoryWear, Verdict};
 
 pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 
@@ -84,7 +84,7 @@ pub enum CheckFinding {
     /// Number of recorded write cycles and the limit of the flash.
     Wear {
         /// Minimum number of write cycles used so far.
-        seen: u64,
+        seen: CycleCount,
         limit: u64,
     },
 }

@@ -1,6 +1,6 @@
 //! Review of a write to a BiSS encoder: permissions, warnings and costs of the plan.
 
-use crate::app::explain::literal_text;
+use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
@@ -88,7 +88,9 @@ impl Reviewable for Biss {
             return TEXTS.text("biss_review.cost_nothing");
         }
         match prepared.cycles_seen {
-            Some(seen) => TEXTS.text("biss_review.cost").with("cycles", cycles).with("seen", seen),
+            Some(seen) => {
+                TEXTS.text("biss_review.cost").with("cycles", cycles).with_text("seen", cycle_count_text(seen))
+            }
             None => TEXTS.text("biss_review.cost_unknown").with("cycles", cycles),
         }
         .with("limit", WEAR_LIMIT)

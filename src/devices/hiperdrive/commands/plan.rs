@@ -50,7 +50,7 @@ pub(super) fn commit_plan(
     check_wear::<Hiperdrive>(consent, &prepared)?;
     if let Some(saves) = prepared.wear_to_report() {
         output.print_message(&format!(
-            "This is save {saves} counted on this computer. The manual gives no limit; from {WEAR_WARNING} on, an \
+            "This is save {saves} counted in the logbook. The manual gives no limit; from {WEAR_WARNING} on, an \
              EEPROM may wear out."
         ));
     }

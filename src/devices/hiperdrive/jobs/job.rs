@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::profile::{
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, Value};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::total_cycles_to_report;
+use crate::worker::commit::{CycleCount, total_cycles_to_report};
 
 /// Save count above which the user is warned of memory wear. The value is an assumption, since the manual gives no
 /// limit (`U`).
@@ -103,7 +103,7 @@ pub struct Prepared {
     /// Values stored in the device, as read for the plan.
     pub image: Image,
     /// Number of saves recorded for the device on this computer, or `None` if the logbook has no record.
-    pub cycles_seen: Option<u64>,
+    pub cycles_seen: Option<CycleCount>,
     /// Number of items that already have the desired value.
     pub unchanged: u64,
     /// Profile items that the device does not have.

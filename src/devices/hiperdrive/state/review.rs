@@ -4,7 +4,7 @@ use super::axis::words::millimetres_text;
 use super::network::PowerUpAddress;
 use super::ruler::{PositionUnit, Ruler};
 use super::words;
-use crate::app::explain::literal_text;
+use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::number::decimals_of;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
@@ -85,7 +85,7 @@ impl Reviewable for Hiperdrive {
             return TEXTS.text(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
         }
         match prepared.cycles_seen {
-            Some(seen) => TEXTS.text("hd_review.cost").with("saves", saves).with("seen", seen),
+            Some(seen) => TEXTS.text("hd_review.cost").with("saves", saves).with_text("seen", cycle_count_text(seen)),
             None => TEXTS.text("hd_review.cost_unknown").with("saves", saves),
         }
     }

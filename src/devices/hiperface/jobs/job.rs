@@ -1,5 +1,6 @@
 //! Jobs of a HIPERFACE encoder and their results.
 
+use crate::analysis::check::CycleCount;
 use std::fmt;
 
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
@@ -142,7 +143,7 @@ pub struct Prepared {
     pub plan: HiperfacePlan,
     pub identity: Identity,
     /// Number of persistent writes to the encoder recorded on this computer, or `None` if the logbook has no record.
-    pub cycles_seen: Option<u64>,
+    pub cycles_seen: Option<CycleCount>,
     /// Number of items that already have the intended value.
     pub unchanged: u64,
     /// Items left unchanged because they cannot be read, or because they are missing in the profile or the encoder.

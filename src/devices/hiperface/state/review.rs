@@ -1,6 +1,7 @@
 //! Review of a write to a HIPERFACE encoder: the permits, warnings and cost of its plan.
 
 use crate::app::Text;
+use crate::app::explain::cycle_count_text;
 use crate::app::review::{self, OperationTexts, Permit, Question, Reviewable};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::WrittenChanges;
@@ -125,7 +126,7 @@ impl Reviewable for Hiperface {
     fn cost_text(prepared: &Prepared) -> Text {
         let cycles = prepared.plan.write_cycles();
         match prepared.cycles_seen {
-            Some(seen) => TEXTS.text("review.cost").with("cycles", cycles).with("seen", seen),
+            Some(seen) => TEXTS.text("review.cost").with("cycles", cycles).with_text("seen", cycle_count_text(seen)),
             None => TEXTS.text("review.cost_unknown").with("cycles", cycles),
         }
     }

@@ -1,5 +1,6 @@
 //! Jobs of an INTERBUS encoder and their results.
 
+use crate::analysis::check::CycleCount;
 use std::fmt;
 
 use crate::devices::interbus::procedures::check::InterbusStepResult;
@@ -120,7 +121,7 @@ pub struct Prepared {
     /// Position parameters of the encoder that were read for the plan.
     pub parameters: Parameters,
     /// Number of stores that the logbook of this computer contains for the encoder, or `None` if it has no record.
-    pub cycles_seen: Option<u64>,
+    pub cycles_seen: Option<CycleCount>,
     /// Number of items that already have the planned value.
     pub unchanged: u64,
     /// Items of the profile that the encoder does not have.
@@ -161,7 +162,9 @@ impl Prepared {
     /// Returns the wear after the plan, or `None` if the wear is too low for a message.
     pub fn wear_to_report(&self) -> Option<WearAfterPlan> {
         let cost = self.plan.write_cycles();
-        let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(WearAfterPlan::Unknown) };
+        let Some(CycleCount { seen, .. }) = self.cycles_seen else {
+            return (cost > 0).then_some(WearAfterPlan::Unknown);
+        };
         WearAfterPlan::from_stores(seen.saturating_add(cost)).filter(|_| cost > 0)
     }
 }
@@ -259,7 +262,7 @@ mod tests {
                 plan,
                 identity,
                 parameters,
-                cycles_seen: seen,
+                cycles_seen: seen.map(CycleCount::complete),
                 unchanged: 0,
                 missing: Vec::new(),
                 mounting_left: Vec::new(),

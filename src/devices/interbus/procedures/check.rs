@@ -9,7 +9,7 @@ use super::{Error, Identity, Master, Survey};
 use crate::analysis::check;
 use crate::devices::interbus::protocol::{ErrorWord, ReadOutNumber, Reply, StartupMode};
 
-pub use crate::analysis::check::{MemoryWear, Verdict};
+pub use crate::analysis::check::{CycleCount, MemoryWear, Verdict};
 
 pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 
@@ -74,7 +74,7 @@ pub enum CheckFinding {
     Temperature(i32),
     Wear {
         /// Minimum number of stores so far.
-        seen: u64,
+        seen: CycleCount,
         limit: u64,
     },
 }

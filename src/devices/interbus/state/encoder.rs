@@ -8,6 +8,7 @@ use super::staged::{EditFinding, EditedValues, StagedEdits, ValueId};
 use super::table::Import;
 use super::trace::FrameDecoder;
 use super::{cams, words};
+use crate::analysis::check::CycleCount;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, Session, Source, truncated_list};
@@ -173,7 +174,7 @@ impl Encoder {
     }
 
     /// Returns the number of stores recorded on this computer. Stores by other programs are not included.
-    pub fn store_count(&self) -> Option<u64> {
+    pub fn store_count(&self) -> Option<CycleCount> {
         self.session.cycles
     }
 

@@ -1,6 +1,6 @@
 //! Review of a write to an INTERBUS encoder, with the permits, warnings and cost of the plan.
 
-use crate::app::explain::literal_text;
+use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_CONFIRMATION, WEAR_LAST, WearAfterPlan};
@@ -72,7 +72,7 @@ impl Reviewable for Interbus {
             return TEXTS.text("ib_review.cost_nothing");
         }
         match prepared.cycles_seen {
-            Some(seen) => TEXTS.text("ib_review.cost").with("stores", stores).with("seen", seen),
+            Some(seen) => TEXTS.text("ib_review.cost").with("stores", stores).with_text("seen", cycle_count_text(seen)),
             None => TEXTS.text("ib_review.cost_unknown").with("stores", stores),
         }
         .with("nominal", WEAR_CONFIRMATION)

@@ -8,6 +8,7 @@ use crate::devices::interbus::views::translate;
 
 use egui::{Align, Layout, RichText, Ui, vec2};
 
+use crate::app::explain::cycle_count_text;
 use crate::app::{Action, Text};
 use crate::devices::interbus::jobs::{Change, WEAR_CONFIRMATION, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan};
 use crate::devices::interbus::profile::Direction;
@@ -184,18 +185,18 @@ fn eeprom_wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             return;
         };
         let palette = theme.palette;
-        let ink = match WearAfterPlan::from_stores(stores) {
+        let ink = match WearAfterPlan::from_stores(stores.seen) {
             Some(WearAfterPlan::Worn(_) | WearAfterPlan::Unknown) => palette.bad,
             Some(WearAfterPlan::Known(_) | WearAfterPlan::Ask(_)) => palette.warn,
             None => palette.accent,
         };
         let text = TEXTS
             .text("ib_wear.seen")
-            .with("stores", stores)
+            .with_text("stores", cycle_count_text(stores))
             .with("nominal", WEAR_CONFIRMATION)
             .with("last", WEAR_LAST);
         paragraph(ui, theme.format_text(&text));
-        let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
+        let share = (stores.seen as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
         let text = TEXTS
             .text("ib_wear.words")

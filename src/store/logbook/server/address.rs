@@ -103,6 +103,16 @@ impl ServerAddress {
         format!("{user}{}", self.name())
     }
 
+    /// Returns this address with a password, or with its own one if `password` is `None`.
+    #[must_use]
+    pub fn with_password(self, password: Option<Password>) -> Self {
+        ServerAddress { password: password.or(self.password), ..self }
+    }
+
+    pub fn has_password(&self) -> bool {
+        self.password.is_some()
+    }
+
     /// Returns host, port and database, for messages.
     pub fn name(&self) -> String {
         let host = match self.config.get_hosts().first() {

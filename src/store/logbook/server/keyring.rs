@@ -33,13 +33,14 @@ pub(super) fn password(address: &ServerAddress) -> Result<Option<Password>, Keyr
     })
 }
 
-impl Password {
-    /// Saves the password of a server in the keyring of the system.
+impl ServerAddress {
+    /// Saves the password of this address in the keyring of the system, if it has one.
     ///
     /// # Errors
     /// Returns an error if there is no keyring, or if it does not reply in time.
-    pub fn save_in_keyring(self, address: &ServerAddress) -> Result<(), KeyringError> {
-        with_entry(address, move |entry| entry.set_password(self.reveal()))
+    pub fn save_password(&self) -> Result<(), KeyringError> {
+        let Some(password) = self.password.clone() else { return Ok(()) };
+        with_entry(self, move |entry| entry.set_password(password.reveal()))
     }
 }
 

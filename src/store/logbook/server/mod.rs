@@ -4,13 +4,14 @@
 mod address;
 mod client;
 mod error;
+mod hold;
 mod keyring;
 mod schema;
 mod transfer;
 
 use std::fmt;
 use std::path::Path;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -18,9 +19,11 @@ use jiff::Timestamp;
 
 pub use address::{Password, ServerAddress, ServerAddressError};
 pub use error::{ServerError, ServerErrorKind};
+pub use hold::{DeviceHold, OtherHolder};
 pub use keyring::KeyringError;
 pub use transfer::Transferred;
 
+use super::entry::DeviceKey;
 use client::Client;
 
 /// Interval at which a thread checks whether another thread has finished its transfer.
@@ -45,12 +48,16 @@ struct State {
     address: Option<Result<ServerAddress, ServerAddressError>>,
     contact: Contact,
     failed: Option<(Instant, ServerError)>,
+    /// Devices that are connected to this program.
+    held: Vec<DeviceKey>,
 }
 
 struct Connection {
     client: Client,
     address: ServerAddress,
     identity: String,
+    /// Whether the server has a hold of this program.
+    holds: bool,
 }
 
 /// Whether the server could be used.
@@ -62,6 +69,8 @@ pub struct Contact {
     pub problem: Option<ServerError>,
     /// Time of the first failure since the last complete transfer.
     pub away_since: Option<Timestamp>,
+    /// Other programs that hold a device of this one.
+    pub others: Vec<OtherHolder>,
 }
 
 impl LogbookServer {
@@ -69,8 +78,20 @@ impl LogbookServer {
     pub fn set_address(&self, address: Option<Result<ServerAddress, ServerAddressError>>) {
         let mut state = self.state();
         if state.address != address {
-            *state = State { address, ..State::default() };
+            *state = State { address, held: std::mem::take(&mut state.held), ..State::default() };
         }
+    }
+
+    /// Connects to a server once and changes nothing there. Returns the number of its entries, or `None` if it has no
+    /// logbook yet.
+    ///
+    /// # Errors
+    /// Returns an error if the server cannot be used.
+    pub fn test(address: &ServerAddress, limit: Duration) -> Result<Option<u64>, ServerError> {
+        let connected = Connection::connect(address, limit);
+        connected
+            .and_then(|mut client| schema::count_entries(&mut client))
+            .map_err(|problem| problem.into_error(&address.name()))
     }
 
     /// Returns whether the entries are shared over a server, which may be away.
@@ -93,7 +114,7 @@ impl LogbookServer {
             Ok(address) => address,
             Err(problem) => {
                 let failed = Err(ServerErrorKind::Address(problem).into_error(""));
-                self.note(None, &failed);
+                self.note(None, &failed, Vec::new());
                 return Some(failed);
             }
         };
@@ -108,12 +129,17 @@ impl LogbookServer {
                 Err(TryLockError::WouldBlock) => thread::sleep(RETRY),
             }
         };
-        let result = transfer_over(&mut connection, &address, path, limit);
+        let held = self.state().held.clone();
+        let result = transfer_over(&mut connection, &address, path, &held, limit);
         let result = result.map_err(|problem| problem.into_error(&address.name()));
+        let (result, others) = match result {
+            Ok((done, others)) => (Ok(done), others),
+            Err(error) => (Err(error), Vec::new()),
+        };
         if result.is_err() {
             *connection = None;
         }
-        self.note(Some(&address), &result);
+        self.note(Some(&address), &result, others);
         Some(result)
     }
 
@@ -129,7 +155,12 @@ impl LogbookServer {
         }
     }
 
-    fn note(&self, address: Option<&ServerAddress>, result: &Result<Transferred, ServerError>) {
+    fn note(
+        &self,
+        address: Option<&ServerAddress>,
+        result: &Result<Transferred, ServerError>,
+        others: Vec<OtherHolder>,
+    ) {
         let mut state = self.state();
         // The server may have been exchanged meanwhile.
         if state.address.as_ref().and_then(|address| address.as_ref().ok()) != address {
@@ -138,7 +169,7 @@ impl LogbookServer {
         let now = Timestamp::now();
         match result {
             Ok(_) => {
-                state.contact = Contact { is_reached: true, problem: None, away_since: None };
+                state.contact = Contact { is_reached: true, others, ..Contact::default() };
                 state.failed = None;
             }
             Err(error) => {
@@ -155,33 +186,50 @@ impl LogbookServer {
     }
 }
 
+/// Returns a name of this running program that no other one has.
+fn program() -> &'static str {
+    static NAME: OnceLock<String> = OnceLock::new();
+    NAME.get_or_init(|| format!("{:032x}", fastrand::u128(..)))
+}
+
 fn transfer_over(
     connection: &mut Option<Connection>,
     address: &ServerAddress,
     path: &Path,
+    held: &[DeviceKey],
     limit: Duration,
-) -> Result<Transferred, ServerErrorKind> {
+) -> Result<(Transferred, Vec<OtherHolder>), ServerErrorKind> {
     let usable = connection.take().filter(|own| own.address == *address && !own.client.postgres.is_closed());
     let open = match usable {
         Some(open) => open,
         None => Connection::open(address, limit)?,
     };
-    let Connection { client, identity, .. } = connection.insert(open);
+    let Connection { client, identity, holds, .. } = connection.insert(open);
     client.set_limit(limit);
-    transfer::transfer(client, identity, path)
+    let done = transfer::transfer(client, identity, path)?;
+    if held.is_empty() && !*holds {
+        return Ok((done, Vec::new()));
+    }
+    let others = hold::renew(client, program(), held)?;
+    *holds = !held.is_empty();
+    Ok((done, others))
 }
 
 impl Connection {
     fn open(address: &ServerAddress, limit: Duration) -> Result<Self, ServerErrorKind> {
+        let mut client = Self::connect(address, limit)?;
+        let identity = schema::prepare(&mut client)?;
+        Ok(Connection { client, address: address.clone(), identity, holds: false })
+    }
+
+    fn connect(address: &ServerAddress, limit: Duration) -> Result<Client, ServerErrorKind> {
         let known = address.password.clone().or_else(Password::from_environment);
         // Without a keyring, the server says whether it requires a password.
         let password = known.or_else(|| {
             let found = keyring::password(address);
             found.inspect_err(|error| tracing::debug!("{error}")).ok().flatten()
         });
-        let mut client = Client::connect(address, password.as_ref(), limit)?;
-        let identity = schema::prepare(&mut client)?;
-        Ok(Connection { client, address: address.clone(), identity })
+        Client::connect(address, password.as_ref(), limit)
     }
 }
 

@@ -97,6 +97,18 @@ pub(super) fn prepare(client: &mut Client) -> Result<String, ServerErrorKind> {
     })
 }
 
+/// Returns the number of entries, or `None` if the database has no logbook yet. Nothing is changed.
+pub(super) fn count_entries(client: &mut Client) -> Result<Option<u64>, ServerErrorKind> {
+    client.run(async |postgres| {
+        match read(postgres).await? {
+            Some((_, found)) => check(found)?,
+            None => return Ok(None),
+        };
+        let count: i64 = postgres.query_one("SELECT count(*) FROM event", &[]).await?.try_get(0)?;
+        Ok(u64::try_from(count).ok())
+    })
+}
+
 async fn migrate(transaction: &Transaction<'_>, done: usize) -> Result<(), ServerErrorKind> {
     for step in STEPS.iter().skip(done) {
         transaction.batch_execute(step).await?;

@@ -4,7 +4,7 @@ use super::guide::mode_text;
 use super::{mismatch_text, name_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
-use crate::app::explain::literal_text;
+use crate::app::explain::{cycle_count_text, literal_text};
 use crate::devices::biss::procedures::check::{BissStepResult, CheckFinding, CheckStep};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
@@ -73,7 +73,9 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Readings { requested, damaged } => {
             TEXTS.text("check.readings").with("asked", requested).with("damaged", damaged)
         }
-        CheckFinding::Wear { seen, limit } => TEXTS.text("check.cycles").with("seen", seen).with("limit", limit),
+        CheckFinding::Wear { seen, limit } => {
+            TEXTS.text("check.cycles").with_text("seen", cycle_count_text(*seen)).with("limit", limit)
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{encoder_error_text, error_word_text, format_word, implausible_value_text, startup_mode_text};
 use crate::app::Text;
 use crate::app::check::CheckLine;
+use crate::app::explain::cycle_count_text;
 use crate::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult};
 use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
@@ -56,6 +57,8 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Temperature(tenths) => {
             TEXTS.text("ib_check.celsius").with_number("celsius", f64::from(*tenths) / 10.0, 1)
         }
-        CheckFinding::Wear { seen, limit } => TEXTS.text("ib_check.wear").with("seen", seen).with("limit", limit),
+        CheckFinding::Wear { seen, limit } => {
+            TEXTS.text("ib_check.wear").with_text("seen", cycle_count_text(*seen)).with("limit", limit)
+        }
     }
 }

@@ -150,9 +150,10 @@ pub(super) fn not_started_text(why: &NotStarted) -> Text {
         NotStarted::Worn { seen, cost, .. } => {
             TEXTS.text("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
-        NotStarted::OtherPlan | NotStarted::NotKept(_) | NotStarted::WearUnknown { .. } => {
-            explain::not_started_text(why)
-        }
+        NotStarted::OtherPlan
+        | NotStarted::NotKept(_)
+        | NotStarted::WearUnknown { .. }
+        | NotStarted::WearIncomplete { .. } => explain::not_started_text(why),
     }
 }
 

@@ -1,0 +1,137 @@
+//! The form for the server of the logbook: its address, its password, and a test of the connection. The password goes to
+//! the keyring of the system and into no setting.
+
+use std::time::Duration;
+
+use super::action::{Action, TaskResult};
+use super::logbook_server::is_server_given;
+use super::studio::Studio;
+use super::{Severity, Text, explain};
+use crate::store::{KeyringError, LogbookServer, Password, ServerAddress, ServerError};
+
+/// Maximum time for each request of a test.
+const TEST_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// The open form.
+#[derive(Debug, Default)]
+pub struct ServerForm {
+    /// Number of the running test. Results of earlier tests are dropped.
+    test: u64,
+    is_testing: bool,
+    outcome: Option<Result<Text, Text>>,
+}
+
+/// An action of the form.
+#[derive(Debug)]
+pub enum ServerAction {
+    Open,
+    Close,
+    /// Connect to the server once. Nothing is changed there.
+    Test {
+        address: String,
+        password: Option<Password>,
+    },
+    /// Share the logbook over this server, or over none if the address is empty.
+    Save {
+        address: String,
+        password: Option<Password>,
+    },
+}
+
+impl ServerForm {
+    pub fn is_testing(&self) -> bool {
+        self.is_testing
+    }
+
+    /// Returns the result of the last test, or the reason why the address is not valid.
+    pub fn outcome(&self) -> Option<&Result<Text, Text>> {
+        self.outcome.as_ref()
+    }
+
+    /// Returns whether an environment variable names the server, so that the setting does not apply.
+    pub fn is_server_given(&self) -> bool {
+        is_server_given()
+    }
+}
+
+/// Parses an address that was typed. A password in it is taken out of it.
+fn parse(address: &str, password: Option<Password>) -> Result<ServerAddress, Text> {
+    let parsed = ServerAddress::from_environment(address);
+    parsed.map(|address| address.with_password(password)).map_err(|error| explain::server_address_error_text(&error))
+}
+
+impl Studio {
+    /// Returns the form, or `None` if it is closed.
+    pub fn server_form(&self) -> Option<&ServerForm> {
+        self.server_form.as_ref()
+    }
+
+    pub(super) fn apply_server_action(&mut self, action: ServerAction) {
+        match action {
+            ServerAction::Open => self.server_form = Some(ServerForm::default()),
+            ServerAction::Close => self.server_form = None,
+            ServerAction::Test { address, password } => self.test_server(&address, password),
+            ServerAction::Save { address, password } => self.save_server(&address, password),
+        }
+    }
+
+    fn test_server(&mut self, address: &str, password: Option<Password>) {
+        let Some(form) = &mut self.server_form else { return };
+        match parse(address, password) {
+            Err(why) => form.outcome = Some(Err(why)),
+            Ok(address) => {
+                form.test += 1;
+                (form.is_testing, form.outcome) = (true, None);
+                let number = form.test;
+                self.services.tasks.run("server test", move || {
+                    let result = LogbookServer::test(&address, TEST_TIMEOUT);
+                    Action::Done(TaskResult::ServerTested(number, result))
+                });
+            }
+        }
+    }
+
+    pub(super) fn show_server_test(&mut self, number: u64, result: Result<Option<u64>, ServerError>) {
+        let Some(form) = self.server_form.as_mut().filter(|form| form.test == number) else { return };
+        form.is_testing = false;
+        form.outcome = Some(match result {
+            Ok(Some(count)) => Ok(Text::new("server_form.reached").with("count", count)),
+            Ok(None) => Ok(Text::new("server_form.reached_empty")),
+            Err(error) => Err(explain::server_error_text(&error)),
+        });
+    }
+
+    fn save_server(&mut self, address: &str, password: Option<Password>) {
+        let address = match address.trim() {
+            "" => None,
+            typed => match parse(typed, password) {
+                Ok(address) => Some(address),
+                Err(why) => {
+                    if let Some(form) = &mut self.server_form {
+                        form.outcome = Some(Err(why));
+                    }
+                    return;
+                }
+            },
+        };
+        self.server_form = None;
+        self.settings.logbook = address.as_ref().map(ToString::to_string).unwrap_or_default();
+        if !is_server_given() {
+            self.services.world.store.logbook_server().set_address(address.clone().map(Ok));
+        }
+        if let Some(address) = address.filter(ServerAddress::has_password) {
+            self.services.tasks.run("keyring", move || {
+                let saved = address.save_password();
+                Action::Done(TaskResult::PasswordSaved(saved))
+            });
+        }
+    }
+
+    /// Reports a password that could not be saved. It is used until the program ends.
+    pub(super) fn finish_password(&mut self, saved: Result<(), KeyringError>) {
+        if let Err(error) = saved {
+            let text = Text::new("server_form.no_keyring").with("why", error.why);
+            self.services.notify(Severity::Warning, vec![text], None);
+        }
+    }
+}

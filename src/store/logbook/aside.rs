@@ -1,0 +1,81 @@
+//! Damaged files of the logbook. Such a file is kept under another name, and a new one is begun that knows of it: the
+//! write cycles in the damaged file are not counted any more.
+
+use std::ffi::OsString;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use jiff::Timestamp;
+use rusqlite::config::DbConfig;
+use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension};
+
+use super::error::LogbookErrorKind;
+use super::schema;
+use crate::store::file_lock::wait_for;
+
+/// Endings of the files that belong to a database.
+const ENDINGS: [&str; 3] = ["", "-wal", "-shm"];
+
+/// Keeps a damaged file under another name and begins a new one. Returns the other name, or `None` if the file is not
+/// damaged, because another program has begun a new one meanwhile.
+pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBuf>, LogbookErrorKind> {
+    let _lock = wait_for(path).map_err(LogbookErrorKind::Folder)?;
+    if !is_damaged(path) {
+        return Ok(None);
+    }
+    let kept = unused_name(path);
+    for ending in ENDINGS {
+        match fs::rename(with_ending(path, ending), with_ending(&kept, ending)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(_) if ending.is_empty() => return Err(LogbookErrorKind::NoAccess),
+            Err(error) => tracing::warn!("{}: {error}", path.display()),
+            Ok(()) => {}
+        }
+    }
+    let database = schema::open(path, patience)?;
+    let row = (Timestamp::now().to_string(), kept.to_string_lossy());
+    database.execute("INSERT INTO damage (at, kept) VALUES (?1, ?2)", row)?;
+    Ok(Some(kept))
+}
+
+/// Returns the last damaged file whose entries this logbook lacks.
+pub(super) fn last_damaged(database: &Connection) -> rusqlite::Result<Option<PathBuf>> {
+    let sql = "SELECT kept FROM damage ORDER BY rowid DESC LIMIT 1";
+    let kept = database.query_row(sql, [], |row| row.get::<_, String>(0)).optional()?;
+    Ok(kept.map(PathBuf::from))
+}
+
+/// Returns whether an error means that the file itself is damaged, not only a value in it.
+pub(super) fn is_damage(error: &rusqlite::Error) -> bool {
+    let code = error.sqlite_error_code();
+    matches!(code, Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt))
+}
+
+fn is_damaged(path: &Path) -> bool {
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let Ok(database) = Connection::open_with_flags(path, flags) else { return false };
+    // The damaged file is kept as it is.
+    let _ = database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
+    match database.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0)) {
+        Ok(found) => found != "ok",
+        Err(error) => is_damage(&error),
+    }
+}
+
+fn unused_name(path: &Path) -> PathBuf {
+    let time = Timestamp::now().strftime("%Y%m%dT%H%M%SZ");
+    let names = (1..).map(|number: u32| match number {
+        1 => path.with_file_name(format!("logbook-damaged-{time}.sqlite")),
+        _ => path.with_file_name(format!("logbook-damaged-{time}-{number}.sqlite")),
+    });
+    let mut free = names.filter(|name| !matches!(name.try_exists(), Ok(true)));
+    free.next().unwrap_or_else(|| path.to_owned())
+}
+
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(ending);
+    PathBuf::from(name)
+}

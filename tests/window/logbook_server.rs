@@ -1,0 +1,67 @@
+//! The form for the server of the logbook, and the line of the page that tells whether entries are shared.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::{Action, LOGBOOK_TAB, Language, ServerAction, Studio};
+
+use crate::screen::Screen;
+
+const SIZE: [f32; 2] = [1024.0, 640.0];
+/// No server listens on this port, which only the system's own services may use.
+const CLOSED: &str = "postgres://bench@127.0.0.1:1/logs";
+
+fn type_into(screen: &mut Screen, label: &'static str, text: &str) {
+    let word = screen.say(label);
+    screen.harness.get_by_role_and_label(Role::TextInput, &word).focus();
+    screen.steps();
+    screen.harness.get_by_role_and_label(Role::TextInput, &word).type_text(text);
+    screen.steps();
+}
+
+fn is_away(studio: &Studio) -> bool {
+    studio.server_exchange().is_some_and(|exchange| exchange.contact.problem.is_some())
+}
+
+#[test]
+fn the_server_is_entered_tested_and_saved() {
+    let mut screen = Screen::new_form(SIZE);
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("the logbook is read", |studio| studio.logbook().matches().is_some());
+    assert!(screen.shows(&screen.say("logbook.local")));
+    screen.click("logbook.share");
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    assert!(!screen.is_enabled("server_form.test"), "there is no address");
+    type_into(&mut screen, "server_form.address", "db.plant");
+    screen.click("server_form.test");
+    let outcome = |studio: &Studio| studio.server_form().unwrap().outcome().cloned();
+    assert!(matches!(outcome(screen.studio()), Some(Err(why)) if why.id() == "server.not_an_address"));
+    screen.act(Action::Server(ServerAction::Test { address: CLOSED.to_owned(), password: None }));
+    screen.until("the test has ended", |studio| outcome(studio).is_some());
+    assert!(matches!(outcome(screen.studio()), Some(Err(why)) if why.id() == "server.unreachable"));
+    assert_eq!(screen.studio().settings.logbook, "", "nothing is saved yet");
+    // The window goes on without the server, and says so.
+    screen.act(Action::Server(ServerAction::Save { address: CLOSED.to_owned(), password: None }));
+    assert!(screen.studio().server_form().is_none());
+    screen.until("the server is away", is_away);
+    let exchange = screen.studio().server_exchange().unwrap();
+    assert_eq!(exchange.waiting, 1, "the connection of the encoder");
+    assert!(screen.harness.query_all_by_label_contains("127.0.0.1:1/logs").next().is_some());
+    let settings = screen.outside.store().settings_path();
+    screen
+        .until("the setting is saved", |_| std::fs::read_to_string(&settings).is_ok_and(|text| text.contains(CLOSED)));
+    // Without an address, the logbook is on this computer only.
+    screen.act(Action::Server(ServerAction::Save { address: String::new(), password: None }));
+    assert!(screen.studio().server_exchange().is_none());
+}
+
+#[test]
+fn escape_closes_the_form() {
+    let mut screen = Screen::new_form(SIZE);
+    screen.act(Action::Server(ServerAction::Open));
+    assert!(screen.has_button("server_form.save"));
+    screen.key(egui::Key::Escape);
+    assert!(!screen.has_button("server_form.save") && screen.studio().server_form().is_none());
+}
