@@ -73,6 +73,19 @@ pub trait ByteLink: Send {
     /// # Errors
     /// Returns an error if the connection was lost.
     fn check_connection(&mut self) -> Result<(), LinkError>;
+
+    /// Returns the time of the first start bit of the last reply, or `None` if the connection does not measure it.
+    fn reply_start(&self) -> Option<Moment> {
+        None
+    }
+
+    /// Restores the state of the far side that must not outlast the session, such as the supply of the device.
+    ///
+    /// # Errors
+    /// Returns an error if the connection was lost or the far side rejects the request.
+    fn restore_state(&mut self) -> Result<(), LinkError> {
+        Ok(())
+    }
 }
 
 /// A cancellation flag. All clones share the same flag.

@@ -37,6 +37,7 @@ mod hiperdrive_safety;
 mod hiperdrive_simulate;
 mod hiperdrive_tap;
 mod hiperdrive_writing;
+mod hiperface_adapter;
 mod interbus_bad_input;
 mod interbus_foreign;
 mod interbus_offline;

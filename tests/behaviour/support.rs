@@ -125,6 +125,13 @@ impl Bench {
         Some(foreign)
     }
 
+    /// Starts a foreign adapter with a HIPERFACE encoder at its serial line.
+    pub(crate) fn serial_adapter(&self, arguments: &[&str]) -> Option<Foreign> {
+        let mut foreign = self.foreign("bridge_serial.py", arguments)?;
+        foreign.url = format!("bridge:tcp:{}", foreign.place);
+        Some(foreign)
+    }
+
     /// Starts a foreign gateway with a K3 encoder connected to it.
     pub(crate) fn gateway(&self, arguments: &[&str]) -> Option<Foreign> {
         let mut foreign = self.foreign("interbus_gateway.py", arguments)?;

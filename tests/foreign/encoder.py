@@ -105,7 +105,7 @@ class Line:
                 self.terminal.write(part)
 
 
-def parse_options():
+def parse_options(description=__doc__, more=lambda add: None):
     def byte(text):
         return int(text, 16)
 
@@ -117,7 +117,7 @@ def parse_options():
         number, value = text.split("=")
         return int(number, 16), int(value)
 
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--link", help="symbolic link to make to the pty")
     add("--state", help="JSON file that keeps the EEPROM across runs; wins over the options")
@@ -151,6 +151,7 @@ def parse_options():
     add("--channel", type=channel, action="append", default=[], metavar="CH=VALUE", help="analogue value")
     add("--reply-from", choices=["old", "new"], default="old", help="address in the reply to 55h")
     add("--no-repeat", action="store_true", help="replies to 55h, 57h and 67h without the argument")
+    more(add)
     options = parser.parse_args()
     options.channels = dict([(0x00, 511), (0x01, 0), (0x48, 42)] + options.channel)
     options.label += bytes(-len(options.label) % BLOCK)

@@ -5,6 +5,7 @@
 mod drift;
 pub(crate) mod flow;
 mod power;
+mod serial_link;
 mod skew;
 mod tap;
 
@@ -24,6 +25,7 @@ use crate::units::{Moment, SupplyVoltage};
 pub use flow::Chunk;
 pub use power::SupplyAfterSession;
 pub(crate) use power::log_supply_failure;
+pub use serial_link::{AdapterSerialLink, LineSupply};
 pub use tap::{AdapterStreamError, StreamRequest, StreamTap, StreamingAdapter};
 
 /// BiSS time-out in microseconds. An encoder needs 18 µs to notice the end of a frame. See manual, table 3.
@@ -59,6 +61,8 @@ pub enum AdapterError {
     NoSsi { name: String },
     #[error("the adapter {name} cannot sample analogue signals")]
     NoAnalog { name: String },
+    #[error("the adapter {name} has no serial line")]
+    NoUart { name: String },
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply { name: String },
     /// The supply voltage exceeds the limit of the encoder, so the supply was switched off again.
@@ -242,7 +246,7 @@ impl Adapter<'_, '_> {
 
     fn send_with_retry(&mut self, request: &Request, before: &[u8]) -> Result<TimedReply, Failure> {
         for _ in 0..2 {
-            if let Some(answered) = self.exchange(request, before)? {
+            if let Some(answered) = self.exchange(request, before, Duration::ZERO)? {
                 return Ok(answered);
             }
         }
@@ -254,10 +258,23 @@ impl Adapter<'_, '_> {
     /// # Errors
     /// Returns an error if the reply is not the expected one.
     pub(crate) fn request_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
-        self.exchange(request, &[])
+        self.request_within(request, Duration::ZERO)
     }
 
-    fn exchange(&mut self, request: &Request, before: &[u8]) -> Result<Option<TimedReply>, Failure> {
+    /// Sends a request once that takes the adapter up to `duration`. Returns `None` if there is no reply.
+    ///
+    /// # Errors
+    /// Returns an error if the reply is not the expected one.
+    fn request_within(&mut self, request: &Request, duration: Duration) -> Result<Option<TimedReply>, Failure> {
+        self.exchange(request, &[], duration)
+    }
+
+    fn exchange(
+        &mut self,
+        request: &Request,
+        before: &[u8],
+        duration: Duration,
+    ) -> Result<Option<TimedReply>, Failure> {
         self.line.start()?;
         let seq = self.adapter.next_seq;
         self.adapter.next_seq = seq.wrapping_add(1);
@@ -265,7 +282,7 @@ impl Adapter<'_, '_> {
         let sent_at = self.line.now();
         self.state.mark_sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at).map_err(LineError::Link)?;
-        let deadline = sent_at + REPEAT_AFTER + self.state.margin;
+        let deadline = sent_at + duration + REPEAT_AFTER + self.state.margin;
         let mut portion = Vec::new();
         loop {
             let broken = self.adapter.receiver.dropped_count();

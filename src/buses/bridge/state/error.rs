@@ -14,6 +14,7 @@ pub fn adapter_error_text(error: &AdapterError) -> Text {
         AdapterError::NoBiss { name } => TEXTS.text("adapter.no_biss").with("name", name),
         AdapterError::NoSsi { name } => TEXTS.text("adapter.no_ssi").with("name", name),
         AdapterError::NoAnalog { name } => TEXTS.text("adapter.no_analogue").with("name", name),
+        AdapterError::NoUart { name } => TEXTS.text("adapter.no_uart").with("name", name),
         AdapterError::NoSupply { name } => TEXTS.text("adapter.no_supply").with("name", name),
         AdapterError::Overvoltage { given, measured, greatest } => TEXTS
             .text("adapter.overvoltage")
@@ -105,6 +106,7 @@ mod tests {
             (AdapterError::NoBiss { name: name() }, "box"),
             (AdapterError::NoSsi { name: name() }, "box"),
             (AdapterError::NoAnalog { name: name() }, "box"),
+            (AdapterError::NoUart { name: name() }, "box"),
             (AdapterError::NoSupply { name: name() }, "box"),
             (AdapterError::Overvoltage { given: 5_000, measured: 5_600, greatest: 5_500 }, "60 V"),
             (AdapterError::Mute, "."),

@@ -21,6 +21,7 @@ pub use types::{TypeTableFileError, encoder_types};
 use status::RecentStatusCodes;
 
 use crate::analysis::check::Verdict;
+use crate::buses::bridge::procedures::log_supply_failure;
 use crate::devices::hiperface::procedures::find::SearchProgress;
 use crate::devices::hiperface::procedures::{
     self, Codes, Error, Master, PolledSample, Station, WatchedQuantity, check, find, identify, read_analogue,
@@ -191,6 +192,10 @@ impl Device for Hiperface {
         }
         self.told_troubles = line.quality.counts();
         Some(DeviceMessage::Line(line.quality.clone()))
+    }
+
+    fn restore_state(&mut self, _context: &mut SessionContext) {
+        log_supply_failure(self.wire.restore_state());
     }
 }
 

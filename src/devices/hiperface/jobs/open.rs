@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use super::{Hiperface, encoder_types};
-use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
+use crate::buses::bridge::jobs::FORMAT;
+use crate::buses::bridge::procedures::AdapterSerialLink;
+use crate::devices::hiperface::procedures::{AdapterParameters, Echo, LinkParameters, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
-use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
+use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock};
+use crate::parameter::ParameterGroup;
 use crate::store::Store;
 use crate::worker::open::{
     check_parameters, connect_simulated, open_byte_stream, reply_margin, simulator_settings, wrong_target_error,
@@ -23,7 +26,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 /// Returns whether a drive may be a second master on the line. A drive reads the encoder only at power-up and then uses
 /// sine and cosine, so it may be present even if the line is silent.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
-    matches!(url.scheme, LinkScheme::Serial | LinkScheme::Tcp)
+    matches!(url.scheme, LinkScheme::Serial | LinkScheme::Tcp | LinkScheme::Bridge)
 }
 
 /// Opens a link to a HIPERFACE encoder.
@@ -31,30 +34,49 @@ pub fn may_have_other_master(url: &LinkUrl) -> bool {
 /// # Errors
 /// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
-    let (station, config) = read(url)?;
+    let (station, config, adapter) = read(url)?;
     let types = encoder_types(&store)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let wire = open_byte_stream(url, station.format, &clock, || {
+    let format = if url.scheme == LinkScheme::Bridge { FORMAT } else { station.format };
+    let mut wire = open_byte_stream(url, format, &clock, || {
         let mut link = connect_simulated(Bus::new(&config), &clock);
         link.set_format(station.format)?;
         Ok(link)
     })?;
+    if url.scheme == LinkScheme::Bridge {
+        wire = at_adapter(wire, &clock, url, &station, adapter);
+    }
     Ok(Session::new(wire, clock, station, store, types, url.scheme == LinkScheme::Sim))
 }
 
-/// Parses the line settings and the configuration of the virtual encoder. The latter is used only by a link to a
+/// Returns the line of the encoder behind an adapter.
+fn at_adapter(
+    wire: Box<dyn ByteLink>,
+    clock: &Arc<dyn Clock>,
+    url: &LinkUrl,
+    station: &Station,
+    parameters: AdapterParameters,
+) -> Box<dyn ByteLink> {
+    let (line, supply) = ((station.format, station.line.margin), (parameters.supply(), parameters.after));
+    Box::new(AdapterSerialLink::new(wire, clock.clone(), &url.target, line, supply))
+}
+
+/// Parses the line settings, the settings of an adapter, and the configuration of the virtual encoder. The latter is used only by a link to a
 /// virtual encoder.
-fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    if matches!(url.scheme, LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip) {
-        return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, replay:"));
+fn read(url: &LinkUrl) -> Result<(Station, Config, AdapterParameters), OpenError> {
+    if matches!(url.scheme, LinkScheme::Modbus | LinkScheme::Enip) {
+        return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, bridge:, replay:"));
     }
     let mut station = Station::from_query(&url.query, reply_margin(url.scheme))?;
-    let settings = simulator_settings(url, LinkParameters::KEYS, Config::KEYS)?;
+    let at_adapter = url.scheme == LinkScheme::Bridge;
+    let keys = [LinkParameters::KEYS, if at_adapter { AdapterParameters::KEYS } else { &[] }].concat();
+    let settings = simulator_settings(url, &keys, Config::KEYS)?;
+    let adapter = AdapterParameters::read(url.query.pairs())?;
     if url.scheme == LinkScheme::Sim {
         // The converter of the virtual encoder may echo. This is detected as with a real one.
         station.line.echo = Echo::Unknown;
         let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));
         check_parameters(&url.query, url.scheme, &line.chain(Config::KEYS).copied().collect::<Vec<_>>())?;
     }
-    Ok((station, Config::from_pairs(&settings)?))
+    Ok((station, Config::from_pairs(&settings)?, adapter))
 }

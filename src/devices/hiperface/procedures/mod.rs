@@ -31,7 +31,7 @@ pub use position::{
 pub use reset::{reset, set_temporary_line_settings};
 pub use rest_reading::{RestPosition, Signals, read_at_rest};
 pub use save::{SaveOptions, create_profile, save};
-pub use station::{Codes, InitialAccessCodes, LinkParameters, MAX_PERIODS, Station};
+pub use station::{AdapterParameters, Codes, InitialAccessCodes, LinkParameters, MAX_PERIODS, Station};
 
 use survey::{ReadPolicy, read_survey};
 pub use survey::{Survey, read_all_values};

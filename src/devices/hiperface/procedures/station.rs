@@ -3,6 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
+use crate::buses::bridge::procedures::{LineSupply, SupplyAfterSession};
 use crate::devices::hiperface::protocol::{
     AccessCode, AccessCodeNumber, BAUDS, BROADCAST, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
 };
@@ -10,10 +11,10 @@ use crate::expected::AllowedValues;
 use crate::link::line::{Echo, LineState, MARGIN};
 use crate::link::{UrlError, UrlQuery};
 use crate::parameter::{
-    CustomNotation, OptionalValue, ParameterGroup, ParameterValues, RejectedParameter, parse_whole,
+    CustomNotation, Millivolts, OptionalValue, ParameterGroup, ParameterValues, RejectedParameter, parse_whole,
 };
 use crate::parameters;
-use crate::units::{Baud, CharacterFormat, Parity};
+use crate::units::{Baud, CharacterFormat, Parity, SupplyVoltage};
 
 parameters! {
     /// Line and encoder parameters of a link. The defaults are the factory settings.
@@ -30,6 +31,29 @@ parameters! {
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
         pub periods: Option<u32> = None, "periods" => OptionalValue(CustomNotation(AllowedValues::Periods { most: MAX_PERIODS }, read_periods)), "connect.periods" like "128";
         pub turns: Option<u32> = None, "turns" => OptionalValue(CustomNotation(AllowedValues::MostTurns { most: MAX_PERIODS }, read_periods)), "connect.turns" like "4096";
+    }
+}
+
+parameters! {
+    /// Link parameters of an adapter with a serial line.
+    pub struct AdapterParameters: UrlError {
+        /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
+        pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(SUPPLY_RANGE));
+        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::KEYWORDS;
+    }
+}
+
+/// Supply voltages of HIPERFACE encoders in millivolts. See manual, technical data: 7 to 12 V.
+const SUPPLY_RANGE: std::ops::RangeInclusive<u16> = 7_000..=12_000;
+/// Time from power-on until the encoder replies with its own settings. Until 900 ms it may reply with the default
+/// settings (manual, figure 38).
+const POWER_UP: Duration = Duration::from_secs(1);
+
+impl AdapterParameters {
+    /// Returns the supply that the adapter switches on, or `None` if it leaves the supply unchanged.
+    pub fn supply(&self) -> Option<LineSupply> {
+        let voltage = |given| SupplyVoltage { least: *SUPPLY_RANGE.start(), given, greatest: *SUPPLY_RANGE.end() };
+        self.millivolt.map(|given| LineSupply { voltage: voltage(given), power_up: POWER_UP })
     }
 }
 

@@ -129,8 +129,11 @@ impl Master<'_> {
             }
             let first = self.strip_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
             if let Some(reply) = first {
-                // An adapter delivers several characters at once, so the first of them was complete earlier.
-                first_at = self.now() - timing.time_of_characters(reply.len() - 1);
+                // A converter delivers several characters at once, so the first of them was complete earlier.
+                first_at = match self.line.ctx.wire.reply_start() {
+                    Some(start) => start + timing.character,
+                    None => self.now() - timing.time_of_characters(reply.len() - 1),
+                };
             }
         }
         let begun = self.strip_echo(&line, frame).is_some_and(|reply| !reply.is_empty());

@@ -1,0 +1,68 @@
+//! A HIPERFACE encoder at the serial line of a foreign adapter: read, write, supply, and adapters that fail.
+
+use serde_json::json;
+
+use super::support::Bench;
+
+/// 32 writable bytes under code 0.
+const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"}]"#;
+
+#[test]
+fn an_encoder_at_an_adapter_is_read_and_written() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.serial_adapter(&["--fields", FIELDS]) else { return };
+    let run = |words: &[&str]| bench.run(&[words, &["--link", &adapter.url, "--json"]].concat()).json();
+    let told = run(&["identify", "hiperface"]);
+    assert_eq!((&told["serial_number"], &told["encoder_name"]), (&json!("GB0450179"), &json!("SKM36")));
+    // 9600 baud, even parity, before the first frame.
+    assert_eq!(adapter.requests().first().map(String::as_str), Some("F 9600 2"));
+    // SKM36 at 000E0531h: turn E0h, step 1329 of 4096.
+    let read = run(&["position", "hiperface"]);
+    assert_eq!((&read["raw"], &read["turns"], &read["steps"]), (&json!(918_833), &json!(224), &json!(1329)));
+    adapter.requests();
+    let written = run(&["write", "hiperface", "field:0@1", "AB", "--yes"]);
+    assert_eq!((&written["written"], &written["verified"]), (&json!(1), &json!(1)), "{written}");
+    assert_eq!(run(&["read", "hiperface", "field:0@0+3"])["value"], json!("08ABFF"));
+    let stores = adapter.requests().iter().filter(|line| line.starts_with("40 4B")).count();
+    assert_eq!(stores, 1, "a store is never repeated without a check");
+}
+
+/// Transfer 2 reaches the encoder, and its reply does not reach the host.
+#[test]
+fn a_lost_reply_is_requested_again() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.serial_adapter(&["--lose", "2"]) else { return };
+    let told = bench.run(&["identify", "hiperface", "--link", &adapter.url, "--json"]).json();
+    assert_eq!(told["serial_number"], json!("GB0450179"));
+}
+
+#[test]
+fn the_supply_is_switched_on_and_restored() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.serial_adapter(&["--supply", "off"]) else { return };
+    let position = |parameters: &str| {
+        bench.run(&["position", "hiperface", "--json", "--link", &format!("{}{parameters}", adapter.url)])
+    };
+    let supplied = || -> Vec<String> { adapter.requests().into_iter().filter(|line| line.starts_with("S ")).collect() };
+    assert_eq!(position("?voltage=8").json()["raw"], json!(918_833));
+    assert_eq!(supplied(), ["S 8000", "S off"]);
+    assert_eq!(position("?voltage=8&leave-supply=on").json()["raw"], json!(918_833));
+    assert_eq!(supplied(), ["S 8000"]);
+    // Manual, technical data: 7 to 12 V.
+    position("?voltage=5").fails(2, &["voltage=5", "7 to 12"]);
+    position("?voltage=24").fails(2, &["voltage=24", "7 to 12"]);
+    assert!(supplied().is_empty(), "nothing is sent");
+}
+
+#[test]
+fn a_silent_encoder_or_adapter_is_named() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.serial_adapter(&[]) else { return };
+    let wrong_address = format!("{}?address=0x45", adapter.url);
+    bench.run(&["identify", "hiperface", "--link", &wrong_address]).fails(1, &["address 45h", "type label"]);
+    let Some(dead) = bench.serial_adapter(&["--dead-from", "2"]) else { return };
+    bench.run(&["identify", "hiperface", "--link", &dead.url]).fails(1, &["the adapter does not answer"]);
+    // The adapter of BiSS and SSI has no serial line.
+    let Some(other) = bench.adapter(&[]) else { return };
+    bench.run(&["identify", "hiperface", "--link", &other.url]).fails(1, &["bench adapter", "no serial line"]);
+}
