@@ -98,6 +98,13 @@ impl NoticeLog {
         }
     }
 
+    /// Removes a notice about a session from the window, unless it is an error, because a more important message about
+    /// the session is displayed there.
+    pub(crate) fn remove_minor(&mut self, about: &str) {
+        let is_it = |notice: &Notice| notice.severity < Severity::Error && notice.about.as_deref() == Some(about);
+        self.standing.take_if(|notice| is_it(notice));
+    }
+
     /// Removes an error about a file from the window, because the file has now been read or written.
     pub(crate) fn remove_file_notices(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
@@ -172,6 +179,24 @@ mod tests {
         assert!(log.current().is_some());
         log.remove_file_notices(Path::new("/a/b.csv"));
         assert!(log.current().is_none() && log.notices().len() == 1);
+    }
+
+    #[test]
+    fn a_warning_makes_room_for_the_loss_of_its_connection() {
+        let cases = [
+            (Severity::Warning, Some("one"), false),
+            (Severity::Good, Some("one"), false),
+            (Severity::Error, Some("one"), true),
+            (Severity::Warning, Some("other"), true),
+            (Severity::Warning, None, true),
+        ];
+        for (severity, about, stays) in cases {
+            let mut log = NoticeLog::default();
+            let (about, texts) = (about.map(str::to_owned), vec![Text::new("session.busy")]);
+            log.add(Notice { at: Zoned::now(), severity, texts, about, part: None });
+            log.remove_minor("one");
+            assert_eq!((log.current().is_some(), log.notices().len()), (stays, 1), "{severity:?}");
+        }
     }
 
     #[test]

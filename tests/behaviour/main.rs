@@ -4,6 +4,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod adapter_line;
 mod biss_bad_input;
 mod biss_guided;
 mod biss_offline;
@@ -37,7 +38,6 @@ mod hiperdrive_safety;
 mod hiperdrive_simulate;
 mod hiperdrive_tap;
 mod hiperdrive_writing;
-mod hiperface_adapter;
 mod interbus_bad_input;
 mod interbus_foreign;
 mod interbus_offline;

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""An adapter with a serial line and the bridge protocol on a TCP port, with a HIPERFACE encoder at the line, for tests
-against a separate process with separate code.
+"""An adapter with a serial line and the bridge protocol on a TCP port, with a HIPERFACE encoder or the configuration pin
+of a kit encoder at the line, for tests against a separate process with separate code.
 
-Written from protocol/bridge.md only, with the Python standard library only; the encoder is in device.py. It prints one
+Written from protocol/bridge.md only, with the Python standard library only; the encoders are in device.py and
+ubicom_encoder.py. It prints one
 line "ready ADDRESS" and serves one client after the other until SIGTERM (or the end of stdin, --stdin-eof).
 """
 
+import argparse
 import select
 import signal
 import socket
@@ -15,12 +17,39 @@ import time
 sys.dont_write_bytecode = True  # the tests leave nothing behind
 
 import bridge  # noqa: E402
+import kit  # noqa: E402
+import ubicom  # noqa: E402
+import ubicom_encoder  # noqa: E402
 from device import Encoder  # noqa: E402
 from encoder import parse_options  # noqa: E402
 
 UART, SWITCHED_SUPPLY = 1 << 4, 1 << 5
-# Factory settings of an encoder: 9600 baud, even parity.
-FORMAT = (9600, 2)
+
+
+class Pin(ubicom_encoder.Line):
+    """The configuration pin of a kit encoder: 115200 baud, no parity."""
+
+    format = (115200, 0)
+
+    def __init__(self):
+        parser = argparse.ArgumentParser()
+        kit.add_options(parser.add_argument)
+        self.options = parser.parse_args([])
+        self.options.order = "little"
+        self.encoder = kit.Kit(self.options)
+
+    def transact(self, request):
+        frame, _ = ubicom.take(request)
+        return None if frame is None else self.answer(frame[2], frame[5:-1])
+
+
+class Hiperface(Encoder):
+    """Factory settings: 9600 baud, even parity."""
+
+    format = (9600, 2)
+
+    def transact(self, request):
+        return self.answer(request)
 
 
 class Adapter:
@@ -81,8 +110,8 @@ class Adapter:
         self.note(request.hex(" ").upper())
         character = 11 / self.format[0]
         time.sleep(character * len(request))
-        is_heard = self.format == FORMAT and self.encoder.supplied is not False
-        reply = self.encoder.answer(request) if is_heard else None
+        is_heard = self.format == self.encoder.format and self.encoder.supplied is not False
+        reply = self.encoder.transact(request) if is_heard else None
         if reply is None or self.options.delay > timeout_us / 1e6:
             time.sleep(timeout_us / 1e6)
             return self.clock()[:8]
@@ -98,6 +127,7 @@ class Adapter:
 def more(add):
     add("--lose", type=lambda text: [int(part) for part in text.split(",")], default=[], metavar="N,…",
         help="the replies of these transfers (0 is the first) do not reach the host")
+    add("--pin", action="store_true", help="the configuration pin of a kit encoder is at the line")
     add("--dead-from", type=int, metavar="N", help="no reply after this number of transfers")
     add("--supply", choices=["off", "on"], help="it switches the encoder's supply, which is like this at the start")
 
@@ -105,7 +135,7 @@ def more(add):
 def main():
     options = parse_options(__doc__, more)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
-    encoder = Encoder(options)
+    encoder = Pin() if options.pin else Hiperface(options)
     encoder.supplied = {None: None, "off": False, "on": True}[options.supply]
     server = socket.create_server(("127.0.0.1", 0))
     print("ready", f"127.0.0.1:{server.getsockname()[1]}", flush=True)

@@ -2,6 +2,7 @@
 //! with every moment of the line under the control of the test. One module per behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod adapter_line;
 mod biss;
 mod echo;
 mod faults;

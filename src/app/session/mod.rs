@@ -274,6 +274,7 @@ impl<D: Kind> Session<D> {
 
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // The message is displayed where the session is shown.
+        services.log.remove_minor(&self.name());
         services.log_only(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.release_thread(JobState::Failed(why.clone()), services);
         self.opening = None;

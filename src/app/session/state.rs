@@ -108,6 +108,7 @@ impl SessionState {
     /// to do.
     pub(crate) fn mark_unresponsive(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
+        services.log.remove_minor(&self.name());
         services.log.remove_from_window("session.not_connected", Some(&self.name()));
         services.log_only(Severity::Error, why, Some(&self.name()));
     }

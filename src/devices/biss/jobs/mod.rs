@@ -256,6 +256,7 @@ impl Device for Biss {
 
     fn restore_state(&mut self, context: &mut SessionContext) {
         log_supply_failure(self.create_master(context).switch_off_after_session());
+        log_supply_failure(self.wire.restore_state());
     }
 }
 

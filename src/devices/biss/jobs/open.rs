@@ -3,12 +3,15 @@
 use std::sync::Arc;
 
 use super::Biss;
+use crate::buses::bridge::jobs::FORMAT;
+use crate::buses::bridge::procedures::{AdapterSerialLink, LineSupply, SupplyAfterSession};
 use crate::buses::bridge::sim::{self as bridge, Adapter};
-use crate::devices::biss::procedures::{Echo, Station, Transport};
+use crate::devices::biss::procedures::{Echo, Station, Supply, Transport};
 use crate::devices::biss::sim::{Config, UbicomPort};
 use crate::kinds::attachable_kinds;
 use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock, UrlError, UrlQuery};
-use crate::parameter::Keywords;
+use crate::parameter::{Keywords, Millivolts, OptionalValue, ParameterGroup, SWITCH};
+use crate::parameters;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, connect_simulated, open_byte_stream, reply_margin, wrong_target_error};
@@ -16,6 +19,17 @@ use crate::worker::{OpenError, Session};
 
 /// Link parameter that selects an adapter, for link schemes that do not imply an adapter.
 const BRIDGE: &str = "bridge";
+
+parameters! {
+    /// Link parameters of the configuration pin at the serial line of an adapter.
+    struct PinAtAdapter: UrlError {
+        is_pin: bool = false, "pin" => SWITCH;
+        /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
+        millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE));
+        after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::KEYWORDS;
+    }
+}
+
 /// Checks a link to a BiSS encoder without opening it.
 ///
 /// # Errors
@@ -25,7 +39,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 }
 
 /// Opens a link to a BiSS encoder. `serial:` and `tcp:` lead to its configuration pin, and `bridge:` to an adapter on
-/// its bus. `sim:` and `replay:` lead to the pin or, with `bridge=on`, to the adapter.
+/// its bus or, with `pin=on`, to the configuration pin at the adapter's serial line. `sim:` and `replay:` lead to the pin or, with `bridge=on`, to the adapter.
 ///
 /// # Errors
 /// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
@@ -33,12 +47,19 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     let (station, simulated) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
-    let wire = open_byte_stream(url, station.format, &clock, || {
+    let format = if url.scheme == LinkScheme::Bridge { FORMAT } else { station.format };
+    let mut wire = open_byte_stream(url, format, &clock, || {
         let (mut link, turning) = simulated.connect(&clock);
         link.set_format(station.format)?;
         motor = turning;
         Ok(link)
     })?;
+    if url.scheme == LinkScheme::Bridge && station.transport == Transport::ConfigPin {
+        let PinAtAdapter { millivolt, after, .. } = PinAtAdapter::read(url.query.pairs())?;
+        let supply = millivolt.map(|own| LineSupply { voltage: Supply::with_voltage(own), power_up: Supply::POWER_UP });
+        let line = (station.format, station.line.margin);
+        wire = Box::new(AdapterSerialLink::new(wire, clock.clone(), &url.target, line, (supply, after)));
+    }
     Ok(Session::from_connection(wire, clock, station, store, motor))
 }
 
@@ -51,6 +72,7 @@ fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
     } else {
         let mut known = way.parameters();
         known.extend((url.scheme == LinkScheme::Replay).then_some(BRIDGE));
+        known.extend(if url.scheme == LinkScheme::Bridge { PinAtAdapter::KEYS } else { &[] });
         check_parameters(&url.query, url.scheme, &known)?;
     }
     let mut station = Station::from_query(&url.query, way, reply_margin(url.scheme))?;
@@ -70,6 +92,7 @@ fn parse_transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     const TRANSPORT_KEYWORDS: Keywords<Transport> =
         Keywords(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
+        LinkScheme::Bridge if PinAtAdapter::read(url.query.pairs())?.is_pin => Ok(Transport::ConfigPin),
         LinkScheme::Bridge => Ok(Transport::Adapter),
         LinkScheme::Serial | LinkScheme::Tcp => Ok(Transport::ConfigPin),
         LinkScheme::Modbus | LinkScheme::Enip => {

@@ -150,13 +150,13 @@ pub struct Supply {
 
 impl Supply {
     /// Time from power-up until registers can be read (data sheet, 02:0Eh).
-    pub(super) const POWER_UP: Duration = Duration::from_millis(500);
+    pub(crate) const POWER_UP: Duration = Duration::from_millis(500);
     /// Range of supply voltages in millivolts that suits every version of the kit encoder (manual, chapter 2: 4.75 to
     /// 12.5 V).
-    const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
+    pub(crate) const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
     /// Returns the requested supply voltage together with the range of the kit encoder.
-    pub(super) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
+    pub(crate) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
 }

@@ -38,7 +38,7 @@ parameters! {
     /// Link parameters of an adapter with a serial line.
     pub struct AdapterParameters: UrlError {
         /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
-        pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(SUPPLY_RANGE));
+        pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(SUPPLY_RANGE)), "connect.supply" like "8";
         pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::KEYWORDS;
     }
 }

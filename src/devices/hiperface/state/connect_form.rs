@@ -4,9 +4,12 @@ use super::search::EncoderSearchForm;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
-use crate::app::connect::target::{host_and_port, non_empty, rejection_text, required_entry, split_target};
+use crate::app::connect::target::{
+    for_adapter, host_and_port, network_address_of_adapter, non_empty, rejection_text, required_entry, split_target,
+};
+use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::devices::hiperface::jobs::check_link;
-use crate::devices::hiperface::procedures::{Echo, LinkParameters, MAX_PERIODS};
+use crate::devices::hiperface::procedures::{AdapterParameters, Echo, LinkParameters, MAX_PERIODS};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
@@ -23,6 +26,8 @@ pub enum LinkKind {
     Virtual,
     Serial,
     Tcp,
+    /// An adapter with a serial line.
+    Adapter,
     Replay,
 }
 
@@ -31,6 +36,8 @@ pub enum LinkKind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
+    /// Whether the adapter is connected over a network instead of a local serial port.
+    pub network: bool,
     pub port: String,
     pub host: String,
     pub tcp_port: String,
@@ -43,6 +50,8 @@ pub struct LinkForm {
     /// Whether the encoder's time-out is 44 bits rather than 11 bits.
     pub long_timeout: bool,
     pub model: String,
+    /// Whether the adapter leaves the encoder's supply on after disconnecting.
+    pub leave_supply: bool,
     /// Values of the remaining parameters, as entered.
     pub typed: EnteredValues,
     /// Link parameters that the form cannot show, with their values.
@@ -56,6 +65,7 @@ impl Default for LinkForm {
         let [model, ..] = MODELS;
         LinkForm {
             kind: LinkKind::default(),
+            network: false,
             port: String::new(),
             host: String::new(),
             tcp_port: String::new(),
@@ -66,6 +76,7 @@ impl Default for LinkForm {
             echo: Echo::Unknown,
             long_timeout: true,
             model: model.name.to_owned(),
+            leave_supply: false,
             typed: EnteredValues::default(),
             rest: Vec::new(),
         }
@@ -87,7 +98,17 @@ impl FormModel for LinkForm {
             LinkScheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             LinkScheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
             // These schemes are not used for HIPERFACE encoders.
-            LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip => {}
+            LinkScheme::Modbus | LinkScheme::Enip => {}
+            LinkScheme::Bridge => {
+                form.kind = LinkKind::Adapter;
+                match network_address_of_adapter(&target) {
+                    Some(address) => {
+                        form.network = true;
+                        (form.host, form.tcp_port) = split_target(address);
+                    }
+                    None => form.port = target,
+                }
+            }
             LinkScheme::Tcp => {
                 form.kind = LinkKind::Tcp;
                 (form.host, form.tcp_port) = split_target(&target);
@@ -109,7 +130,7 @@ impl FormModel for LinkForm {
     }
 
     fn example_link(&self) -> &'static str {
-        PORT_EXAMPLE.serial
+        if self.kind == LinkKind::Adapter { PORT_EXAMPLE.bridge } else { PORT_EXAMPLE.serial }
     }
 }
 
@@ -128,9 +149,17 @@ impl LinkForm {
         LinkParameters::entries()
     }
 
+    pub fn adapter_entries() -> Vec<Entry> {
+        AdapterParameters::entries()
+    }
+
     /// Returns the parameters that the form offers as text entries.
     fn entries(&self) -> Vec<Entry> {
-        let own = if self.kind == LinkKind::Virtual { Self::virtual_device_entries() } else { Vec::new() };
+        let own = match self.kind {
+            LinkKind::Virtual => Self::virtual_device_entries(),
+            LinkKind::Adapter => Self::adapter_entries(),
+            LinkKind::Serial | LinkKind::Tcp | LinkKind::Replay => Vec::new(),
+        };
         [own, Self::link_entries()].concat()
     }
 
@@ -139,6 +168,10 @@ impl LinkForm {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);
             return true;
+        }
+        if (name, self.kind) == (SupplyAfterSession::LEAVE_SUPPLY_ON.0, LinkKind::Adapter) {
+            self.leave_supply = value == SupplyAfterSession::LEAVE_SUPPLY_ON.1;
+            return self.leave_supply;
         }
         self.typed.fill_entry(&self.entries(), name, value) || self.set_choice(name, value)
     }
@@ -157,6 +190,8 @@ impl LinkForm {
     fn target(&self) -> Result<(LinkScheme, String), Text> {
         match self.kind {
             LinkKind::Virtual => Ok((LinkScheme::Sim, String::new())),
+            LinkKind::Adapter if self.network => Ok((LinkScheme::Bridge, for_adapter(&self.host, &self.tcp_port)?)),
+            LinkKind::Adapter => Ok((LinkScheme::Bridge, required_entry(&self.port, "form.port_missing")?)),
             LinkKind::Serial => Ok((LinkScheme::Serial, required_entry(&self.port, "form.port_missing")?)),
             LinkKind::Replay => Ok((LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?)),
             LinkKind::Tcp => Ok((LinkScheme::Tcp, host_and_port(&self.host, &self.tcp_port)?)),
@@ -171,6 +206,12 @@ impl LinkForm {
                 parameters.entry("model", &self.model);
             }
             parameters.add_entered(&Self::virtual_device_entries(), &self.typed);
+        }
+        if self.kind == LinkKind::Adapter {
+            parameters.add_entered(&Self::adapter_entries(), &self.typed);
+            if self.leave_supply {
+                parameters.set(SupplyAfterSession::LEAVE_SUPPLY_ON.0, SupplyAfterSession::LEAVE_SUPPLY_ON.1);
+            }
         }
         if self.baud != usual.baud {
             parameters.set("baud", &self.baud.to_string());

@@ -19,6 +19,7 @@ use crate::ui::controls::{
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
     echo_ui, entries_ui, expandable_ui, network, parity, recording_file_ui, segmented_control, serial_port_ui,
+    supply_choice_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -49,6 +50,7 @@ impl TypedConnectForm for HiperfaceConnectForm {
             (LinkKind::Virtual, "connect.virtual"),
             (LinkKind::Serial, "connect.serial"),
             (LinkKind::Tcp, "connect.tcp"),
+            (LinkKind::Adapter, "connect.adapter"),
             (LinkKind::Replay, "connect.replay"),
         ];
         segmented_control(ui, theme, &mut form.kind, kinds);
@@ -57,6 +59,7 @@ impl TypedConnectForm for HiperfaceConnectForm {
             LinkKind::Virtual => simulated_ui(ui, theme, form),
             LinkKind::Serial => serial_port_ui(ui, theme, dialog, &mut form.port, actions),
             LinkKind::Tcp => network(ui, theme, &mut form.host, &mut form.tcp_port),
+            LinkKind::Adapter => adapter_ui(ui, theme, dialog, form, actions),
             LinkKind::Replay => recording_file_ui(ui, theme, &mut form.file, actions),
         }
         if form.kind != LinkKind::Replay {
@@ -68,6 +71,17 @@ impl TypedConnectForm for HiperfaceConnectForm {
             search(ui, theme, dialog, view, actions);
         }
     }
+}
+
+fn adapter_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, form: &mut LinkForm, actions: &mut Vec<Action>) {
+    paragraph(ui, theme.caption(translate(theme, "connect.adapter_words")));
+    segmented_control(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+    if form.network {
+        network(ui, theme, &mut form.host, &mut form.tcp_port);
+    } else {
+        serial_port_ui(ui, theme, dialog, &mut form.port, actions);
+    }
+    entries_ui(ui, theme, translate, LinkForm::adapter_entries(), &mut form.typed);
 }
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
@@ -104,6 +118,9 @@ fn more_settings_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut 
         let times = times.map(|(long, id)| (long, translate(theme, id)));
         dropdown(ui, &translate(theme, "settings_card.timeout"), &mut form.long_timeout, times);
     });
+    if form.kind == LinkKind::Adapter {
+        supply_choice_ui(ui, theme, &mut form.leave_supply);
+    }
     entries_ui(ui, theme, translate, LinkForm::link_entries(), &mut form.typed);
 }
 

@@ -22,6 +22,9 @@ fn links_round_trip_through_the_form() {
         "tcp:127.0.0.1:4001",
         "tcp:encoder-7:4001?margin=200",
         "tcp:[::1]:4001?baud=19200",
+        "bridge:/dev/ttyACM0",
+        "bridge:COM3?voltage=8.5&leave-supply=on&address=0x41&margin=200",
+        "bridge:tcp:192.168.0.7:4001?voltage=12&baud=38400",
         "replay:captures/monday.trace",
         "replay:monday.trace?periods=16",
     ];
@@ -47,6 +50,12 @@ fn the_entries_match_the_link() {
     assert_eq!((serial.kind, serial.port.as_str(), serial.address.as_str()), (LinkKind::Serial, "COM3", "41"));
     assert_eq!((serial.parity, serial.baud.bits_per_second()), (Parity::Odd, 19200));
     assert_eq!(form("serial:COM3?address=255").address, "broadcast");
+    let adapter = form("bridge:tcp:[::1]:4001?voltage=8");
+    assert_eq!((adapter.kind, adapter.network, adapter.host.as_str()), (LinkKind::Adapter, true, "[::1]"));
+    assert_eq!(adapter.typed.get("voltage"), "8");
+    // The other kinds of connection have no supply.
+    let serial_again = LinkForm { kind: LinkKind::Serial, port: "COM3".to_owned(), ..adapter };
+    assert_eq!(serial_again.url().unwrap().to_string(), "serial:COM3");
     let tcp = form("tcp:[::1]:4001");
     assert_eq!((tcp.host.as_str(), tcp.tcp_port.as_str()), ("[::1]", "4001"));
     assert_eq!(form("sim:"), LinkForm::default());

@@ -1,4 +1,4 @@
-//! A HIPERFACE encoder at the serial line of a foreign adapter: read, write, supply, and adapters that fail.
+//! Encoders at the serial line of a foreign adapter: read, write, supply, and adapters that fail.
 
 use serde_json::json;
 
@@ -65,4 +65,25 @@ fn a_silent_encoder_or_adapter_is_named() {
     // The adapter of BiSS and SSI has no serial line.
     let Some(other) = bench.adapter(&[]) else { return };
     bench.run(&["identify", "hiperface", "--link", &other.url]).fails(1, &["bench adapter", "no serial line"]);
+}
+
+/// The configuration pin of a kit encoder: temperature 30 °C is 80 in register 66h (BiSS reference 2).
+#[test]
+fn a_configuration_pin_at_an_adapter_is_read_and_written() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.serial_adapter(&["--pin", "--supply", "off"]) else { return };
+    let link = format!("{}?pin=on&voltage=5", adapter.url);
+    let run = |words: &[&str]| bench.run(&[words, &["--link", &link, "--json"]].concat()).json();
+    assert_eq!(run(&["read", "biss", "0x66"])["value"], json!(80));
+    let seen = adapter.requests();
+    assert!(seen.contains(&"F 115200 0".to_owned()), "{seen:?}");
+    assert_eq!(seen.iter().filter(|line| line.starts_with("S ")).collect::<Vec<_>>(), ["S 5000", "S off"]);
+    let identity = run(&["identify", "biss"]);
+    assert_eq!(identity["serial_number"], json!("12345678"), "{identity}");
+    bench
+        .run(&["read", "biss", "0x66", "--link", &format!("{}?pin=on&clock=1000000", adapter.url)])
+        .fails(2, &["clock"]);
+    bench
+        .run(&["read", "biss", "0x66", "--link", &format!("{}?pin=on&voltage=24", adapter.url)])
+        .fails(2, &["voltage=24"]);
 }

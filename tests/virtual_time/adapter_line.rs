@@ -1,0 +1,54 @@
+//! A HIPERFACE encoder at the serial line of the virtual adapter.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::buses::bridge::procedures::{AdapterSerialLink, SupplyAfterSession};
+use encoder_studio::buses::bridge::sim::Adapter;
+use encoder_studio::devices::hiperface::jobs::{Hiperface, HiperfaceJob, HiperfaceOutput};
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::protocol::EncoderTypes;
+use encoder_studio::kinds::attachable_kinds;
+use encoder_studio::link::{Clock, SimLink, VirtualClock};
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
+
+use crate::support::{MARGIN, folder};
+
+fn session(settings: &[(&str, &str)]) -> (Session<Hiperface>, Arc<VirtualClock>, tempfile::TempDir) {
+    let (clock, folder, station) = (Arc::new(VirtualClock::default()), folder(), Station::new(MARGIN));
+    let pairs: Vec<_> = settings.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+    let adapter = Adapter::from_pairs(&pairs, attachable_kinds()).unwrap();
+    let wire = SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone());
+    let line = ((station.format, MARGIN), (None, SupplyAfterSession::AsFound));
+    let link = AdapterSerialLink::new(Box::new(wire), clock.clone(), "test", line.0, line.1);
+    let store = Store::at_root(folder.path());
+    let session = Session::new(Box::new(link), clock.clone(), station, store, EncoderTypes::built_in(), true);
+    (session, clock, folder)
+}
+
+/// One revolution per second, 4096 steps each: the adapter measures the time of the reply's first start bit, so that
+/// the time of a reply over USB has no influence.
+#[test]
+fn a_position_has_the_time_that_the_adapter_measures() {
+    let (mut session, clock, _folder) = session(&[("uart", "hiperface"), ("rpm", "60")]);
+    let mut position = || {
+        let HiperfaceOutput::Position(reading) = session.run_inline(HiperfaceJob::Position(None)).unwrap() else {
+            panic!("not a position")
+        };
+        (reading.at.since_start().as_secs_f64(), f64::from(reading.raw))
+    };
+    let (began, first) = position();
+    for pause in [3, 17, 101, 250] {
+        clock.sleep_until(clock.now() + Duration::from_millis(pause));
+        let (at, raw) = position();
+        assert!((raw - first - 4096.0 * (at - began)).abs() <= 2.0, "{raw} at {at} s after {first} at {began} s");
+    }
+}
+
+#[test]
+fn an_adapter_without_a_serial_line_is_refused() {
+    let (mut session, _clock, _folder) = session(&[]);
+    let error = session.run_inline(HiperfaceJob::Position(None)).unwrap_err().to_string();
+    assert!(error.contains("virtual adapter has no serial line"), "{error}");
+}
