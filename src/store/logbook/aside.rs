@@ -16,7 +16,9 @@ use super::schema;
 use crate::store::file_lock::wait_for;
 
 /// Endings of the files that belong to a database.
-const ENDINGS: [&str; 3] = ["", "-wal", "-shm"];
+const ENDINGS: [&str; 2] = ["-wal", "-shm"];
+/// Ending of the new file, until it takes the place of the damaged one.
+const NEW: &str = "-new";
 
 /// Keeps a damaged file under another name and begins a new one. Returns the other name, or `None` if the file is not
 /// damaged, because another program has begun a new one meanwhile.
@@ -26,18 +28,31 @@ pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBu
         return Ok(None);
     }
     let kept = unused_name(path);
+    // There is a file at any time, because without one the write cycles would count as none.
+    let copied = fs::hard_link(path, &kept).or_else(|_| fs::copy(path, &kept).map(drop));
+    copied.map_err(|_| LogbookErrorKind::NoAccess)?;
+    let new = with_ending(path, NEW);
+    let begun = begin_new(&new, &kept, patience);
+    begun.inspect_err(|_| drop(fs::remove_file(&kept)))?;
     for ending in ENDINGS {
         match fs::rename(with_ending(path, ending), with_ending(&kept, ending)) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(_) if ending.is_empty() => return Err(LogbookErrorKind::NoAccess),
-            Err(error) => tracing::warn!("{}: {error}", path.display()),
-            Ok(()) => {}
+            Err(error) if error.kind() != io::ErrorKind::NotFound => tracing::warn!("{}: {error}", path.display()),
+            _ => {}
         }
     }
-    let database = schema::open(path, patience)?;
+    fs::rename(&new, path).map_err(|_| LogbookErrorKind::NoAccess)?;
+    Ok(Some(kept))
+}
+
+fn begin_new(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookErrorKind> {
+    // A program that was killed here may have left one.
+    let _ = fs::remove_file(new);
+    let database = schema::open(new, patience)?;
     let row = (Timestamp::now().to_string(), kept.to_string_lossy());
     database.execute("INSERT INTO damage (at, kept) VALUES (?1, ?2)", row)?;
-    Ok(Some(kept))
+    // Closing moves everything into the file itself.
+    database.close().map_err(|(_, error)| error)?;
+    Ok(())
 }
 
 /// Returns the last damaged file whose entries this logbook lacks.
