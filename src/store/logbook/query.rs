@@ -26,8 +26,9 @@ const ASSET: &str = "(SELECT assigned.asset FROM event AS assigned
 
 /// Returns the last `limit` entries that match the filter, newest first.
 pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    // `instr` takes any character as it is, unlike LIKE. The list of devices that ever had the asset spares the search
-    // for the asset of each entry.
+    // The rows are chosen by the index `event_search` alone, whose expressions are repeated here. `instr` takes any
+    // character as it is, unlike LIKE. The lists of devices that ever had the asset spare the search for the asset of each
+    // entry.
     let condition = format!(
         "(:kind IS NULL OR kind = :kind)
         AND (:serial_number IS NULL OR serial_number = :serial_number)
@@ -35,9 +36,13 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
         AND (:device IS NULL OR (kind, device_type, serial_number, is_virtual)
             = (:device, :device_type, :device_number, :is_virtual))
         AND (:since IS NULL OR rtrim(event.at, 'Z') >= rtrim(:since, 'Z'))
-        AND (:search = '' OR instr(lower(description || char(10) || kind || char(10) || device_type || char(10)
-            || serial_number || char(10) || coalesce(user, '') || char(10) || bench || char(10)
-            || coalesce({ASSET}, '')), lower(:search)))
+        AND (:search = ''
+            OR instr(lower(description || char(10) || kind || char(10) || device_type || char(10) || serial_number
+                || char(10) || coalesce(user, '') || char(10) || bench), lower(:search))
+            OR (kind, serial_number, device_type, is_virtual) IN (
+                SELECT named.kind, named.serial_number, named.device_type, named.is_virtual FROM event AS named
+                WHERE named.asset IS NOT NULL AND instr(lower(named.asset), lower(:search)))
+            AND instr(lower(coalesce({ASSET}, '')), lower(:search)))
         AND (:asset IS NULL OR (kind, serial_number, device_type, is_virtual) IN (
                 SELECT named.kind, named.serial_number, named.device_type, named.is_virtual
                 FROM event AS named WHERE named.asset = :asset)
@@ -57,7 +62,8 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
         ":asset": filter.asset,
         ":limit": limit,
     };
-    select(database, &condition, ":limit", parameters)
+    let found = format!("id IN (SELECT id FROM event WHERE {condition} ORDER BY {NEWEST_FIRST} LIMIT :limit)");
+    select(database, &found, ":limit", parameters)
 }
 
 /// Returns all devices that have entries, in the order of their kinds and serial numbers.

@@ -102,9 +102,14 @@ pub(super) const STEPS: [&str; 5] = [
     CREATE INDEX event_of_asset ON event (asset) WHERE asset IS NOT NULL;
 ",
     // A server may share the logbook. Entries of other benches arrive later than they were made, so entries are ordered
-    // by their time. Without the Z, times with and without a fraction can be compared as text.
+    // by their time. Without the Z, times with and without a fraction can be compared as text. The index contains all
+    // that a search looks at, so the wide rows themselves are read only for the entries that are found.
     "
-    CREATE INDEX event_in_time ON event (rtrim(at, 'Z'), id);
+    CREATE INDEX event_search ON event (
+        rtrim(at, 'Z'), id, what, kind, device_type, serial_number, is_virtual,
+        lower(description || char(10) || kind || char(10) || device_type || char(10) || serial_number || char(10)
+            || coalesce(user, '') || char(10) || bench)
+    );
     CREATE TABLE server (
         id             INTEGER PRIMARY KEY CHECK (id = 1),
         identity       TEXT    NOT NULL,
