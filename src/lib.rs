@@ -28,7 +28,10 @@ pub mod store;
 // profiles, plans and the analysis of samples; no I/O
 pub mod analysis;
 pub mod bits;
+pub mod drawing;
 pub mod expected;
+pub mod fonts;
 pub mod parameter;
 pub mod profile;
+pub mod report;
 pub mod units;

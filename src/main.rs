@@ -8,7 +8,7 @@ use encoder_studio::ui;
 
 fn main() -> ExitCode {
     let program = program();
-    match cli::run(std::env::args_os(), program.studio.formats, program.commands) {
+    match cli::run(std::env::args_os(), program.studio, program.commands) {
         Invocation::Command(status) => ExitCode::from(status),
         Invocation::Window(start) => match ui::run(start, program.studio, program.tabs) {
             Ok(()) => ExitCode::SUCCESS,

@@ -153,6 +153,11 @@ pub enum TaskResult {
     WouldLose(Box<SaveRequest>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
     /// A picture, a report or a trace has been saved, or could not be saved. `message` names what was saved.
+    /// A report was written, or the reason why there is none.
+    ReportWritten {
+        path: PathBuf,
+        result: Result<Result<(), FileError>, Text>,
+    },
     FileSaved {
         message: Text,
         path: PathBuf,

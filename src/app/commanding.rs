@@ -21,6 +21,7 @@ impl Studio {
             DeviceCommand::WriteInto(target) => self.write_profile_to(id, target),
             DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
             DeviceCommand::AskCompare => self.services.file_question = Some(FileQuestion::Compare(id)),
+            DeviceCommand::AskReport => self.ask_report_path(id),
             DeviceCommand::Compare(path) => self.compare_with(id, path),
             DeviceCommand::Poll(interval) => {
                 self.settings.live_stopped = interval.is_none();

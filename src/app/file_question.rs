@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::action::RecorderOwner;
 use super::payload::Payload;
+use super::report::ReportFormat;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
@@ -22,6 +23,7 @@ pub enum FileQuestion {
     Table { owner: RecorderOwner, visible: bool, suggested: PathBuf },
     Picture { picture: Picture, suggested: PathBuf },
     Trace { session: SessionId, suggested: PathBuf },
+    Report { session: SessionId, suggested: PathBuf },
 }
 
 /// A file that a kind of device reads or writes, with the action that follows when it has been chosen.
@@ -104,6 +106,7 @@ impl FileQuestion {
             FileQuestion::Recording | FileQuestion::Trace { .. } => &["trace", "txt"],
             FileQuestion::Table { .. } => &["csv"],
             FileQuestion::Picture { .. } => &["png"],
+            FileQuestion::Report { .. } => ReportFormat::EXTENSIONS,
             FileQuestion::OfDevice(file) => file.endings,
         }
     }
@@ -118,7 +121,8 @@ impl FileQuestion {
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. }
-            | FileQuestion::Trace { suggested, .. } => Some(suggested),
+            | FileQuestion::Trace { suggested, .. }
+            | FileQuestion::Report { suggested, .. } => Some(suggested),
             FileQuestion::OfDevice(file) => file.suggested.as_deref(),
         }
     }

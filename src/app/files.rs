@@ -69,6 +69,7 @@ impl Studio {
                 Action::Done(TaskResult::FileSaved { message: Text::new("picture.saved"), path, result })
             }),
             FileQuestion::Trace { session, .. } => self.save_trace(session, path),
+            FileQuestion::Report { session, .. } => self.write_report(session, path),
         }
     }
 
@@ -137,7 +138,7 @@ impl Studio {
     }
 
     /// Suggests a file name with the encoder and the time of day, so that recordings get different names.
-    fn suggested_path(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
+    pub(super) fn suggested_path(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
             Some(RecorderOwner::Tool(_)) => None,

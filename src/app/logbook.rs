@@ -11,7 +11,7 @@ use super::services::Services;
 use super::studio::Studio;
 use super::tab::Tab;
 use super::{Severity, Text, explain};
-use crate::store::{DeviceKey, Entry, EntryFilter, Logbook, LogbookError, Store};
+use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store};
 
 /// Tab that shows the logbook.
 pub const LOGBOOK_TAB: Tab = Tab::named("Logbook");
@@ -96,6 +96,32 @@ impl LogbookMatches {
         entries.truncate(LogbookPage::LIMIT as usize);
         let (devices, assets, damaged) = (logbook.devices()?, logbook.assets()?, logbook.damaged_file()?);
         Ok(LogbookMatches { entries, has_more, devices, assets, damaged })
+    }
+}
+
+/// Returns the id of the name of a kind of entry.
+pub const fn entry_kind_text(kind: EntryKind) -> &'static str {
+    match kind {
+        EntryKind::Connected => "logbook.kind_connected",
+        EntryKind::Assigned => "logbook.kind_assigned",
+        EntryKind::Status => "logbook.kind_status",
+        EntryKind::Write => "logbook.kind_write",
+        EntryKind::Restore => "logbook.kind_restore",
+        EntryKind::Preset => "logbook.kind_preset",
+        EntryKind::Procedure => "logbook.kind_procedure",
+        EntryKind::Backup => "logbook.kind_backup",
+        EntryKind::Check => "logbook.kind_check",
+        EntryKind::Note => "logbook.kind_note",
+    }
+}
+
+/// Returns the result of a write, or `None` for an entry that has no result.
+pub fn outcome_text(entry: &Entry) -> Option<Text> {
+    match entry.conclusion.as_ref().map(|end| &end.outcome) {
+        Some(Outcome::Done) => Some(Text::new("writes_card.done")),
+        Some(Outcome::Cancelled) => Some(Text::new("writes_card.cancelled")),
+        Some(Outcome::Failed(why)) => Some(explain::literal_text(why)),
+        None => entry.kind.has_result().then(|| Text::new("writes_card.open")),
     }
 }
 

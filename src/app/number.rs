@@ -130,6 +130,14 @@ pub(crate) fn decimal_places(value: f64) -> usize {
     decimals_of(value, 3)
 }
 
+/// Returns the number of decimals of a number with at most twelve digits.
+pub fn plain_decimals(value: f64) -> usize {
+    const DIGITS: i32 = 12;
+    let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
+    let rounded = format!("{value:.*}", usize::try_from(DIGITS - before).unwrap_or(0));
+    rounded.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len())
+}
+
 /// Returns the number of decimals needed to show a number, at most `most`.
 pub(crate) fn decimals_of(value: f64, most: usize) -> usize {
     (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)

@@ -40,6 +40,12 @@ pub struct Settings {
     /// Whether the Live panel shows values without a plot.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub values_alone: bool,
+    /// Name of the company in reports.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub company: Option<String>,
+    /// Path of the company's logo in reports, a PNG file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub company_logo: Option<String>,
     /// Name of the user in the logbook.
     #[serde(skip_serializing_if = "is_default")]
     pub user_name: UserName,
@@ -62,6 +68,8 @@ impl Default for Settings {
             lower_open: false,
             live_stopped: false,
             values_alone: false,
+            company: None,
+            company_logo: None,
             user_name: UserName::default(),
             logbook: String::new(),
             drives: BTreeMap::new(),
@@ -112,6 +120,8 @@ impl Settings {
             lower_open: entry!(lower_open: bool, usual.lower_open),
             live_stopped: entry!(live_stopped: bool, usual.live_stopped),
             values_alone: entry!(values_alone: bool, usual.values_alone),
+            company: entry!(company: Option<String>, usual.company),
+            company_logo: entry!(company_logo: Option<String>, usual.company_logo),
             user_name: entry!(user_name: UserName, usual.user_name),
             logbook: entry!(logbook: String, usual.logbook),
             drives: entry!(
@@ -132,7 +142,20 @@ impl Settings {
         macro_rules! take {
             ($($name:ident),*) => { $(if ours.$name != known.$name { self.$name = ours.$name.clone(); })* };
         }
-        take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone, user_name, logbook);
+        take!(
+            theme,
+            language,
+            layout,
+            tab,
+            size,
+            lower_open,
+            live_stopped,
+            values_alone,
+            company,
+            company_logo,
+            user_name,
+            logbook
+        );
         self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
             let used = links_used_since(known.links_of(tab), ours.links_of(tab));

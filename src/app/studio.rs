@@ -348,6 +348,7 @@ impl Studio {
             }
             TaskResult::Looked { question, path, exists: false } => self.handle_chosen_path(question, path),
             TaskResult::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
+            TaskResult::ReportWritten { path, result } => self.finish_report(&path, result),
             TaskResult::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
             // It has been handled by polling.
             TaskResult::Left => {}

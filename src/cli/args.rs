@@ -6,7 +6,7 @@ mod decode;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use jiff::Timestamp;
 
 pub use act::ActionArgs;
@@ -92,6 +92,9 @@ pub enum Command {
     Read(Read),
     /// Save all restorable values in a profile.
     Save(SaveArgs),
+    /// Write a report of a profile, a device or a capture: all values with their meaning, the history in the logbook, and the
+    /// differences to a profile. Reading a device changes nothing.
+    Report(ReportArgs),
     /// Compare two profiles, or a profile with a device.
     Diff(DiffArgs),
     /// Compare a device with a profile; exit status 3 if they differ.
@@ -128,6 +131,7 @@ impl Command {
             Command::Restore(restore) => restore.asset.name.as_ref(),
             Command::Write(write) => write.asset.name.as_ref(),
             Command::Do(act) => act.asset.name.as_ref(),
+            Command::Report(report) => report.asset.as_ref(),
             _ => None,
         }
     }
@@ -202,6 +206,41 @@ pub struct SaveArgs {
     pub(super) asset: AssetArgs,
     #[command(flatten)]
     pub(crate) own: KindOptions,
+}
+
+#[derive(Args)]
+pub struct ReportArgs {
+    /// Profile or capture (.csv) to read, or log:ENTRY for the values before a write of the logbook. With --link, the
+    /// kind of device.
+    #[arg(value_name = "FILE|DEVICE")]
+    pub(crate) subject: PathBuf,
+    /// Report to write: .html or .pdf.
+    #[arg(short = 'o', long = "output", value_name = "FILE")]
+    pub(super) file: PathBuf,
+    /// Replace an existing file without asking.
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Language of the report.
+    #[arg(long, value_enum, default_value_t = ReportLanguage::En)]
+    pub(super) language: ReportLanguage,
+    /// List the differences to this profile, or to log:ENTRY.
+    #[arg(long, value_name = "FILE")]
+    pub(super) compare: Option<PathBuf>,
+    /// Asset to name in the report. With --link, the device is assigned to it. Default: the asset of the device in the
+    /// logbook.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) asset: Option<AssetName>,
+    #[command(flatten)]
+    pub(crate) own: KindOptions,
+}
+
+/// Languages of reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ReportLanguage {
+    /// English.
+    En,
+    /// German.
+    De,
 }
 
 #[derive(Args)]

@@ -6,12 +6,14 @@
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, FromArgMatches, ValueEnum};
 
-use super::args::{Command, CommonArgs, DecodeArgs, Restore, SimulateArgs};
+use super::args::{Command, CommonArgs, DecodeArgs, ReportArgs, Restore, SimulateArgs};
 use super::output::Output;
 use super::simulate::ServableDevice;
 use super::{Failure, Result};
+use crate::app::report::{DeviceReading, ReportContext};
 use crate::app::{Text, TypeMap};
 use crate::profile::{Body, ChangedItem};
+use crate::report::Report;
 
 /// Commands that a kind of device may support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,6 +167,12 @@ pub trait ProfileCommands: Sync {
     /// the items that it contains are read.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
+    /// Reads a device for a report, in the same way as for a saved profile, and what it reports.
+    fn read_for_report(&self, common: &CommonArgs, output: &Output) -> Result<DeviceReading> {
+        let body = self.read_for_comparison(common, output, None)?;
+        Ok(DeviceReading { body, status: None })
+    }
+
     /// Splits an item of the logbook into single values: bytes or registers. An undo compares them one by one.
     fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
         vec![item.clone()]
@@ -197,6 +205,16 @@ pub trait CliCommand: Sync {
 
     /// Runs the command with its arguments.
     fn run(&self, common: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result;
+
+    /// Returns the options that this part of the program adds to `report`.
+    fn report_options(&self) -> Vec<Arg> {
+        Vec::new()
+    }
+
+    /// Returns the report of a file that this part of the program reads. Returns `None` for any other file.
+    fn report(&self, _output: &Output, _report: &ReportArgs, _context: &ReportContext<'_>) -> Option<Result<Report>> {
+        None
+    }
 }
 
 /// A protocol whose captured bytes `decode` explains. Several kinds of device may share it.

@@ -13,6 +13,7 @@ pub mod plan;
 mod ports;
 pub(crate) mod positions;
 pub(crate) mod profiles;
+mod report;
 pub(crate) mod runner;
 pub(crate) mod simulate;
 pub(crate) mod slow_reply_notice;
@@ -37,9 +38,8 @@ pub use runner::{CliDevice, JobFailure, Runner, to_failure, unexpected_output};
 pub use simulate::{ServableDevice, settings};
 pub use slow_reply_notice::ReplyTiming;
 
-use crate::app::TypeMap;
+use crate::app::{KindRegistry, TypeMap};
 use crate::link::LinkUrl;
-use crate::profile::ProfileFormats;
 
 /// Ways in which a command can succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,8 +76,8 @@ pub struct Window {
 }
 
 /// Runs the command given by the arguments of a process, which start with the program name. Without a command, requests
-/// the window. `formats` are the readable profiles, and `commands` are the available commands.
-pub fn run(words: impl IntoIterator<Item = OsString>, formats: ProfileFormats, commands: Commands) -> Invocation {
+/// the window. `kinds` are the kinds of device with their profiles, and `commands` are the available commands.
+pub fn run(words: impl IntoIterator<Item = OsString>, kinds: KindRegistry, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -92,7 +92,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: ProfileFormats, c
         }
         Some(command) => {
             output::log_to_stderr();
-            let output = Output::new(common.json, formats, commands);
+            let output = Output::new(common.json, kinds, commands);
             let status = exit_code(run_command(&common, command, &output));
             user_store::finish_entries(&common, &output);
             Invocation::Command(status)
@@ -157,6 +157,13 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         Command::Log(log) => return log::log(common, output, log),
         Command::Undo(undo) => return undo::undo(common, output, undo),
         Command::Diff(diff) => return profiles::diff(common, output, diff),
+        Command::Report(report) => {
+            let done = report::report(common, output, report)?;
+            if common.link.is_some() {
+                report_unrecorded_asset(common, output, command);
+            }
+            return Ok(done);
+        }
         Command::Verify(verify) => return profiles::verify_profile(common, output, &verify.file),
         Command::Restore(restore) => {
             let done = profiles::restore(common, output, restore)?;

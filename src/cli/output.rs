@@ -5,11 +5,12 @@ use std::io::{self, Write};
 use serde_json::Value;
 
 use super::{Commands, Failure};
+use crate::app::KindRegistry;
 use crate::profile::ProfileFormats;
 
 pub struct Output {
     json: bool,
-    formats: ProfileFormats,
+    kinds: KindRegistry,
     commands: Commands,
 }
 
@@ -30,12 +31,12 @@ impl Lines {
 }
 
 impl Output {
-    pub(super) fn new(json: bool, formats: ProfileFormats, commands: Commands) -> Self {
-        Output { json, formats, commands }
+    pub(super) fn new(json: bool, kinds: KindRegistry, commands: Commands) -> Self {
+        Output { json, kinds, commands }
     }
 
     pub(crate) fn as_text(&self) -> Self {
-        Output { json: false, formats: self.formats, commands: self.commands }
+        Output { json: false, kinds: self.kinds, commands: self.commands }
     }
 
     pub(super) fn is_json(&self) -> bool {
@@ -43,7 +44,11 @@ impl Output {
     }
 
     pub(super) fn formats(&self) -> ProfileFormats {
-        self.formats
+        self.kinds.formats
+    }
+
+    pub(super) fn kinds(&self) -> KindRegistry {
+        self.kinds
     }
 
     pub(super) fn commands(&self) -> Commands {

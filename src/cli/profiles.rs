@@ -46,7 +46,7 @@ fn print_profile_note(output: &Output, path: &Path, document: &ProfileDocument) 
     Ok(())
 }
 
-fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
+pub(super) fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
     let text = read_text(path).map_err(|error| to_failure(&explain::file_error_text(&error)))?;
     ProfileDocument::parse(&text, output.formats())
         .map_err(|error| to_failure(&explain::profile_file_error_text(path, &error, KindRegistry::NONE)))

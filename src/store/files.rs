@@ -124,6 +124,19 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
 /// # Errors
 /// Returns an error if the file is missing, is a folder, is too large or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
+    let bytes = read_bytes(path)?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let offset = error.utf8_error().valid_up_to();
+        FileErrorKind::NotUtf8 { offset }.into_error(FileOperation::Read, path)
+    })?;
+    Ok(text.strip_prefix(BYTE_ORDER_MARK).map(str::to_owned).unwrap_or(text))
+}
+
+/// Reads a file of at most [`MAX_TEXT`] bytes.
+///
+/// # Errors
+/// Returns an error if the file is missing, is a folder or is too large.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |problem: FileErrorKind| problem.into_error(FileOperation::Read, path);
     let bytes = match read_at_most(path, MAX_TEXT + 1) {
         Ok(bytes) => bytes,
@@ -134,9 +147,7 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
     if u64::try_from(bytes.len()).is_ok_and(|length| length > MAX_TEXT) {
         return Err(failed(FileErrorKind::TooLarge { limit: MAX_TEXT }));
     }
-    let text = String::from_utf8(bytes)
-        .map_err(|error| failed(FileErrorKind::NotUtf8 { offset: error.utf8_error().valid_up_to() }))?;
-    Ok(text.strip_prefix(BYTE_ORDER_MARK).map(str::to_owned).unwrap_or(text))
+    Ok(bytes)
 }
 
 fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {

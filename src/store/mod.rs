@@ -25,7 +25,8 @@ pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileErrorKind, FileOperation};
 pub use file_lock::update_text;
 pub use files::{
-    MAX_TEXT, create_folder_and_write, overwrite_text, read_file, read_text, write_atomically, write_atomically_with,
+    MAX_TEXT, create_folder_and_write, overwrite_text, read_bytes, read_file, read_text, write_atomically,
+    write_atomically_with,
 };
 pub use folders::BaseFolders;
 pub use log_file::LogFile;

@@ -172,6 +172,7 @@ fn common_device_commands(theme: &Theme, device: &AnyDevice, views: &Views) -> V
             .enabled_if(device.is_savable()),
         ask("shell.restore", DeviceCommand::AskRestore).enabled_if(device.is_ready() && device.has_memory()),
         ask("shell.compare", DeviceCommand::AskCompare).enabled_if(device.is_comparable()),
+        ask("shell.report", DeviceCommand::AskReport).enabled_if(device.is_comparable()),
         ask("memory.undo", DeviceCommand::Undo)
             .with_shortcut(COMMAND, Key::Z)
             .disable_while_typing()

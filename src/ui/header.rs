@@ -137,6 +137,7 @@ fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Ac
                 (device.is_savable(), icons::FLOPPY_DISK, "profile_card.save_as", DeviceCommand::AskSave),
                 (restorable, icons::CLOCK_COUNTER_CLOCKWISE, "shell.restore", DeviceCommand::AskRestore),
                 (device.is_comparable(), icons::ARROWS_OUT_LINE_HORIZONTAL, "shell.compare", DeviceCommand::AskCompare),
+                (device.is_comparable(), icons::FILE_TEXT, "shell.report", DeviceCommand::AskReport),
             ];
             for (enabled, icon, word, command) in entries {
                 if enabled_button(ui, enabled, icon, &theme.translate(word)).clicked() {

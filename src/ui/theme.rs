@@ -3,8 +3,9 @@
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
-use crate::app::{ColorScheme, Language, Palette, Rgb, SpacingSizes, Text, TextSizes, ThemeData};
+use crate::app::{ColorScheme, Language, Palette, Rgb, SpacingSizes, Text, TextSizes, ThemeData, plain_decimals};
 use crate::bits::Word;
+use crate::fonts;
 
 impl From<Rgb> for Color32 {
     fn from(Rgb([red, green, blue]): Rgb) -> Self {
@@ -64,11 +65,7 @@ impl Theme {
     /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would show
     /// only rounding errors.
     pub fn format_plain(&self, value: f64) -> String {
-        const DIGITS: i32 = 12;
-        let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
-        let rounded = format!("{value:.*}", usize::try_from(DIGITS - before).unwrap_or(0));
-        let decimals = rounded.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len());
-        self.format_number(value, decimals)
+        self.format_number(value, plain_decimals(value))
     }
 
     /// Formats a number in hexadecimal digits, padded to its width.
@@ -215,23 +212,23 @@ impl Theme {
 const STRONG: &str = "strong";
 
 const FONTS: [(&str, &[u8]); 4] = [
-    ("inter", include_bytes!("../../assets/fonts/Inter-Regular.otf")),
-    (STRONG, include_bytes!("../../assets/fonts/Inter-SemiBold.otf")),
-    ("mono", include_bytes!("../../assets/fonts/JetBrainsMono-Regular.ttf")),
+    ("inter", fonts::TEXT),
+    (STRONG, fonts::STRONG),
+    ("mono", fonts::MONOSPACE),
     ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
 ];
 
 /// Installs the built-in fonts: a text font in two weights, a font for bytes and numbers, and an icon font.
 pub fn install_fonts(ctx: &egui::Context) {
-    let mut fonts = FontDefinitions::empty();
+    let mut definitions = FontDefinitions::empty();
     for (name, bytes) in FONTS {
-        fonts.font_data.insert(name.to_owned(), FontData::from_static(bytes).into());
+        definitions.font_data.insert(name.to_owned(), FontData::from_static(bytes).into());
     }
     let family = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-    fonts.families.insert(FontFamily::Proportional, family(&["inter", "icons", "mono"]));
-    fonts.families.insert(FontFamily::Monospace, family(&["mono", "icons", "inter"]));
-    fonts.families.insert(FontFamily::Name(STRONG.into()), family(&[STRONG, "icons", "mono"]));
-    ctx.set_fonts(fonts);
+    definitions.families.insert(FontFamily::Proportional, family(&["inter", "icons", "mono"]));
+    definitions.families.insert(FontFamily::Monospace, family(&["mono", "icons", "inter"]));
+    definitions.families.insert(FontFamily::Name(STRONG.into()), family(&[STRONG, "icons", "mono"]));
+    ctx.set_fonts(definitions);
 }
 
 #[cfg(test)]

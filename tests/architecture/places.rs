@@ -1,10 +1,13 @@
 //! The owner and the layer of a module: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
 
 /// Layers and their floors.
-const LAYERS: [(&str, u8); 18] = [
+const LAYERS: [(&str, u8); 21] = [
     ("units", 1),
     ("bits", 1),
     ("parameter", 1),
+    ("drawing", 1),
+    ("report", 1),
+    ("fonts", 1),
     ("expected", 1),
     ("analysis", 1),
     ("protocol", 2),

@@ -47,6 +47,7 @@ mod interbus_writing;
 mod logbook_server;
 mod postgres;
 mod recorded;
+mod report;
 mod source;
 mod ssi_export;
 mod ssi_live;

@@ -17,7 +17,7 @@ fn the_program() {
     let arguments = std::env::var(ARGUMENTS).unwrap_or_default();
     let words = std::iter::once("encoder-studio").chain(arguments.lines()).map(Into::into);
     let program = program();
-    match run_program(words, program.studio.formats, program.commands) {
+    match run_program(words, program.studio, program.commands) {
         Invocation::Command(status) => std::process::exit(status.into()),
         Invocation::Window(_) => assert!(arguments.is_empty()),
     }

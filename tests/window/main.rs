@@ -44,6 +44,7 @@ mod pressing;
 mod profiles;
 mod recording;
 mod remembering;
+mod reporting;
 mod saving;
 mod screen;
 mod served;

@@ -26,6 +26,7 @@ pub enum DeviceCommand {
     Restore(PathBuf),
     AskRestore,
     AskCompare,
+    AskReport,
     Compare(PathBuf),
     /// Show the effect of writing this profile to the device of the given session.
     WriteInto(SessionId),

@@ -11,6 +11,7 @@ use super::model::DeviceModel;
 use crate::app::Text;
 use crate::app::connect::form::{AnyForm, Finder, FormModel, FormModelAdapter};
 use crate::app::payload::{Payload, PayloadKindError};
+use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::{Kind, ProfileFile, Session};
 use crate::app::studio::SessionId;
@@ -81,6 +82,16 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
+    /// Returns the values of a profile with their meaning, for a report.
+    ///
+    /// # Errors
+    /// Returns a message if a table of the user cannot be read.
+    fn report(
+        profile: &Self::Profile,
+        document: &ProfileDocument,
+        context: &ReportContext<'_>,
+    ) -> Result<ReportContent, Text>;
+
     /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(_cause: &Cause) -> Option<Text> {
         None
@@ -121,6 +132,9 @@ pub trait DeviceKind: Sync {
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
     /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
+    /// Returns the values of a profile with their meaning, for a report. Returns `None` if the profile is of another kind
+    /// of device.
+    fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>>;
     /// Returns the form for the connection dialog, filled in from a link.
     fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
     #[doc(hidden)]
@@ -169,6 +183,10 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
 
     fn explain_rejection(&self, cause: &Cause) -> Option<Text> {
         M::explain_rejection(cause)
+    }
+
+    fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>> {
+        document.body.get().map(|profile| M::report(profile, document, context))
     }
 
     fn secret_parameters(&self) -> Vec<&'static str> {

@@ -74,6 +74,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
             | DeviceCommand::WriteInto(_)
             | DeviceCommand::AskRestore
             | DeviceCommand::AskCompare
+            | DeviceCommand::AskReport
             | DeviceCommand::Compare(_) => {}
             DeviceCommand::Read => {
                 if !self.session().reload_file(services) {

@@ -122,6 +122,12 @@ impl<D: Kind> Session<D> {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
+    /// Creates a session for a profile that is shown once and has no tab, such as in a report.
+    pub(crate) fn without_tab(document: &ProfileDocument) -> Self {
+        let file = ProfileFile { path: PathBuf::new(), key: String::new(), text: String::new() };
+        Session::from_file(SessionId::default(), file, document.clone())
+    }
+
     /// Creates a session for a profile that has not been saved.
     pub(crate) fn new_unsaved(id: SessionId, suggested: PathBuf) -> Self {
         Session::new(id, Source::New { suggested }, Phase::Offline)

@@ -67,6 +67,9 @@ pub fn command(commands: Commands) -> clap::Command {
     // The entries are about devices, so the names are those of a command for any device.
     let names = kind_name_parser(CommandId::Identify, commands);
     let extended = extended.mut_subcommand("log", |log| log.mut_arg("device", |device| device.value_parser(names)));
+    let options = commands.kind_commands().flat_map(|own| own.report_options());
+    let extended =
+        extended.mut_subcommand("report", |report| report.args(options.map(|own| own.display_order(AFTER_SHARED))));
     extended.subcommands(commands.kind_commands().map(|own| own.command()))
 }
 

@@ -36,6 +36,17 @@ pub(super) struct AnalyseArgs {
     pub(super) periods: Option<u32>,
 }
 
+/// Options of a report of a capture.
+#[derive(Args)]
+pub(super) struct ReportOptions {
+    /// Capture: encoder family whose limits apply.
+    #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
+    pub(super) limits: Limits,
+    /// Capture: signal periods per revolution, for the speed and for errors in mechanical angles.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    pub(super) periods: Option<u32>,
+}
+
 /// Families of encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Limits {

@@ -4,14 +4,15 @@ mod args;
 mod live;
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::signals::state::TEXTS;
+use crate::signals::state::{DiagnosisSettings, Measurement, Origin, TEXTS, TableSource, report};
 
-use clap::{ArgMatches, Args};
+use clap::{Arg, ArgMatches, Args};
 use serde_json::{Value as Json, json};
 
-use self::args::AnalyseArgs;
+use self::args::{AnalyseArgs, ReportOptions};
 use crate::analysis::capture::{Capture, Layout, TableHints};
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
 use crate::analysis::position_error::{ErrorBasis, Samples, harmonic_amplitudes};
@@ -19,11 +20,13 @@ use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::explain;
-use crate::cli::args::CommonArgs;
-use crate::cli::commands::{CliCommand, parse};
+use crate::app::report::{ReportContext, file_report};
+use crate::cli::args::{CommonArgs, ReportArgs};
+use crate::cli::commands::{CliCommand, arg_list, parse};
 use crate::cli::output::{Lines, Output};
 use crate::cli::runner::{TerminalProgressBar, to_failure};
 use crate::cli::{Failure, Result, Success};
+use crate::report::Report;
 use crate::store::read_capture;
 
 pub(crate) struct AnalyseCommand;
@@ -39,7 +42,8 @@ impl CliCommand for AnalyseCommand {
         let arguments: AnalyseArgs = parse(matches)?;
         match (&arguments.file, &common.link) {
             (Some(file), None) => {
-                let capture = read(output, file, &arguments)?;
+                let (columns, volts_per_unit) = (arguments.columns, arguments.volts_per_unit);
+                let capture = read(output, file, &TableHints { columns, volts_per_unit, ..TableHints::default() })?;
                 analyse_capture(output, file, &capture, &arguments)
             }
             (None, Some(link)) => {
@@ -49,15 +53,41 @@ impl CliCommand for AnalyseCommand {
             _ => Err(Failure::Usage("this command needs either FILE.csv or --link with an adapter".to_owned())),
         }
     }
+
+    fn report_options(&self) -> Vec<Arg> {
+        arg_list::<ReportOptions>()
+    }
+
+    fn report(&self, output: &Output, report: &ReportArgs, context: &ReportContext<'_>) -> Option<Result<Report>> {
+        is_capture(&report.subject).then(|| capture_report(output, report, context))
+    }
 }
 
-fn read(output: &Output, path: &Path, arguments: &AnalyseArgs) -> std::result::Result<Capture, Failure> {
-    let hints =
-        TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
+/// File extensions of captures.
+const CAPTURES: [&str; 4] = ["csv", "txt", "tsv", "dat"];
+
+fn is_capture(path: &Path) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    CAPTURES.iter().any(|own| own.eq_ignore_ascii_case(extension))
+}
+
+fn capture_report(output: &Output, arguments: &ReportArgs, context: &ReportContext<'_>) -> Result<Report> {
+    let path = &arguments.subject;
+    let options: ReportOptions = arguments.own.read()?;
+    let capture = read(output, path, &TableHints::default())?;
+    let settings = DiagnosisSettings { family: options.limits.family(), periods: options.periods };
+    let origin = Origin::Table(TableSource::File(path.clone()));
+    let measurement = Measurement::from_capture(origin, Arc::new(capture), settings);
+    let content = report::content(&measurement, context).map_err(|why| to_failure(&why))?;
+    let labels = (TEXTS.text("report.sig_subject"), TEXTS.text("report.sig_capture"));
+    Ok(file_report(context, labels, path, arguments.asset.as_ref(), content))
+}
+
+fn read(output: &Output, path: &Path, hints: &TableHints) -> std::result::Result<Capture, Failure> {
     let bar = TerminalProgressBar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
     // Never cancelled here: Ctrl-C ends the whole process, since the command only reads.
-    let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
+    let read = read_capture(path, hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
     let (layout, capture) =
         read.map_err(|error| to_failure(&explain::signal::read_capture_error_text(path, &error)))?;

@@ -14,6 +14,7 @@ mod quantities;
 mod reading;
 mod recent;
 mod reference_comparison;
+pub(crate) mod report;
 mod scope;
 mod spectra;
 pub mod synchronise;

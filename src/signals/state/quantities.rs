@@ -78,6 +78,18 @@ impl QuantityLimit {
     }
 }
 
+impl QuantityLimit {
+    /// Formats the limit without its unit. `number` formats a number.
+    pub fn format(self, number: impl Fn(f64) -> String) -> String {
+        match self {
+            QuantityLimit::Between(least, most) => format!("{} … {}", number(least), number(most)),
+            QuantityLimit::Within(most) => format!("± {}", number(most)),
+            QuantityLimit::AtMost(most) => format!("≤ {}", number(most)),
+            QuantityLimit::AtLeast(least) => format!("≥ {}", number(least)),
+        }
+    }
+}
+
 impl Quantity {
     pub(super) fn new(word: &'static str, value: f64, decimals: usize, unit: Unit) -> Self {
         Quantity { word, value, decimals, unit, also: None, bound: None, verdict: None }

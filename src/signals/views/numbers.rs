@@ -108,13 +108,7 @@ fn limit_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
 }
 
 fn limit_numbers(theme: &Theme, bound: QuantityLimit) -> String {
-    let plain = |value: f64| theme.format_plain((value * 1e6).round() / 1e6);
-    match bound {
-        QuantityLimit::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
-        QuantityLimit::Within(most) => format!("± {}", plain(most)),
-        QuantityLimit::AtMost(most) => format!("≤ {}", plain(most)),
-        QuantityLimit::AtLeast(least) => format!("≥ {}", plain(least)),
-    }
+    bound.format(|value| theme.format_plain((value * 1e6).round() / 1e6))
 }
 
 fn with_unit_symbol(words: String, unit: Unit) -> String {

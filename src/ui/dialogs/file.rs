@@ -78,6 +78,7 @@ fn kind(question: &FileQuestion) -> Text {
         FileQuestion::OfDevice(file) => file.kind().clone(),
         FileQuestion::Table { .. } => Text::new("file.tables"),
         FileQuestion::Picture { .. } => Text::new("file.pictures"),
+        FileQuestion::Report { .. } => Text::new("file.page_reports"),
     }
 }
 
@@ -93,6 +94,7 @@ fn title(question: &FileQuestion) -> Text {
         FileQuestion::Table { .. } => Text::new("file.table_title"),
         FileQuestion::Picture { .. } => Text::new("file.picture_title"),
         FileQuestion::Trace { .. } => Text::new("file.trace_title"),
+        FileQuestion::Report { .. } => Text::new("file.page_report_title"),
     }
 }
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
-use super::{description, device_name, kind_text, old_and_new, result, time};
-use crate::app::{Action, AnyDevice, DeviceCommand, MAX_NOTE, Studio, Text};
+use super::{description, device_name, old_and_new, result, time};
+use crate::app::{Action, AnyDevice, DeviceCommand, MAX_NOTE, Studio, Text, entry_kind_text};
 use crate::store::{DeviceKey, Entry, EntryKind, Origin};
 use crate::ui::controls::{card, card_with_trailing, enabled_button, fill_width, paragraph, row, text_entry};
 use crate::ui::{Theme, icons};
@@ -26,7 +26,7 @@ pub(super) fn entry_ui(
         card_with_trailing(
             ui,
             theme,
-            kind_text(entry.kind),
+            entry_kind_text(entry.kind),
             |ui| drop(ui.label(at)),
             |ui| {
                 facts_ui(ui, theme, studio, entry);

@@ -15,7 +15,7 @@ use super::entries::text_entry;
 use super::page::page_margin;
 use super::row_selection::selection_step;
 use super::{Theme, icons};
-use crate::app::{Action, LogbookMatches, Rgb, Studio, Text};
+use crate::app::{Action, LogbookMatches, Rgb, Studio, Text, entry_kind_text, outcome_text};
 use crate::profile::ChangedItem;
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Outcome};
 
@@ -149,7 +149,7 @@ fn toolbar_ui(
                 changed = true;
             }
         }
-        let kinds = EntryKind::ALL.map(|kind| (Some(kind), theme.translate(kind_text(kind))));
+        let kinds = EntryKind::ALL.map(|kind| (Some(kind), theme.translate(entry_kind_text(kind))));
         let options = std::iter::once((None, theme.translate("logbook.all_kinds"))).chain(kinds);
         changed |= dropdown(ui, &theme.translate("logbook.kind"), &mut filter.what, options);
         if icon_button(ui, true, icons::ARROW_CLOCKWISE, &theme.translate("logbook.refresh")).clicked() {
@@ -225,7 +225,8 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
         ui.add(Label::new(name).truncate());
     });
     row.col(|ui| {
-        let text = format!("{}  {}", theme.translate(kind_text(entry.kind)), description(entry).replace('\n', " "));
+        let text =
+            format!("{}  {}", theme.translate(entry_kind_text(entry.kind)), description(entry).replace('\n', " "));
         ui.add(Label::new(text).truncate());
     });
 }
@@ -233,24 +234,23 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
 /// Returns the icon, colour and text for the result of an entry.
 fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
     let palette = theme.palette;
+    let words = outcome_text(entry).unwrap_or_else(|| Text::new(entry_kind_text(entry.kind)));
+    let words = theme.format_text(&words);
     match entry.conclusion.as_ref().map(|end| &end.outcome) {
-        Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, theme.translate("writes_card.done")),
-        Some(Outcome::Cancelled) => (icons::STOP, palette.warn, theme.translate("writes_card.cancelled")),
-        Some(Outcome::Failed(why)) => (icons::X_CIRCLE, palette.bad, why.clone()),
-        None => {
-            let words = theme.translate(kind_text(entry.kind));
-            match entry.kind {
-                EntryKind::Connected => (icons::PLUGS_CONNECTED, palette.muted, words),
-                EntryKind::Assigned => (icons::PUSH_PIN, palette.muted, words),
-                EntryKind::Status => (icons::WARNING_CIRCLE, palette.warn, words),
-                EntryKind::Backup => (icons::FLOPPY_DISK, palette.muted, words),
-                EntryKind::Check => (icons::LIST_CHECKS, palette.muted, words),
-                EntryKind::Note => (icons::PENCIL_SIMPLE, palette.accent, words),
-                EntryKind::Write | EntryKind::Restore | EntryKind::Preset | EntryKind::Procedure => {
-                    (icons::QUESTION, palette.warn, theme.translate("writes_card.open"))
-                }
+        Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, words),
+        Some(Outcome::Cancelled) => (icons::STOP, palette.warn, words),
+        Some(Outcome::Failed(_)) => (icons::X_CIRCLE, palette.bad, words),
+        None => match entry.kind {
+            EntryKind::Connected => (icons::PLUGS_CONNECTED, palette.muted, words),
+            EntryKind::Assigned => (icons::PUSH_PIN, palette.muted, words),
+            EntryKind::Status => (icons::WARNING_CIRCLE, palette.warn, words),
+            EntryKind::Backup => (icons::FLOPPY_DISK, palette.muted, words),
+            EntryKind::Check => (icons::LIST_CHECKS, palette.muted, words),
+            EntryKind::Note => (icons::PENCIL_SIMPLE, palette.accent, words),
+            EntryKind::Write | EntryKind::Restore | EntryKind::Preset | EntryKind::Procedure => {
+                (icons::QUESTION, palette.warn, words)
             }
-        }
+        },
     }
 }
 
@@ -269,21 +269,6 @@ fn description(entry: &Entry) -> String {
 fn old_and_new(item: &ChangedItem) -> String {
     let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
     format!("{old}  →  {new}")
-}
-
-fn kind_text(kind: EntryKind) -> &'static str {
-    match kind {
-        EntryKind::Connected => "logbook.kind_connected",
-        EntryKind::Assigned => "logbook.kind_assigned",
-        EntryKind::Status => "logbook.kind_status",
-        EntryKind::Write => "logbook.kind_write",
-        EntryKind::Restore => "logbook.kind_restore",
-        EntryKind::Preset => "logbook.kind_preset",
-        EntryKind::Procedure => "logbook.kind_procedure",
-        EntryKind::Backup => "logbook.kind_backup",
-        EntryKind::Check => "logbook.kind_check",
-        EntryKind::Note => "logbook.kind_note",
-    }
 }
 
 /// Returns the bus, the serial number and optionally the type of a device.

@@ -1,10 +1,13 @@
 //! The static data about Novo encoders.
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
+use encoder_studio::app::report::{ReportContent, ReportContext};
 use encoder_studio::app::review::{self, Review, Reviewable};
 use encoder_studio::app::session::{Kind, Session};
 use encoder_studio::app::{DeviceType, Services, Severity, Text, explain};
 use encoder_studio::link::LinkUrl;
+use encoder_studio::profile::ProfileDocument;
+use encoder_studio::report::{Block, CellStyle, Section};
 use encoder_studio::store::Store;
 use encoder_studio::worker::{self, OpenError};
 
@@ -74,6 +77,15 @@ impl DeviceType for Encoder {
         Virtual::SECRETS.to_vec()
     }
     fn load_tables(_: &Store) {}
+    fn report(profile: &NovoProfile, _: &ProfileDocument, context: &ReportContext<'_>) -> Result<ReportContent, Text> {
+        let mut table =
+            context.table([("report.item".into(), CellStyle::Code), ("report.value".into(), CellStyle::Number)]);
+        for (item, value) in profile.values.iter().enumerate() {
+            table.add_row([name_of(item).to_owned(), value.to_string()]);
+        }
+        let settings = Section::new(context.say("report.settings")).with(Block::Table(table));
+        Ok(ReportContent { title: KIND.to_owned(), key: None, sections: vec![settings] })
+    }
 
     fn create(session: Session<Novo>, profile: Option<(&NovoProfile, ())>, _: &mut Services) -> Self {
         let mut own = Encoder::with(session);

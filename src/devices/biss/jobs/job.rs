@@ -244,7 +244,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.kind, &identity.serial_number, is_virtual)
 }
 
-pub(super) fn logbook_key(kind: &Kind, serial_number: &str, is_virtual: bool) -> DeviceKey {
+pub fn logbook_key(kind: &Kind, serial_number: &str, is_virtual: bool) -> DeviceKey {
     let (manufacturer, device) = (hex_compact(&kind.manufacturer), hex_compact(&kind.device_id));
     DeviceKey::new(KIND, &format!("{manufacturer}-{device}"), serial_number, is_virtual)
 }

@@ -15,7 +15,7 @@ pub use descriptions::load_descriptions;
 pub use frames::BissFrames;
 pub use job::{
     BissJob, BissOutput, Change, ChangeKind, Commit, Committed, DeviceMessage, JobError, JobStep, OperatorPresence,
-    Prepared, RegisterValues, WEAR_LIMIT, WEAR_WARNING, device_key,
+    Prepared, RegisterValues, WEAR_LIMIT, WEAR_WARNING, device_key, logbook_key,
 };
 pub use open::{check_link, open};
 

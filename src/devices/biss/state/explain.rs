@@ -11,7 +11,7 @@ mod plan;
 mod write;
 
 use crate::devices::biss::state::TEXTS;
-pub use check::check_lines;
+pub use check::{check_lines, flag_text};
 pub use damage::damage_text;
 pub use entry::entry_error_text;
 pub use guide::{

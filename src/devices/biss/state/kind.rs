@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{BissForm, Encoder};
+use super::{BissForm, Encoder, report};
+use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
@@ -14,7 +15,7 @@ use crate::devices::biss::sim::Config;
 use crate::devices::biss::state::explain;
 use crate::link::LinkUrl;
 use crate::parameter::ParameterGroup as _;
-use crate::profile::Cause;
+use crate::profile::{Cause, ProfileDocument};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -30,6 +31,14 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn report(
+        profile: &BissProfile,
+        document: &ProfileDocument,
+        context: &ReportContext<'_>,
+    ) -> Result<ReportContent, Text> {
+        report::content(profile, document, context)
     }
 
     fn load_tables(store: &Store) -> Self::Tables {

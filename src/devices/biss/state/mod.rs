@@ -19,6 +19,7 @@ mod model;
 mod record;
 #[cfg(test)]
 mod recorded;
+mod report;
 mod review;
 mod table;
 mod texts;

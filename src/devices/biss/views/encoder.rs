@@ -194,11 +194,7 @@ fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&FlagRegister>, icon: &str, col
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
             ui.label(theme.monospace(format!("b{bit}")));
-            let name = name.as_ref().map_or_else(
-                || translate(theme, "biss_status.unknown_bit"),
-                |own| theme.format_text(&explained::name_text(own)),
-            );
-            paragraph(ui, name);
+            paragraph(ui, theme.format_text(&explained::flag_text(name.as_ref())));
         });
     }
 }

@@ -148,9 +148,9 @@ impl DriveFact {
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.is_set(StatusBit::Fault);
-    let since = usize::from(drive.faults).max(usize::from(is_fault));
+    let present = drive.present_error_count();
     let error = |(at, code): (usize, &ErrorCode)| {
-        let weight = if at < since { FactSeverity::Error } else { FactSeverity::Earlier };
+        let weight = if at < present { FactSeverity::Error } else { FactSeverity::Earlier };
         DriveFact { drive: number, code: code.code(), text: error_text(*code), severity: weight }
     };
     let mut facts: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();

@@ -192,6 +192,6 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.category, &identity.serial_number, is_virtual)
 }
 
-pub(super) fn logbook_key(category: &str, serial_number: &str, is_virtual: bool) -> DeviceKey {
+pub fn logbook_key(category: &str, serial_number: &str, is_virtual: bool) -> DeviceKey {
     DeviceKey::new(KIND, category, serial_number, is_virtual)
 }

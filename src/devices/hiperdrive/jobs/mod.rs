@@ -19,7 +19,7 @@ use control::CyclicControl;
 pub use cyclic::{Cyclic, CyclicRunner};
 pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Prepared,
-    WEAR_WARNING, device_key,
+    WEAR_WARNING, device_key, logbook_key,
 };
 pub use motion::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
 pub use open::{check_link, open};

@@ -8,8 +8,8 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     ACKNOWLEDGE, NEWEST_ERROR, OLDEST_ERROR, POSITION, REQUESTED_BY_BUS, SPEED, STATUS, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
-    ActualValues, DriveNumber, ErrorCode, PARAMETERS, ParameterAccess, ParameterNumber, StatusWord, Topology, Value,
-    Variant,
+    ActualValues, DriveNumber, ErrorCode, PARAMETERS, ParameterAccess, ParameterNumber, StatusBit, StatusWord,
+    Topology, Value, Variant,
 };
 use crate::units::Moment;
 
@@ -83,6 +83,14 @@ pub struct DriveStatus {
     pub temperature: i64,
     /// Whether the drive is requested, parameter 152.
     pub requested: bool,
+}
+
+impl DriveStatus {
+    /// Returns the number of newest entries in the error buffer that are present errors. The buffer survives a power
+    /// cycle, so the others are earlier ones. There is at least one present error during a fault.
+    pub fn present_error_count(&self) -> usize {
+        usize::from(self.faults).max(usize::from(self.status.is_set(StatusBit::Fault)))
+    }
 }
 
 /// Callback that receives the number of parameters read, their total, and the next parameter.

@@ -1,19 +1,18 @@
 //! HIPERDRIVE as a kind of device for the studio, before a device is open.
 
-use super::staged::StagedEdits;
-use super::{HiperdriveDevice, HiperdriveForm};
+use super::{HiperdriveDevice, HiperdriveForm, report};
+use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, check_link};
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
-use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Config;
 use crate::devices::hiperdrive::state::explain;
 use crate::link::LinkUrl;
 use crate::parameter::ParameterGroup as _;
-use crate::profile::Cause;
+use crate::profile::{Cause, ProfileDocument};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -31,15 +30,20 @@ impl DeviceType for HiperdriveDevice {
         explain::entry_error_text(cause)
     }
 
+    fn report(
+        profile: &HiperdriveProfile,
+        document: &ProfileDocument,
+        context: &ReportContext<'_>,
+    ) -> Result<ReportContent, Text> {
+        report::content(profile, document, context)
+    }
+
     fn load_tables(_store: &Store) -> Self::Tables {}
 
     fn create(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
         let mut unit = HiperdriveDevice::from_session(session);
         if let Some((profile, ())) = profile {
-            unit.staged = StagedEdits::for_profile(profile.image.clone());
-            let drives = profile.identity.drives.iter();
-            unit.staged.set_families(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
-            unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
+            unit.adopt_profile(profile);
         }
         unit
     }

@@ -23,6 +23,7 @@ mod record;
 #[cfg(test)]
 mod recorded;
 mod remembered;
+mod report;
 mod request_state;
 mod review;
 mod rows;

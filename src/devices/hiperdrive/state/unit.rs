@@ -109,6 +109,14 @@ impl HiperdriveDevice {
         }
     }
 
+    /// Adopts the values of a profile, which is the source of the session.
+    pub(super) fn adopt_profile(&mut self, profile: &HiperdriveProfile) {
+        self.staged = StagedEdits::for_profile(profile.image.clone());
+        let drives = profile.identity.drives.iter();
+        self.staged.set_families(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
+        self.drive = self.drives().first().copied().unwrap_or(DriveNumber::FIRST);
+    }
+
     pub fn profile(&self) -> Option<&HiperdriveProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<HiperdriveProfile>()

@@ -1,6 +1,7 @@
 //! HIPERFACE as a kind of device in the studio, before an encoder is opened.
 
-use super::{Encoder, LinkForm};
+use super::{Encoder, LinkForm, report};
+use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Severity, Text};
@@ -12,7 +13,7 @@ use crate::devices::hiperface::sim::Config;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
 use crate::parameter::ParameterGroup as _;
-use crate::profile::Cause;
+use crate::profile::{Cause, ProfileDocument};
 use crate::store::{Store, StoreError};
 use crate::worker::OpenError;
 
@@ -32,6 +33,14 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         words::rejection_text(cause)
+    }
+
+    fn report(
+        profile: &HiperfaceProfile,
+        document: &ProfileDocument,
+        context: &ReportContext<'_>,
+    ) -> Result<ReportContent, Text> {
+        report::content(profile, document, context)
     }
 
     fn load_tables(store: &Store) -> Self::Tables {

@@ -17,6 +17,7 @@ mod position_entry;
 mod record;
 #[cfg(test)]
 mod recorded;
+mod report;
 mod rest;
 mod review;
 pub mod rules;

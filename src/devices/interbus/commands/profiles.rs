@@ -6,6 +6,7 @@ use super::DisturbanceLevel;
 use super::InterbusCommands;
 use super::plan::{commit_plan, plan_report, prepare_plan};
 use super::run::{Runner, programs, read_survey};
+use crate::app::report::{DeviceReading, StatusLine};
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
@@ -13,12 +14,13 @@ use crate::cli::profiles::{
     UnrestoredItems, print_missing, print_skipped_mounting, profile_to_restore, restore_options, save_profile,
     write_restore,
 };
-use crate::cli::runner::unexpected_output;
 use crate::cli::{Result, Success};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, RecordedValues, programs_to_read};
 use crate::devices::interbus::state::explain as words;
 use crate::profile::Body;
+use crate::report::Mark;
+use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = read_profile(common, output)?;
@@ -61,6 +63,21 @@ impl ProfileCommands for InterbusCommands {
         Ok(Body::new(profile))
     }
 
+    fn read_for_report(&self, common: &CommonArgs, output: &Output) -> Result<DeviceReading> {
+        let mut runner = Runner::open(common)?;
+        DisturbanceLevel::Programs.confirm_start(common, output, None)?;
+        let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
+        let profile = saved_profile(&mut runner)?;
+        let line = status.error.map(|error| StatusLine {
+            mark: Mark::Bad,
+            code: error.code.get().to_string(),
+            text: words::error_word_text(error),
+            advice: Vec::new(),
+        });
+        let status = Some(line.into_iter().collect());
+        Ok(DeviceReading { body: Body::new(profile), status })
+    }
+
     /// Returns a message if two profiles belong to different encoders. A profile without a serial number does not
     /// belong to any encoder.
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
@@ -80,10 +97,11 @@ impl ProfileCommands for InterbusCommands {
 fn read_profile(common: &CommonArgs, output: &Output) -> Result<InterbusProfile> {
     let mut runner = Runner::open(common)?;
     DisturbanceLevel::Programs.confirm_start(common, output, None)?;
-    match runner.run(InterbusJob::Save { programs: true })? {
-        InterbusOutput::Saved(profile) => Ok(*profile),
-        other => Err(unexpected_output(&other)),
-    }
+    saved_profile(&mut runner)
+}
+
+fn saved_profile(runner: &mut Runner) -> Result<InterbusProfile> {
+    Ok(result_of!(runner.run(InterbusJob::Save { programs: true })?, InterbusOutput::Saved(profile) => *profile))
 }
 
 fn read_comparable_profile(common: &CommonArgs, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {

@@ -230,7 +230,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.serial_number, is_virtual)
 }
 
-pub(super) fn logbook_key(serial_number: &str, is_virtual: bool) -> DeviceKey {
+pub fn logbook_key(serial_number: &str, is_virtual: bool) -> DeviceKey {
     DeviceKey::new(KIND, "K3", serial_number, is_virtual)
 }
 

@@ -1,7 +1,8 @@
 //! INTERBUS as a kind of device that the studio offers.
 
 use super::staged::StagedEdits;
-use super::{Encoder, InterbusForm};
+use super::{Encoder, InterbusForm, report};
+use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
@@ -12,7 +13,7 @@ use crate::devices::interbus::sim::Config;
 use crate::devices::interbus::state::explain;
 use crate::link::LinkUrl;
 use crate::parameter::ParameterGroup as _;
-use crate::profile::Cause;
+use crate::profile::{Cause, ProfileDocument};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -28,6 +29,14 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn report(
+        profile: &InterbusProfile,
+        document: &ProfileDocument,
+        context: &ReportContext<'_>,
+    ) -> Result<ReportContent, Text> {
+        report::content(profile, document, context)
     }
 
     fn load_tables(_store: &Store) -> Self::Tables {}

@@ -17,6 +17,7 @@ pub mod reader;
 mod record;
 #[cfg(test)]
 mod recorded;
+mod report;
 mod review;
 pub mod staged;
 mod table;

@@ -4,7 +4,6 @@
 mod c;
 mod halves;
 mod linuxcnc;
-mod picture;
 mod procedure;
 mod sheet;
 mod structured_text;
@@ -17,7 +16,6 @@ mod text;
 pub use c::generate_c99;
 pub use halves::{TooWideError, scl_source, structured_text_32};
 pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
-pub use picture::{Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
 pub use svg::{frame_picture, timing_picture};

@@ -28,10 +28,9 @@ pub use descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity
 pub use edges::{BurstError, ExtractedFrames, LineLevels, extract_frames};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
-    ExportText, FormatError, ModuleObstacle, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment,
-    SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table, english_text, frame_picture,
-    from_linuxcnc, generate_c99, scl_source, settings_sheet, structured_text, structured_text_32, timing_picture,
-    to_linuxcnc,
+    ExportText, FormatError, ModuleObstacle, SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table,
+    english_text, frame_picture, from_linuxcnc, generate_c99, scl_source, settings_sheet, structured_text,
+    structured_text_32, timing_picture, to_linuxcnc,
 };
 pub use family::{
     Alignment, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingAdvice,

@@ -3,10 +3,11 @@
 use super::design::LayoutDesigner;
 use crate::app::{Language, Text};
 use crate::devices::ssi::protocol::{
-    ExportText, Picture, bit_table, frame_picture, generate_c99, scl_source, settings_sheet, structured_text,
+    ExportText, bit_table, frame_picture, generate_c99, scl_source, settings_sheet, structured_text,
     structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::explain as words;
+use crate::drawing::Drawing;
 
 /// Export format of a layout. Profiles are exported separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -101,7 +102,7 @@ impl LayoutDesigner {
     }
 
     /// Returns the layout as a picture, or `None` if the format is text.
-    pub fn layout_picture(&self, format: ExportFormat, language: Language) -> Option<Picture> {
+    pub fn layout_picture(&self, format: ExportFormat, language: Language) -> Option<Drawing> {
         let (layout, title) = (self.layout(), self.title());
         let say = |text: &ExportText| words::export_text(text).to_string_in(language);
         match format {

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::design::LayoutDesigner;
 use super::families::families;
-use super::{Encoder, SsiForm};
+use super::{Encoder, SsiForm, report};
+use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, Session, Source};
 use crate::app::studio::SessionId;
@@ -16,7 +17,7 @@ use crate::devices::ssi::sim::Settings;
 use crate::devices::ssi::state::explain;
 use crate::link::LinkUrl;
 use crate::parameter::ParameterGroup as _;
-use crate::profile::Cause;
+use crate::profile::{Cause, ProfileDocument};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -32,6 +33,14 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn report(
+        profile: &SsiProfile,
+        document: &ProfileDocument,
+        context: &ReportContext<'_>,
+    ) -> Result<ReportContent, Text> {
+        report::content(profile, document, context)
     }
 
     fn load_tables(_store: &Store) -> Self::Tables {}

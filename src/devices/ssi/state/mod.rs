@@ -17,6 +17,7 @@ mod model;
 mod record;
 #[cfg(test)]
 mod recorded;
+mod report;
 mod search;
 pub mod strip;
 mod texts;

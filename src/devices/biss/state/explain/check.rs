@@ -80,6 +80,10 @@ fn finding_text(finding: &CheckFinding) -> Text {
 }
 
 fn bit_text(id: &'static str, bit: u8, own: Option<&Name>) -> Text {
-    let name = own.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name_text);
-    TEXTS.text(id).with("bit", bit).with_text("name", name)
+    TEXTS.text(id).with("bit", bit).with_text("name", flag_text(own))
+}
+
+/// Returns the name of a status bit.
+pub fn flag_text(name: Option<&Name>) -> Text {
+    name.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name_text)
 }

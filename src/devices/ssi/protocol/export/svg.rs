@@ -1,11 +1,13 @@
 //! Pictures of a layout: the frame as a row of cells, and the timing of a burst to scale.
 
-use super::picture::{FAINT_COLOUR, MARGIN, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 use super::text::{ExportText, TranslateFn};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::{ReadConditions, Times};
+use crate::drawing::{Drawing, DrawingLabel, DrawingLength, DrawingShape, FAINT_COLOUR, LabelAlign, PathSegment};
 
+/// Minimum distance between the content of a drawing and its edges.
+const MARGIN: u32 = 16;
 const CELL: u32 = 22;
 const WIDTH: u32 = 900;
 const CLOCK: &str = "#1a5fb4";
@@ -44,30 +46,38 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: TranslateFn<'_>) -> St
     }
 }
 
+/// Creates a drawing with its title as the first label.
+fn titled_drawing(width: u32, height: u32, title: &str) -> Drawing {
+    let heading = DrawingLabel { is_bold: true, ..DrawingLabel::new(MARGIN, 20, 12, title) };
+    Drawing { shapes: vec![DrawingShape::Text(heading)], ..Drawing::new(width, height, title) }
+}
+
 /// Draws the frame with one cell per clock. If `frame` is `Some`, the cells show its bits.
-pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Picture {
+pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Drawing {
     let roles = layout.clock_roles();
     let clocks = u32::from(layout.clock_count());
-    let mut picture = Picture::with_title(2 * MARGIN + clocks * CELL, 112, title);
+    let mut picture = titled_drawing(2 * MARGIN + clocks * CELL, 112, title);
     let mut begins = 0_usize;
     for (index, role) in roles.iter().enumerate() {
         let x = MARGIN + index as u32 * CELL;
         let clock = index + 1;
         let bit = frame.map_or_else(String::new, |frame| (frame >> (clocks as usize - clock) & 1).to_string());
-        let middle = PictureLength::Whole(x + CELL / 2);
-        let centred =
-            |y, size, text: String| PictureLabel { is_centred: true, ..PictureLabel::new(middle, y, size, text) };
+        let middle = DrawingLength::Whole(x + CELL / 2);
+        let centred = |y, size, text: String| DrawingLabel {
+            align: LabelAlign::Centre,
+            ..DrawingLabel::new(middle, y, size, text)
+        };
         picture.shapes.extend([
-            PictureShape::Box {
-                x: PictureLength::Whole(x),
-                y: 44,
-                width: PictureLength::Whole(CELL),
-                height: 28,
+            DrawingShape::Box {
+                x: DrawingLength::Whole(x),
+                y: 44.into(),
+                width: DrawingLength::Whole(CELL),
+                height: 28.into(),
                 fill: role_colour(*role),
                 line: FAINT_COLOUR,
             },
-            PictureShape::Text(PictureLabel { colour: Some(FAINT_COLOUR), ..centred(38, 9, clock.to_string()) }),
-            PictureShape::Text(centred(63, 13, bit)),
+            DrawingShape::Text(DrawingLabel { colour: Some(FAINT_COLOUR), ..centred(38, 9, clock.to_string()) }),
+            DrawingShape::Text(centred(63, 13, bit)),
         ]);
         let ends =
             roles.get(index + 1).is_none_or(|next| family(*next) != family(*role) || matches!(role, Role::Error(_)));
@@ -83,14 +93,17 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Tran
             };
             // The names of single clocks alternate between two heights, so that neighbouring names do not overlap.
             let y = if begins == index && index % 2 == 1 { 104 } else { 90 };
-            let middle = PictureLength::Whole(u32::midpoint(from, to));
+            let middle = DrawingLength::Whole(u32::midpoint(from, to));
             let path = vec![
-                PolylineSegment::Move(PictureLength::Whole(from + 2), 77),
-                PolylineSegment::Across(PictureLength::Whole(to - 2)),
+                PathSegment::Move(DrawingLength::Whole(from + 2), 77.into()),
+                PathSegment::Across(DrawingLength::Whole(to - 2)),
             ];
             picture.shapes.extend([
-                PictureShape::Line { path, colour: FAINT_COLOUR },
-                PictureShape::Text(PictureLabel { is_centred: true, ..PictureLabel::new(middle, y, 10, name) }),
+                DrawingShape::Line { path, colour: FAINT_COLOUR },
+                DrawingShape::Text(DrawingLabel {
+                    align: LabelAlign::Centre,
+                    ..DrawingLabel::new(middle, y, 10, name)
+                }),
             ]);
             begins = index + 1;
         }
@@ -106,43 +119,43 @@ pub fn timing_picture(
     reads: &ReadConditions,
     title: &str,
     say: TranslateFn<'_>,
-) -> Picture {
+) -> Drawing {
     let timing = times.calculate_timing(reads);
     let (burst, pause) = (timing.burst.as_secs_f64(), reads.pause.as_secs_f64());
     let scale = f64::from(WIDTH - 2 * MARGIN) / (burst + pause).max(1e-9);
-    let x = |seconds: f64| PictureLength::Scaled(f64::from(MARGIN) + seconds * scale);
+    let x = |seconds: f64| DrawingLength::Scaled(f64::from(MARGIN) + seconds * scale);
     let period = timing.period.as_secs_f64();
-    let mut picture = Picture::with_title(WIDTH, 170, title);
+    let mut picture = titled_drawing(WIDTH, 170, title);
     // The clock idles high. The first falling edge latches the position, and each rising edge shifts out a bit.
-    let mut clock = vec![PolylineSegment::Move(x(0.0), 50)];
+    let mut clock = vec![PathSegment::Move(x(0.0), 50.into())];
     for index in 0..layout.clock_count() {
         let at = f64::from(index) * period;
-        let ends = [PolylineSegment::Across(x(at + period / 2.0)), PolylineSegment::Across(x(at + period))];
+        let ends = [PathSegment::Across(x(at + period / 2.0)), PathSegment::Across(x(at + period))];
         let [falls, rises] = ends;
-        clock.extend([PolylineSegment::Down(74), falls, PolylineSegment::Down(50), rises]);
+        clock.extend([PathSegment::Down(74.into()), falls, PathSegment::Down(50.into()), rises]);
     }
     let end = x(burst + pause);
-    clock.push(PolylineSegment::Across(end));
+    clock.push(PathSegment::Across(end));
     let monoflop = times.monoflop.1 * 1e-6;
     let idle = x((burst + monoflop).min(burst + pause));
     let first = x(period / 2.0);
     let data = vec![
-        PolylineSegment::Move(x(0.0), 92),
-        PolylineSegment::Across(first),
-        PolylineSegment::Move(x(burst), 116),
-        PolylineSegment::Across(idle),
-        PolylineSegment::Down(92),
-        PolylineSegment::Across(end),
+        PathSegment::Move(x(0.0), 92.into()),
+        PathSegment::Across(first),
+        PathSegment::Move(x(burst), 116.into()),
+        PathSegment::Across(idle),
+        PathSegment::Down(92.into()),
+        PathSegment::Across(end),
     ];
-    let width = PictureLength::Scaled(x(burst).units() - first.units());
+    let width = DrawingLength::Scaled(x(burst).units() - first.units());
     picture.shapes.extend([
-        PictureShape::Line { path: clock, colour: CLOCK },
-        PictureShape::Box { x: first, y: 92, width, height: 24, fill: BITS, line: FAINT_COLOUR },
-        PictureShape::Line { path: data, colour: DATA },
+        DrawingShape::Line { path: clock, colour: CLOCK },
+        DrawingShape::Box { x: first, y: 92.into(), width, height: 24.into(), fill: BITS, line: FAINT_COLOUR },
+        DrawingShape::Line { path: data, colour: DATA },
     ]);
     for (y, name) in [(46, ExportText::ClockLine), (88, ExportText::DataLine)] {
-        let label = PictureLabel::new(PictureLength::Whole(MARGIN), y, 10, say(&name));
-        picture.shapes.push(PictureShape::Text(PictureLabel { colour: Some(FAINT_COLOUR), ..label }));
+        let label = DrawingLabel::new(DrawingLength::Whole(MARGIN), y, 10, say(&name));
+        picture.shapes.push(DrawingShape::Text(DrawingLabel { colour: Some(FAINT_COLOUR), ..label }));
     }
     let micros = burst * 1e6;
     let spans = [
@@ -150,13 +163,16 @@ pub fn timing_picture(
         (burst, burst + pause, ExportText::PauseSpan { micros: pause * 1e6, monoflop_micros: monoflop * 1e6 }),
     ];
     for (from, to, text) in spans {
-        let (from, to, y) = (x(from), x(to), 130);
-        let end = |at| [PolylineSegment::Move(at, y - 4), PolylineSegment::Down(y + 4)];
-        let path = [&[PolylineSegment::Move(from, y), PolylineSegment::Across(to)][..], &end(from), &end(to)].concat();
-        let middle = PictureLength::Scaled(f64::midpoint(from.units(), to.units()));
+        let (from, to, y) = (x(from), x(to), 130_u32);
+        let end = |at| [PathSegment::Move(at, (y - 4).into()), PathSegment::Down((y + 4).into())];
+        let path = [&[PathSegment::Move(from, y.into()), PathSegment::Across(to)][..], &end(from), &end(to)].concat();
+        let middle = DrawingLength::Scaled(f64::midpoint(from.units(), to.units()));
         picture.shapes.extend([
-            PictureShape::Line { path, colour: FAINT_COLOUR },
-            PictureShape::Text(PictureLabel { is_centred: true, ..PictureLabel::new(middle, y + 14, 11, say(&text)) }),
+            DrawingShape::Line { path, colour: FAINT_COLOUR },
+            DrawingShape::Text(DrawingLabel {
+                align: LabelAlign::Centre,
+                ..DrawingLabel::new(middle, y + 14, 11, say(&text))
+            }),
         ]);
     }
     picture

@@ -1,0 +1,64 @@
+//! The part of a report that a kind of device provides.
+
+use crate::app::{Language, Text, format_decimal, plain_decimals};
+use crate::report::{CellStyle, Fact, Section, Table};
+use crate::store::{DeviceKey, Store};
+
+/// Values of a device with their meaning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReportContent {
+    /// Name and serial number of the device.
+    pub title: String,
+    /// The device as the logbook names it, or `None` if the profile is of no particular device. Whether it is virtual is
+    /// not known from a profile.
+    pub key: Option<DeviceKey>,
+    pub sections: Vec<Section>,
+}
+
+/// Language of a report, and the user's tables.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportContext<'a> {
+    pub store: &'a Store,
+    pub language: Language,
+}
+
+impl<'a> ReportContext<'a> {
+    pub fn new(store: &'a Store, language: Language) -> Self {
+        ReportContext { store, language }
+    }
+
+    /// Returns a text in the language of the report.
+    pub fn say(&self, text: impl Into<Text>) -> String {
+        text.into().to_string_in(self.language)
+    }
+
+    /// Creates a fact with a text as its value.
+    pub fn fact(&self, label: impl Into<Text>, value: impl Into<Text>) -> Fact {
+        Fact::new(self.say(label), self.say(value))
+    }
+
+    /// Creates a fact with an identifier, an address or bytes as its value. An empty value is a dash.
+    pub fn code(&self, label: impl Into<Text>, value: impl Into<String>) -> Fact {
+        let value: String = value.into();
+        let shown = if value.trim().is_empty() { NONE.to_owned() } else { value };
+        Fact::code(self.say(label), shown)
+    }
+
+    /// Formats a number with the decimal sign of the language.
+    pub fn number(&self, value: f64, decimals: usize) -> String {
+        format_decimal(value, decimals, self.language)
+    }
+
+    /// Formats a number with the decimals that it has.
+    pub fn plain_number(&self, value: f64) -> String {
+        self.number(value, plain_decimals(value))
+    }
+
+    /// Creates a table without rows.
+    pub fn table<const N: usize>(&self, columns: [(Text, CellStyle); N]) -> Table {
+        Table::new(columns.map(|(heading, style)| (self.say(heading), style)))
+    }
+}
+
+/// Stands for a value that there is not.
+pub(super) const NONE: &str = "–";

@@ -1,0 +1,59 @@
+//! File formats of reports.
+
+use std::path::Path;
+
+use jiff::Zoned;
+
+use crate::app::{Language, Text};
+use crate::report::pdf::PdfError;
+use crate::report::{Report, html, pdf};
+
+/// File format of a report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReportFormat {
+    Html,
+    Pdf,
+}
+
+impl ReportFormat {
+    /// File extensions of all formats.
+    pub const EXTENSIONS: &[&str] = &["html", "pdf"];
+
+    /// Returns the format for the extension of a file, or `None` if there is none.
+    pub fn of_file(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "html" | "htm" => Some(ReportFormat::Html),
+            "pdf" => Some(ReportFormat::Pdf),
+            _ => None,
+        }
+    }
+
+    /// Returns the content of the file. `printed` is the time of printing.
+    ///
+    /// # Errors
+    /// Returns a message if the PDF document cannot be made.
+    pub fn render(self, report: &Report, printed: &str) -> Result<Vec<u8>, Text> {
+        match self {
+            ReportFormat::Html => Ok(html::render(report, printed).into_bytes()),
+            ReportFormat::Pdf => pdf::render(report, printed).map_err(|error| pdf_error_text(&error)),
+        }
+    }
+}
+
+/// Formats the time of printing, in the time zone of this computer.
+pub fn printed_now(now: &Zoned, language: Language) -> String {
+    let form = match language {
+        Language::English => "%Y-%m-%d %H:%M:%S %Z",
+        Language::German => "%d.%m.%Y %H:%M:%S %Z",
+    };
+    now.strftime(form).to_string()
+}
+
+fn pdf_error_text(error: &PdfError) -> Text {
+    match error {
+        PdfError::Logo => Text::new("report.logo"),
+        PdfError::Font => Text::new("report.font"),
+        PdfError::Document(why) => Text::new("report.document").with("why", why),
+    }
+}

@@ -1,0 +1,172 @@
+//! The history of a device in the logbook: what was written to it, what it reported, and the backups taken before.
+
+use std::path::Path;
+
+use super::content::{NONE, ReportContent};
+use super::sections::time;
+use super::{ReportContext, ReportSource, file_name};
+use crate::app::explain;
+use crate::app::{Text, entry_kind_text, outcome_text};
+use crate::report::{Block, CellStyle, Mark, Section, Table, sha256_hex};
+use crate::store::{Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store, read_file};
+
+/// Maximum number of entries in a report.
+const LIMIT: u32 = 500;
+
+/// Entries of the logbook about one device, newest first.
+#[derive(Debug, Default)]
+pub(super) struct History {
+    entries: Vec<Entry>,
+    /// Whether there are older entries, which are not listed.
+    has_more: bool,
+    write_cycles: u64,
+    /// Whether virtual devices are named, because the entries may belong to real ones too.
+    names_virtual: bool,
+    backups: Vec<BackupFile>,
+}
+
+/// The backup of an entry.
+#[derive(Debug)]
+struct BackupFile {
+    entry: String,
+    name: String,
+    /// SHA-256 of the file, or `None` if the file cannot be read.
+    checksum: Option<String>,
+}
+
+/// Reads the history of a device. The history of a profile includes the entries of real and virtual devices with its
+/// serial number.
+pub(super) fn read(content: &ReportContent, source: &ReportSource, store: &Store) -> Result<History, Text> {
+    let path = store.logbook_path();
+    let Some(key) = content.key.as_ref().filter(|key| !key.serial_number.is_empty()) else {
+        return Ok(History::default());
+    };
+    if matches!(path.try_exists(), Ok(false)) {
+        return Ok(History::default());
+    }
+    let filter = EntryFilter {
+        kind: Some(key.kind.clone()),
+        serial_number: Some(key.serial_number.clone()),
+        ..EntryFilter::default()
+    };
+    let entries = entries(&path, &filter).map_err(|error| explain::logbook_unreadable(&error))?;
+    let is_own = |entry: &Entry| {
+        let is_source = match source {
+            ReportSource::Profile(_) => true,
+            ReportSource::Device { is_virtual, .. } => entry.device.is_virtual == *is_virtual,
+        };
+        is_source && entry.device.device_type == key.device_type
+    };
+    let mut entries: Vec<Entry> = entries.into_iter().filter(is_own).collect();
+    let write_cycles = entries.iter().map(Entry::write_cycles).sum();
+    entries.retain(|entry| entry.kind != EntryKind::Connected);
+    let has_more = entries.len() > LIMIT as usize;
+    entries.truncate(LIMIT as usize);
+    let backups = entries.iter().filter_map(BackupFile::of_entry).collect();
+    let names_virtual = matches!(source, ReportSource::Profile(_));
+    Ok(History { entries, has_more, write_cycles, names_virtual, backups })
+}
+
+fn entries(path: &Path, filter: &EntryFilter) -> Result<Vec<Entry>, LogbookError> {
+    Logbook::open(path)?.entries(filter, u32::MAX)
+}
+
+impl History {
+    /// Returns the asset to which the device is assigned.
+    pub(super) fn asset(&self) -> Option<&str> {
+        self.entries.first()?.asset.as_deref()
+    }
+
+    /// Returns the sections of the history. There are none without entries.
+    pub(super) fn sections(&self, context: &ReportContext<'_>) -> Vec<Section> {
+        if self.entries.is_empty() {
+            return Vec::new();
+        }
+        let cycles = Text::new("report.cycles").with("cycles", self.write_cycles);
+        let mut history = Section::new(context.say("report.history")).with(Block::Paragraph(context.say(cycles)));
+        if self.has_more {
+            history = history.with(Block::Paragraph(context.say(Text::new("logbook.newest").with("count", LIMIT))));
+        }
+        let history = history.with(Block::Table(self.table(context)));
+        let backups = (!self.backups.is_empty()).then(|| self.backup_section(context));
+        std::iter::once(history).chain(backups).collect()
+    }
+
+    fn table(&self, context: &ReportContext<'_>) -> Table {
+        let mut table = context.table([
+            (Text::new("report.entry"), CellStyle::Short),
+            (Text::new("report.time"), CellStyle::Short),
+            (Text::new("report.what"), CellStyle::Text),
+            (Text::new("report.cycles_column"), CellStyle::Number),
+            (Text::new("report.item"), CellStyle::Code),
+            (Text::new("report.old"), CellStyle::Code),
+            (Text::new("report.new"), CellStyle::Code),
+        ]);
+        for entry in &self.entries {
+            let mark = match entry.conclusion.as_ref().map(|end| &end.outcome) {
+                Some(Outcome::Failed(_)) => Mark::Bad,
+                Some(Outcome::Cancelled) => Mark::Warning,
+                Some(Outcome::Done) | None => Mark::None,
+            };
+            let cycles = if entry.kind.has_result() { entry.write_cycles().to_string() } else { String::new() };
+            let mut first = [entry.id.to_string(), time(entry.at), what(context, entry, self.names_virtual), cycles];
+            if entry.items.is_empty() {
+                table.add_marked_row(mark, first.into_iter().chain([description(entry), String::new(), String::new()]));
+                continue;
+            }
+            for item in &entry.items {
+                let name = item.name.as_ref().map_or_else(|| item.item.clone(), |name| format!("{} {name}", item.item));
+                let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or(NONE).to_owned());
+                let begin = std::mem::take(&mut first);
+                table.add_marked_row(mark, begin.into_iter().chain([name, old, new]));
+            }
+        }
+        table
+    }
+
+    fn backup_section(&self, context: &ReportContext<'_>) -> Section {
+        let mut table = context.table([
+            (Text::new("report.entry"), CellStyle::Short),
+            (Text::new("report.file"), CellStyle::Text),
+            (Text::new("report.checksum"), CellStyle::Code),
+        ]);
+        for backup in &self.backups {
+            let checksum = backup.checksum.clone().unwrap_or_else(|| context.say("report.not_readable"));
+            table.add_row([backup.entry.clone(), backup.name.clone(), checksum]);
+        }
+        Section::new(context.say("report.backups")).with(Block::Table(table))
+    }
+}
+
+impl BackupFile {
+    fn of_entry(entry: &Entry) -> Option<Self> {
+        let path = entry.backup.as_ref()?;
+        Some(BackupFile {
+            entry: entry.id.to_string(),
+            name: file_name(path),
+            checksum: read_file(path).ok().map(|text| sha256_hex(text.as_bytes())),
+        })
+    }
+}
+
+/// Returns the description of an entry without items. A profile is named without its folder.
+fn description(entry: &Entry) -> String {
+    match &entry.backup {
+        Some(path) if entry.kind == EntryKind::Backup => file_name(path),
+        _ => entry.description.clone(),
+    }
+}
+
+/// Returns the kind of an entry and the user, and the result of a write unless everything was written.
+fn what(context: &ReportContext<'_>, entry: &Entry, names_virtual: bool) -> String {
+    let kind = context.say(entry_kind_text(entry.kind));
+    let kind = if names_virtual && entry.device.is_virtual {
+        context.say(Text::new("logbook.virtual").with("device", kind))
+    } else {
+        kind
+    };
+    let is_done = entry.conclusion.as_ref().is_some_and(|end| end.outcome == Outcome::Done);
+    let result = outcome_text(entry).filter(|_| !is_done).map(|text| context.say(text));
+    let parts = [Some(kind), result, entry.origin.user.clone()];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+}

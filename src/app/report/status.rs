@@ -1,0 +1,49 @@
+//! What a device reported when it was read for a report.
+
+use super::ReportContext;
+use crate::app::Text;
+use crate::profile::Body;
+use crate::report::{Block, CellStyle, Mark, Section};
+
+/// An error or a warning that a device reported, or an earlier one in its memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StatusLine {
+    pub mark: Mark,
+    /// Code as the manual writes it.
+    pub code: String,
+    pub text: Text,
+    /// Cause and remedy, if the manual names them.
+    pub advice: Vec<Text>,
+}
+
+/// Values that were read from a device for a report, and what it reports. The status is `None` for a kind of device that
+/// reports none.
+#[derive(Clone, Debug)]
+pub struct DeviceReading {
+    pub body: Body,
+    pub status: Option<Vec<StatusLine>>,
+}
+
+pub(super) fn status_section(context: &ReportContext<'_>, status: &[StatusLine]) -> Section {
+    let section = Section::new(context.say("report.status"));
+    if status.is_empty() {
+        return section.with(Block::Paragraph(context.say("report.no_errors")));
+    }
+    let mut table = context.table([
+        ("report.code".into(), CellStyle::Short),
+        ("report.meaning".into(), CellStyle::Text),
+        ("report.advice".into(), CellStyle::Text),
+        ("report.verdict".into(), CellStyle::Short),
+    ]);
+    for line in status {
+        let advice: Vec<String> = line.advice.iter().map(|text| context.say(text.clone())).collect();
+        let verdict = Text::new(match line.mark {
+            Mark::Bad => "report.error",
+            Mark::Warning => "report.warning",
+            Mark::Good | Mark::None => "report.earlier",
+        });
+        let cells = [line.code.clone(), context.say(line.text.clone()), advice.join(" "), context.say(verdict)];
+        table.add_marked_row(line.mark, cells);
+    }
+    section.with(Block::Table(table))
+}

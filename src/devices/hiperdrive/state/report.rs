@@ -1,0 +1,99 @@
+//! Values of an adapter or a hub in a report: identities, the travel of each drive, and all parameters.
+
+use super::rows::Row;
+use super::{HiperdriveDevice, TEXTS};
+use crate::app::Text;
+use crate::app::report::{ReportContent, ReportContext};
+use crate::app::session::Session;
+use crate::devices::hiperdrive::jobs::logbook_key;
+use crate::devices::hiperdrive::profile::{HiperdriveProfile, Item, ProfileDrive};
+use crate::devices::hiperdrive::protocol::{DriveNumber, Topology};
+use crate::devices::hiperdrive::state::explain;
+use crate::profile::ProfileDocument;
+use crate::report::{Block, CellStyle, Fact, Section, Table};
+
+pub(super) fn content(
+    profile: &HiperdriveProfile,
+    document: &ProfileDocument,
+    context: &ReportContext<'_>,
+) -> Result<ReportContent, Text> {
+    let identity = &profile.identity;
+    let mut unit = HiperdriveDevice::from_session(Session::without_tab(document));
+    unit.adopt_profile(profile);
+    let category = identity.topology.map_or("HIPERDRIVE", Topology::category);
+    let parts = [category, identity.serial_number.as_str()];
+    let title = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ");
+    let mut sections = Vec::new();
+    if !identity.is_device_unknown() {
+        let facts = [
+            ("hd_device.name", &identity.name),
+            ("hd_device.article", &identity.article_number),
+            ("hd_device.serial", &identity.serial_number),
+            ("hd_device.version", &identity.version),
+        ];
+        let facts = facts.map(|(label, value)| context.code(TEXTS.text(label), value)).into();
+        sections.push(Section::new(context.say("report.identity")).with(Block::Facts(facts)));
+    }
+    let of_device = parameter_table(context, profile, unit.rows(None));
+    if !of_device.rows.is_empty() {
+        let title = context.say(TEXTS.text("hd_params.device"));
+        sections.push(Section::new(title).with(Block::Table(of_device)));
+    }
+    sections.extend(unit.drives().into_iter().map(|drive| drive_section(context, profile, &unit, drive)));
+    let key = (!identity.serial_number.is_empty()).then(|| logbook_key(category, &identity.serial_number, false));
+    Ok(ReportContent { title, key, sections })
+}
+
+fn drive_section(
+    context: &ReportContext<'_>,
+    profile: &HiperdriveProfile,
+    unit: &HiperdriveDevice,
+    drive: DriveNumber,
+) -> Section {
+    let title = context.say(TEXTS.text("report.hd_drive").with("drive", drive.get()));
+    let mut section = Section::new(title);
+    if let Some(own) = profile.drive(drive) {
+        section = section.with(Block::Facts(drive_facts(context, own)));
+    }
+    section.with(Block::Table(parameter_table(context, profile, unit.rows(Some(drive)))))
+}
+
+fn drive_facts(context: &ReportContext<'_>, drive: &ProfileDrive) -> Vec<Fact> {
+    let variant = drive.variant.map(|own| context.fact(TEXTS.text("report.hd_variant"), explain::variant_text(own)));
+    let facts = [
+        ("hd_device.name", &drive.name),
+        ("hd_device.article", &drive.article_number),
+        ("hd_device.serial", &drive.serial_number),
+        ("hd_device.version", &drive.version),
+    ];
+    variant.into_iter().chain(facts.map(|(label, value)| context.code(TEXTS.text(label), value))).collect()
+}
+
+/// Lists the parameters that the profile contains.
+fn parameter_table(context: &ReportContext<'_>, profile: &HiperdriveProfile, rows: Vec<Row>) -> Table {
+    let mut table = context.table([
+        ("report.number_of".into(), CellStyle::Short),
+        ("report.name".into(), CellStyle::Text),
+        ("report.value".into(), CellStyle::Number),
+        ("report.unit".into(), CellStyle::Short),
+        ("report.meaning".into(), CellStyle::Text),
+        ("report.range".into(), CellStyle::Text),
+        ("report.factory".into(), CellStyle::Number),
+    ]);
+    for row in rows.into_iter().filter(|row| row.value.is_some()) {
+        let say = |text: Option<Text>| text.map(|text| context.say(text)).unwrap_or_default();
+        let mounting = profile.depends_on_mounting(Item(row.number)).then(|| context.say("report.mounting"));
+        let meaning = row.meaning.map(|text| context.say(text));
+        let meaning = meaning.into_iter().chain(mounting).collect::<Vec<_>>().join(", ");
+        table.add_row([
+            row.number.to_string(),
+            context.say(row.name),
+            row.shown,
+            say(row.unit),
+            meaning,
+            say(row.range),
+            row.factory,
+        ]);
+    }
+    table
+}

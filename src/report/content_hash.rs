@@ -1,0 +1,42 @@
+//! The hash over the content of a report, from which its number follows.
+
+use std::fmt;
+
+use sha2::{Digest, Sha256};
+
+use super::Report;
+
+/// SHA-256 over the content of a report. The time of printing is not part of the content.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ContentHash(String);
+
+/// Number of digits of the hash in a report number.
+const NUMBER_DIGITS: usize = 10;
+
+impl Report {
+    /// Returns the hash over the content.
+    pub fn content_hash(&self) -> ContentHash {
+        // Texts, numbers and lists always have a JSON form.
+        let content = serde_json::to_vec(self).unwrap_or_default();
+        ContentHash(sha256_hex(&content))
+    }
+}
+
+/// Returns the SHA-256 of bytes in lower-case hexadecimal digits, as other programs print it.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl ContentHash {
+    /// Returns the report number, which is the beginning of the hash.
+    pub fn report_number(&self) -> String {
+        let digits: String = self.0.chars().take(NUMBER_DIGITS).collect();
+        digits.to_ascii_uppercase()
+    }
+}
+
+impl fmt::Display for ContentHash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

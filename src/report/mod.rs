@@ -1,0 +1,208 @@
+//! A report as a document: sections of facts, tables and drawings in one language. It knows no device and does no I/O.
+//! Two renderers make a page set of the same document, [`html`] and [`pdf`].
+
+mod content_hash;
+pub mod html;
+pub mod pdf;
+
+use serde::Serialize;
+
+pub use content_hash::{ContentHash, sha256_hex};
+
+use crate::drawing::Drawing;
+
+/// A report about a device, a profile or a capture. All texts are in the language of the report.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Language of the texts as in BCP 47, such as `en`.
+    pub language: &'static str,
+    /// Type of report, such as "Device report".
+    pub subject: String,
+    /// Name of the device or the file.
+    pub title: String,
+    /// Company that makes the report, if the settings name one.
+    pub company: Option<Company>,
+    /// Origin of the values: source, time, program, asset.
+    pub origin: Vec<Fact>,
+    /// Content.
+    pub sections: Vec<Section>,
+    /// Texts of the frame around the content.
+    pub labels: Labels,
+}
+
+/// A company with its logo.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Company {
+    /// Name of the company.
+    pub name: String,
+    /// Logo as the bytes of a PNG file, if there is one.
+    pub logo: Option<Vec<u8>>,
+}
+
+/// Texts of the frame around the content of a report.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Labels {
+    /// Label of the report number.
+    pub number: String,
+    /// Label of the content hash.
+    pub content_hash: String,
+    /// Label of the time of printing.
+    pub printed: String,
+    /// Word before a page number.
+    pub page: String,
+    /// Word between a page number and the number of pages.
+    pub of: String,
+    /// Statement that the report is not a calibration certificate.
+    pub no_certificate: String,
+    /// Labels of the lines for signatures.
+    pub signatures: Vec<String>,
+}
+
+/// A part of a report with a heading.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// Content in reading order.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a section.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Block {
+    /// A paragraph of text.
+    Paragraph(String),
+    /// A heading within the section.
+    Heading(String),
+    /// Labels with values.
+    Facts(Vec<Fact>),
+    /// A table.
+    Table(Table),
+    /// A drawing.
+    Drawing(Drawing),
+}
+
+/// A label with its value.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fact {
+    /// Label.
+    pub label: String,
+    /// Value with its unit.
+    pub value: String,
+    /// Style of the value.
+    pub style: CellStyle,
+}
+
+/// A table. Each row has a cell for each column.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Table {
+    /// Columns from left to right.
+    pub columns: Vec<Column>,
+    /// Rows from top to bottom.
+    pub rows: Vec<Row>,
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Column {
+    /// Heading, which may be empty.
+    pub heading: String,
+    /// Style of the cells.
+    pub style: CellStyle,
+}
+
+/// Style of a value or a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum CellStyle {
+    /// Text, which may be broken into lines.
+    Text,
+    /// Text that is kept in one line, such as a unit or a time.
+    Short,
+    /// Bytes or addresses in a monospaced font, which may be broken between bytes.
+    Code,
+    /// A number in a monospaced font, aligned at its right end.
+    Number,
+}
+
+/// A row of a table.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Row {
+    /// Cells from left to right.
+    pub cells: Vec<String>,
+    /// Verdict on the row.
+    pub mark: Mark,
+}
+
+/// Verdict on a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub enum Mark {
+    /// No verdict.
+    #[default]
+    None,
+    /// Within the limits.
+    Good,
+    /// A warning.
+    Warning,
+    /// An error.
+    Bad,
+}
+
+impl Section {
+    /// Creates an empty section.
+    pub fn new(title: impl Into<String>) -> Self {
+        Section { title: title.into(), blocks: Vec::new() }
+    }
+
+    /// Adds a block. Columns of a table that have no entry are left out.
+    #[must_use]
+    pub fn with(mut self, mut block: Block) -> Self {
+        if let Block::Table(table) = &mut block {
+            table.remove_empty_columns();
+        }
+        self.blocks.push(block);
+        self
+    }
+}
+
+impl Fact {
+    /// Creates a fact whose value is text.
+    pub fn new(label: impl Into<String>, value: impl Into<String>) -> Self {
+        Fact { label: label.into(), value: value.into(), style: CellStyle::Text }
+    }
+
+    /// Creates a fact whose value is an identifier, an address or bytes.
+    pub fn code(label: impl Into<String>, value: impl Into<String>) -> Self {
+        Fact { style: CellStyle::Code, ..Fact::new(label, value) }
+    }
+}
+
+impl Table {
+    /// Creates a table without rows.
+    pub fn new(columns: impl IntoIterator<Item = (String, CellStyle)>) -> Self {
+        let columns = columns.into_iter().map(|(heading, style)| Column { heading, style }).collect();
+        Table { columns, rows: Vec::new() }
+    }
+
+    /// Adds a row without a verdict.
+    pub fn add_row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.add_marked_row(Mark::None, cells);
+    }
+
+    /// Adds a row with a verdict.
+    pub fn add_marked_row(&mut self, mark: Mark, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(Row { cells: cells.into_iter().collect(), mark });
+    }
+
+    /// Removes the columns without an entry, which only take space.
+    fn remove_empty_columns(&mut self) {
+        let is_used =
+            |index: usize| self.rows.iter().any(|row| row.cells.get(index).is_some_and(|cell| !cell.is_empty()));
+        let used: Vec<bool> = (0..self.columns.len()).map(is_used).collect();
+        let mut flags = used.iter().copied();
+        self.columns.retain(|_| flags.next().unwrap_or(true));
+        for row in &mut self.rows {
+            let mut flags = used.iter().copied();
+            row.cells.retain(|_| flags.next().unwrap_or(true));
+        }
+    }
+}

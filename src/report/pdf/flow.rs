@@ -1,0 +1,99 @@
+//! Placement of content on pages. A page ends where the next part does not fit.
+
+use super::canvas::{Colour, PageMark};
+use super::typeface::{Face, Typefaces};
+
+/// Size of A4 in points.
+pub(super) const PAGE: (f32, f32) = (595.28, 841.89);
+/// Margin at the left, the right and the top: 18 mm.
+pub(super) const MARGIN: f32 = 51.02;
+/// Margin at the bottom, with the page number: 22 mm.
+pub(super) const BOTTOM: f32 = 62.36;
+/// Width of the content.
+pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * MARGIN;
+const END: f32 = PAGE.1 - BOTTOM;
+/// Height of a line relative to the size of its font.
+const LINE_HEIGHT: f32 = 1.4;
+/// Height of the baseline below the top of a line, relative to the size of the font.
+const BASELINE: f32 = 1.05;
+
+/// A style of text.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Style {
+    pub(super) face: Face,
+    pub(super) size: f32,
+    pub(super) colour: Colour,
+}
+
+/// Pages in the making.
+pub(super) struct Flow<'a> {
+    pub(super) faces: &'a Typefaces,
+    pub(super) pages: Vec<Vec<PageMark>>,
+    /// Top of the next part on the last page.
+    pub(super) y: f32,
+}
+
+impl Style {
+    pub(super) const fn line_height(self) -> f32 {
+        self.size * LINE_HEIGHT
+    }
+}
+
+impl<'a> Flow<'a> {
+    pub(super) fn new(faces: &'a Typefaces) -> Self {
+        Flow { faces, pages: vec![Vec::new()], y: MARGIN }
+    }
+
+    /// Returns the height that is left on the page.
+    pub(super) fn room(&self) -> f32 {
+        END - self.y
+    }
+
+    /// Returns whether nothing has been placed on the page yet.
+    pub(super) fn is_page_empty(&self) -> bool {
+        self.pages.last().is_none_or(Vec::is_empty)
+    }
+
+    pub(super) fn break_page(&mut self) {
+        self.pages.push(Vec::new());
+        self.y = MARGIN;
+    }
+
+    /// Begins a new page unless there is enough room on the present one.
+    pub(super) fn ensure(&mut self, height: f32) {
+        if height > self.room() && !self.is_page_empty() {
+            self.break_page();
+        }
+    }
+
+    /// Adds distance to the part before. There is none at the top of a page.
+    pub(super) fn skip(&mut self, distance: f32) {
+        if !self.is_page_empty() {
+            self.y += distance;
+        }
+    }
+
+    pub(super) fn push(&mut self, mark: PageMark) {
+        if let Some(page) = self.pages.last_mut() {
+            page.push(mark);
+        }
+    }
+
+    /// Places a line of text whose top is at `y`.
+    pub(super) fn text_at(&mut self, x: f32, y: f32, style: Style, text: impl Into<String>) {
+        let Style { face, size, colour } = style;
+        self.push(PageMark::Text { x, y: y + size * BASELINE, size, face, colour, text: text.into() });
+    }
+
+    pub(super) fn width(&self, style: Style, text: &str) -> f32 {
+        self.faces.width(style.face, style.size, text)
+    }
+
+    pub(super) fn lines(&self, style: Style, text: &str, width: f32) -> Vec<String> {
+        self.faces.lines(style.face, style.size, text, width)
+    }
+
+    pub(super) fn rule(&mut self, x: f32, y: f32, width: f32, thickness: f32, colour: Colour) {
+        self.push(PageMark::Rule { x, y, width, thickness, colour });
+    }
+}

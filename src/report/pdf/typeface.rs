@@ -1,0 +1,127 @@
+//! Typefaces with the widths of their characters. Texts are set without kerning and ligatures, which the built-in fonts
+//! do not need at the sizes of a report.
+
+use krilla::text::{Font, GlyphId, KrillaGlyph};
+use skrifa::MetadataProvider as _;
+use skrifa::instance::{LocationRef, Size};
+
+use super::PdfError;
+use crate::fonts;
+
+/// A typeface of a report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Face {
+    Text,
+    Strong,
+    Mono,
+}
+
+/// The typefaces of a report.
+pub(super) struct Typefaces([Typeface; 3]);
+
+struct Typeface {
+    font: Font,
+    bytes: skrifa::FontRef<'static>,
+}
+
+/// A part of a text in one typeface.
+pub(super) struct Run {
+    pub(super) font: Font,
+    pub(super) glyphs: Vec<KrillaGlyph>,
+    pub(super) text: String,
+    /// Width at the size of the run, in points.
+    pub(super) width: f32,
+}
+
+/// Stands for a character that no typeface has.
+const MISSING: char = '?';
+
+impl Typefaces {
+    pub(super) fn load() -> Result<Self, PdfError> {
+        let [text, strong, mono] = [fonts::TEXT, fonts::STRONG, fonts::MONOSPACE].map(Typeface::load);
+        Ok(Typefaces([text?, strong?, mono?]))
+    }
+
+    fn face(&self, face: Face) -> &Typeface {
+        let [text, strong, mono] = &self.0;
+        match face {
+            Face::Text => text,
+            Face::Strong => strong,
+            Face::Mono => mono,
+        }
+    }
+
+    /// Returns the typeface that has a character, preferably the given one, and its glyph with its advance in ems.
+    fn glyph(&self, face: Face, character: char) -> (Face, u32, f32) {
+        let other = if face == Face::Mono { Face::Text } else { Face::Mono };
+        let shown = [(face, character), (other, character), (face, MISSING)];
+        let found = shown.into_iter().find_map(|(face, character)| {
+            let (glyph, advance) = self.face(face).glyph(character)?;
+            Some((face, glyph, advance))
+        });
+        found.unwrap_or((face, 0, 0.5))
+    }
+
+    /// Returns the width of a text in points.
+    pub(super) fn width(&self, face: Face, size: f32, text: &str) -> f32 {
+        text.chars().map(|character| self.glyph(face, character).2 * size).sum()
+    }
+
+    /// Splits a text into parts of one typeface each.
+    pub(super) fn runs(&self, face: Face, size: f32, text: &str) -> Vec<Run> {
+        let mut runs: Vec<(Face, Run)> = Vec::new();
+        for character in text.chars() {
+            let (own, glyph, advance) = self.glyph(face, character);
+            if runs.last().is_none_or(|(last, _)| *last != own) {
+                let font = self.face(own).font.clone();
+                runs.push((own, Run { font, glyphs: Vec::new(), text: String::new(), width: 0.0 }));
+            }
+            let Some((_, run)) = runs.last_mut() else { continue };
+            let start = run.text.len();
+            run.text.push(character);
+            run.width += advance * size;
+            run.glyphs.push(KrillaGlyph::new(GlyphId::new(glyph), advance, 0.0, 0.0, 0.0, start..run.text.len(), None));
+        }
+        runs.into_iter().map(|(_, run)| run).collect()
+    }
+
+    /// Breaks a text into lines of at most the given width, between words, or within a word that is too long.
+    pub(super) fn lines(&self, face: Face, size: f32, text: &str, width: f32) -> Vec<String> {
+        let mut lines = Vec::new();
+        for paragraph in text.split('\n') {
+            let (mut line, mut taken) = (String::new(), 0.0);
+            for word in paragraph.split_inclusive([' ', '·', '-', '/']) {
+                let own = self.width(face, size, word.trim_end());
+                if taken > 0.0 && taken + own > width {
+                    lines.push(std::mem::take(&mut line).trim_end().to_owned());
+                    taken = 0.0;
+                }
+                for character in word.chars() {
+                    let advance = self.glyph(face, character).2 * size;
+                    if taken + advance > width && taken > 0.0 && character != ' ' {
+                        lines.push(std::mem::take(&mut line));
+                        taken = 0.0;
+                    }
+                    line.push(character);
+                    taken += advance;
+                }
+            }
+            lines.push(line.trim_end().to_owned());
+        }
+        lines
+    }
+}
+
+impl Typeface {
+    fn load(bytes: &'static [u8]) -> Result<Self, PdfError> {
+        let font = Font::new(bytes.into(), 0).ok_or(PdfError::Font)?;
+        let bytes = skrifa::FontRef::new(bytes).map_err(|_| PdfError::Font)?;
+        Ok(Typeface { font, bytes })
+    }
+
+    fn glyph(&self, character: char) -> Option<(u32, f32)> {
+        let glyph = self.bytes.charmap().map(character)?;
+        let advance = self.bytes.glyph_metrics(Size::new(1.0), LocationRef::default()).advance_width(glyph)?;
+        Some((glyph.to_u32(), advance))
+    }
+}

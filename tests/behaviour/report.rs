@@ -1,0 +1,255 @@
+//! The command `report`: one self-contained page set with values, meaning, history and differences.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::support::{Bench, skip};
+
+/// Values as recorded in the virtual encoder: its first field begins with the text EMD71K.
+const FIELD: &str = "45 4D 44 37 31 4B";
+
+fn profiles() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
+    let kinds = ["hiperface", "biss", "ssi", "interbus", "hiperdrive"];
+    let files = kinds.iter().flat_map(|kind| fs::read_dir(root.join(kind)).unwrap());
+    let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// Returns the page without the time of printing, which is in one element.
+fn without_time(page: &str) -> String {
+    let (before, rest) = page.split_once("class=\"printed\">").unwrap();
+    let (time, after) = rest.split_once('<').unwrap();
+    assert!(time.contains(':') && !rest.contains("class=\"printed\""), "{time}");
+    format!("{before}{after}")
+}
+
+/// Returns the texts of the page's body, one for each element.
+fn texts(page: &str) -> Vec<String> {
+    let body = page.split_once("<body>").unwrap().1;
+    let outside = body.split('<').filter_map(|part| Some(part.split_once('>')?.1.trim()));
+    let plain = |text: &str| {
+        let text = text.replace("&#60;", "<").replace("&#62;", ">").replace("&#34;", "\"").replace("&#39;", "'");
+        text.replace("&lt;", "<")
+            .replace("&gt;", ">")
+            .replace("&quot;", "\"")
+            .replace("&#38;", "&")
+            .replace("&amp;", "&")
+    };
+    outside.filter(|text| !text.is_empty()).map(plain).collect()
+}
+
+fn squeezed(text: &str) -> String {
+    text.chars().filter(|c| !c.is_whitespace()).collect()
+}
+
+#[test]
+fn each_profile_has_a_report_without_foreign_resources() {
+    let bench = Bench::new();
+    for path in profiles() {
+        for language in ["en", "de"] {
+            let arguments = ["report", path.to_str().unwrap(), "-o", &bench.file("r.html"), "--language", language];
+            let ran = bench.run(&[&arguments[..], &["--force"]].concat());
+            assert_eq!(ran.status, Some(0), "{path:?}: {ran:?}");
+            let page = bench.read("r.html");
+            assert!(page.starts_with("<!DOCTYPE html>") && page.contains(&format!("<html lang=\"{language}\">")));
+            for foreign in ["<script", "<link", "@import", "<iframe", "src=\"http", "href="] {
+                assert!(!page.contains(foreign), "{path:?}: {foreign}");
+            }
+            assert!(page.match_indices("url(").all(|(at, _)| page[at..].starts_with("url(data:")), "{path:?}");
+            assert_eq!(page.matches("http").count(), page.matches("http://www.w3.org/2000/svg").count(), "{path:?}");
+            assert_eq!(page.matches("@font-face").count(), 3);
+        }
+    }
+}
+
+/// Everything that was done to the encoder is on the page, with times and with old and new values.
+#[test]
+fn the_page_shows_the_history_of_a_device() {
+    let bench = Bench::new();
+    let fields = r#"[{"status":"C9","bytes":"0102031122060708"}]"#;
+    let Some(encoder) = bench.encoder(&["--fields", fields]) else { return };
+    let link = ["--link", &encoder.url, "--only-master", "--json"];
+    let run = |words: &[&str]| bench.run(&[words, &link].concat()).json();
+    let old = run(&["read", "hiperface", "field:0@3+2"])["value"].as_str().unwrap().to_owned();
+    run(&["write", "hiperface", "field:0@3+2", "C0FF", "--yes"]);
+    run(&["do", "hiperface", "set-position", "4096", "--yes", "--asset", "Axis 7"]);
+    let made = run(&["report", "hiperface", "-o", &bench.file("r.html")]);
+    let page = bench.read("r.html");
+    let texts = texts(&page);
+    let has = |text: &str| texts.iter().any(|own| own == text);
+    for text in [
+        "HIPERFACE report",
+        "field:0@3+2",
+        &old,
+        "C0FF",
+        "position",
+        "Axis 7",
+        "Status when read",
+        "Backups and saved profiles",
+    ] {
+        assert!(has(text), "{text}: {texts:?}");
+    }
+    let log = bench.run(&["log", "--json"]).out;
+    let entries: Vec<serde_json::Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    for entry in entries.iter().filter(|entry| ["write", "preset"].contains(&entry["what"].as_str().unwrap())) {
+        let time = entry["time"].as_str().unwrap();
+        let shown = format!("{} {} UTC", &time[..10], &time[11..19]);
+        assert!(has(&shown), "{shown}");
+        let backup = fs::read(entry["backup"].as_str().unwrap()).unwrap();
+        bench.write("backup", &backup);
+        let Ok(sum) = Command::new("sha256sum").arg(bench.path("backup")).output() else { continue };
+        let sum = String::from_utf8(sum.stdout).unwrap();
+        assert!(has(sum.split(' ').next().unwrap()), "{sum}");
+    }
+    let number = made["report_number"].as_str().unwrap();
+    assert!(has(number) && has(made["sha256"].as_str().unwrap()));
+    assert!(made["sha256"].as_str().unwrap().to_uppercase().starts_with(number));
+}
+
+#[test]
+fn everything_but_the_time_of_printing_depends_on_the_content() {
+    let bench = Bench::new();
+    bench.run(&["save", "hiperface", "--link", "sim:", "-o", &bench.file("a.ron")]);
+    let report = |out: &str, more: &[&str]| {
+        let file = bench.file(out);
+        bench.run(&[&["report", &bench.file("a.ron"), "-o", &file, "--json"], more].concat())
+    };
+    let first = report("1.html", &[]).json();
+    std::thread::sleep(std::time::Duration::from_millis(1100));
+    let second = report("2.html", &[]).json();
+    let (one, two) = (bench.read("1.html"), bench.read("2.html"));
+    assert_ne!(one, two);
+    assert_eq!(without_time(&one), without_time(&two));
+    assert_eq!(first["sha256"], second["sha256"]);
+    assert!(one.contains(FIELD));
+    // Another content has another number.
+    let changed = bench.read("a.ron").replacen("45 4D 44", "58 4D 44", 1);
+    let other = bench.write("b.ron", changed);
+    let compared =
+        bench.run(&["report", &other, "-o", &bench.file("3.html"), "--compare", &bench.file("a.ron"), "--json"]);
+    assert_ne!(compared.json()["sha256"], first["sha256"]);
+    let page = texts(&bench.read("3.html"));
+    let at = page.iter().position(|text| text == "field:0@0+1").unwrap();
+    assert_eq!(&page[at..at + 3], ["field:0@0+1", "58", "45"]);
+    assert!(page.iter().any(|text| text == "Differences to a.ron"), "{page:?}");
+    // The asset is content.
+    assert_ne!(report("4.html", &["--asset", "Axis 1"]).json()["sha256"], first["sha256"]);
+}
+
+#[test]
+fn a_report_that_cannot_be_made_leaves_no_file() {
+    let bench = Bench::new();
+    let out = bench.file("r.html");
+    bench.run(&["report", &bench.file("missing.ron"), "-o", &out]).fails(1, &["missing.ron"]);
+    let broken = bench.write("broken.ron", "(schema: 1");
+    bench.run(&["report", &broken, "-o", &out]).fails(1, &["broken.ron"]);
+    bench.run(&["report", "hiperface", "-o", &out, "--link", "serial:/nowhere"]).fails(1, &["/nowhere"]);
+    bench.run(&["report", "toaster", "-o", &out, "--link", "sim:"]).fails(2, &["toaster", "hiperface"]);
+    let profile = bench.file("a.ron");
+    bench.run(&["save", "hiperface", "--link", "sim:", "-o", &profile]);
+    bench.run(&["report", &profile, "-o", &bench.file("r.txt")]).fails(2, &[".html", ".pdf"]);
+    bench.run(&["report", &profile, "-o", &out, "--compare", &broken]).fails(1, &["broken.ron"]);
+    assert!(!bench.path("r.html").exists() && !bench.path("r.txt").exists());
+    // An existing file is replaced without a terminal, and this is reported.
+    bench.write("r.html", "before");
+    let ran = bench.run(&["report", &profile, "-o", &out]);
+    assert!(ran.status == Some(0) && ran.err.contains("already existed and was replaced"), "{ran:?}");
+    assert_ne!(bench.read("r.html"), "before");
+}
+
+/// An access code is used to read the field, and is not in the report.
+#[test]
+fn access_codes_are_in_no_report() {
+    let bench = Bench::new();
+    let change = ["do", "hiperface", "change-code", "2", "A7", "--yes", "--link", "sim:"];
+    assert_eq!(bench.run(&change).status, Some(0));
+    for name in ["r.html", "r.pdf"] {
+        let ran = bench.run(&["report", "hiperface", "--link", "sim:", "--code", "0=55", "-o", &bench.file(name)]);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+    }
+    let page = texts(&bench.read("r.html"));
+    assert!(page.iter().all(|text| !["55", "A7", "0x55", "0xA7"].contains(&text.as_str())), "{page:?}");
+}
+
+/// The PDF document has the same texts as the page.
+#[test]
+fn the_pdf_document_has_the_texts_of_the_page() {
+    if Command::new("pdftotext").arg("-v").output().is_err() {
+        return skip("pdftotext is not installed");
+    }
+    let bench = Bench::new();
+    for path in profiles() {
+        for language in ["en", "de"] {
+            for name in ["r.html", "r.pdf"] {
+                let out = bench.file(name);
+                let ran = bench.run(&["report", path.to_str().unwrap(), "-o", &out, "--language", language, "--force"]);
+                assert_eq!(ran.status, Some(0), "{path:?}: {ran:?}");
+            }
+            // In the order of the content, so that the lines of a cell are together.
+            let read = Command::new("pdftotext").args(["-raw", &bench.file("r.pdf"), "-"]).output().unwrap();
+            let document = squeezed(&String::from_utf8(read.stdout).unwrap());
+            for text in texts(&bench.read("r.html")) {
+                // The time of printing may be a second later.
+                if !text.contains(" UTC") {
+                    assert!(document.contains(&squeezed(&text)), "{path:?} {language}: {text:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The numbers of `analyse` stand beside their limits, with a verdict.
+#[test]
+fn a_capture_has_a_report_with_limits() {
+    let bench = Bench::new();
+    let capture = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals/offset-gain-phase.csv");
+    let capture = capture.to_str().unwrap();
+    let found = bench.run(&["analyse", capture, "--json"]).json();
+    let made = bench.run(&["report", capture, "-o", &bench.file("r.html"), "--json"]);
+    assert_eq!(made.status, Some(0), "{made:?}");
+    let page = bench.read("r.html");
+    let rows = texts(&page);
+    let after = |label: &str| {
+        let at = rows.iter().position(|text| text == label).unwrap_or_else(|| panic!("{label}: {rows:?}"));
+        rows[at + 1..at + 5].to_vec()
+    };
+    let gain = format!("{:.4}", found["gain_ratio"].as_f64().unwrap());
+    assert_eq!(after("Gain ratio cos/sin")[..2], [gain, "0.9 … 1.1".to_owned()]);
+    let phase = format!("{:.2}", found["phase_error_deg"].as_f64().unwrap());
+    assert_eq!(after("Phase error")[..3], [phase, "°".to_owned(), "± 5".to_owned()]);
+    assert_eq!(page.matches("<svg").count(), 4, "signals, Lissajous, spectrum, position error");
+    // Other limits: 0.8 V to 1.2 V peak to peak.
+    let ran = bench.run(&["report", capture, "-o", &bench.file("r.html"), "--limits", "afs-afm60", "--language", "de"]);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert!(texts(&bench.read("r.html")).iter().any(|text| text == "0,8 … 1,2"));
+    bench.run(&["report", "missing.csv", "-o", &bench.file("x.html")]).fails(1, &["missing.csv"]);
+    bench.run(&["report", capture, "-o", &bench.file("x.html"), "--compare", "b.ron"]).fails(1, &["b.ron"]);
+    assert!(!bench.path("x.html").exists());
+}
+
+#[test]
+fn the_settings_name_the_company() {
+    let bench = Bench::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let logo = root.join("assets/icon/64.png");
+    let profile = root.join("profiles/hiperface/multiturn-skm36.ron");
+    fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
+    let settings = |logo: &str| {
+        let text = format!("(company: Some(\"Miller & Sons\"), company_logo: Some({logo:?}))");
+        bench.write("config/encoder-studio/settings.ron", text);
+    };
+    settings(logo.to_str().unwrap());
+    for name in ["r.html", "r.pdf"] {
+        let ran = bench.run(&["report", profile.to_str().unwrap(), "-o", &bench.file(name)]);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+    }
+    let page = bench.read("r.html");
+    assert!(page.contains("src=\"data:image/png;base64,iVBOR"), "a PNG file begins with these bytes");
+    assert!(texts(&page).iter().any(|text| text == "Miller & Sons"));
+    settings("/missing.png");
+    bench.run(&["report", profile.to_str().unwrap(), "-o", &bench.file("x.html")]).fails(1, &["missing.png"]);
+    assert!(!bench.path("x.html").exists());
+}

@@ -1,0 +1,110 @@
+//! *Report…*: the same page set as on the command line.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, Severity, Studio};
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
+
+use crate::support::Desk;
+
+fn is_told(studio: &Studio, id: &str) -> bool {
+    studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == id))
+}
+
+/// Returns the page without the time of printing.
+fn without_time(page: &str) -> String {
+    let (before, rest) = page.split_once("class=\"printed\">").unwrap();
+    format!("{before}{}", rest.split_once('<').unwrap().1)
+}
+
+/// Asks for the report of the device that is shown.
+fn ask(desk: &mut Desk) -> FileQuestion {
+    let id = desk.studio.selected_device().unwrap().id();
+    desk.act(Action::Command(id, DeviceCommand::AskReport));
+    desk.studio.take_file_question().unwrap()
+}
+
+/// Chooses a file for the report of the device that is shown, and waits until it is written.
+fn report(desk: &mut Desk, path: &Path) {
+    let question = ask(desk);
+    assert!(matches!(question, FileQuestion::Report { .. }), "{question:?}");
+    desk.act(Action::Chosen(question, path.to_owned()));
+    let path = path.to_owned();
+    desk.until("the report is written", move |_| path.exists());
+}
+
+#[test]
+fn the_window_and_the_command_line_make_the_same_report() {
+    for (language, word) in [(Language::English, "en"), (Language::German, "de")] {
+        let mut desk = Desk::new_form("");
+        desk.act(Action::SetLanguage(language));
+        let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
+        for name in [
+            "hiperface/multiturn-skm36.ron",
+            "biss/servo-motor-data.ron",
+            "ssi/afm60s.ron",
+            "interbus/packaging-machine.ron",
+            "hiperdrive/spindle-2-mm-in-0.1-mm.ron",
+        ] {
+            let profile = profiles.join(name);
+            desk.act(Action::Open(profile.clone()));
+            let file = profile.file_name().unwrap().to_str().unwrap().to_owned();
+            desk.until("it is open", |studio| {
+                studio.selected_device().is_some_and(|own| own.data_source().contains(&file))
+            });
+            let own = desk.outside.path(&format!("{word}-{file}.html"));
+            report(&mut desk, &own);
+            let other = desk.outside.path("other.html");
+            let home = desk.outside.path("home");
+            let ran = Command::new(env!("CARGO_BIN_EXE_encoder-studio"))
+                .args(["report", "--language", word, "--force", "-o"])
+                .args([&other, &profile])
+                .env("HOME", &home)
+                .env("XDG_DATA_HOME", &home)
+                .env("XDG_CONFIG_HOME", &home)
+                .output()
+                .unwrap();
+            assert!(ran.status.success(), "{ran:?}");
+            let [own, other] = [own, other].map(|path| fs::read_to_string(path).unwrap());
+            assert_eq!(without_time(&own), without_time(&other), "{name} {word}");
+        }
+    }
+}
+
+#[test]
+fn a_report_of_a_device_shows_what_was_read() {
+    let mut desk = Desk::new_form("");
+    let requests = desk.wire().count(0x4A);
+    let path = desk.outside.path("device.html");
+    report(&mut desk, &path);
+    let page = fs::read_to_string(path).unwrap();
+    assert!(page.contains("GB0450179") && page.contains("45 4D 44 37 31 4B"));
+    assert_eq!(desk.wire().count(0x4A), requests, "nothing is read for it");
+    let path = desk.outside.path("device.pdf");
+    report(&mut desk, &path);
+    assert!(fs::read(path).unwrap().starts_with(b"%PDF"));
+}
+
+#[test]
+fn a_report_that_cannot_be_made_names_the_reason() {
+    let mut desk = Desk::new_form("");
+    let question = ask(&mut desk);
+    desk.act(Action::Chosen(question, desk.outside.path("report.txt")));
+    assert!(is_told(&desk.studio, "report.extension"));
+    let profile = desk.outside.path("mine.ron");
+    desk.ask(Hiperface::Save(profile.clone()));
+    desk.until("it is saved", |studio| is_told(studio, "session.saved"));
+    desk.act(Action::Open(profile));
+    desk.until("it is open", |studio| {
+        studio.selected_device().is_some_and(|own| own.data_source().contains("mine.ron"))
+    });
+    desk.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0x58] });
+    let question = ask(&mut desk);
+    desk.act(Action::Chosen(question, desk.outside.path("mine.html")));
+    assert!(is_told(&desk.studio, "report.unsaved"));
+    assert!(!desk.outside.path("mine.html").exists());
+    let last = desk.studio.services.log.current().unwrap();
+    assert_eq!(last.severity, Severity::Error);
+}
