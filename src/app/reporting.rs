@@ -55,7 +55,7 @@ impl Studio {
                     Some(Ok(body)) => body,
                 };
                 let Source::Link(url) = device.source() else { return Err(Text::new("report.unsaved")) };
-                let reading = DeviceReading { body, status: None };
+                let reading = DeviceReading { body, status: device.reported_status() };
                 Ok(ReportRequest::for_device(url, self.services.world.kinds, reading, language))
             }
         }

@@ -81,6 +81,7 @@ fn a_report_of_a_device_shows_what_was_read() {
     report(&mut desk, &path);
     let page = fs::read_to_string(path).unwrap();
     assert!(page.contains("GB0450179") && page.contains("45 4D 44 37 31 4B"));
+    assert!(page.contains("No errors or warnings."));
     assert_eq!(desk.wire().count(0x4A), requests, "nothing is read for it");
     let path = desk.outside.path("device.pdf");
     report(&mut desk, &path);

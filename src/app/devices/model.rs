@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::app::action::{OpenedConnection, ReadError, ReviewAction};
 use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
+use crate::app::report::StatusLine;
 use crate::app::review::ReviewSheet;
 use crate::app::services::{Services, StudioEnvironment};
 use crate::app::session::{DeviceHistory, HasDraft, HasMemory, HasProfile, HasSession, Kind, SessionEvents};
@@ -172,6 +173,11 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Returns a message for each value that a profile requires but that has not been read.
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
         self.edited_body().map(Ok).or_else(|| self.memory()?.last_read_profile())
+    }
+
+    /// Returns the errors and warnings that were read last, for a report. Returns `None` if they have not been read.
+    fn reported_status(&self) -> Option<Vec<StatusLine>> {
+        None
     }
 
     /// Adopts a profile. Depending on the kind of device, this opens the review of a write or edits the layout.

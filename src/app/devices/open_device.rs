@@ -13,6 +13,7 @@ use super::model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
 use crate::app::action::{ConnectAttempt, OpenFailure, OpenedSession, TaskResult};
 use crate::app::live_session::JobProgress;
 use crate::app::recorder::Recorder;
+use crate::app::report::StatusLine;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{
     DraftOutcome, HasDraft, Kind, ProfileFile, SaveRequest, SessionEvents, SessionState, Source,
@@ -108,6 +109,8 @@ pub trait OpenDevice: Any {
     fn edited_body(&self) -> Option<Body>;
     #[doc(hidden)]
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
+    #[doc(hidden)]
+    fn reported_status(&self) -> Option<Vec<StatusLine>>;
     #[doc(hidden)]
     fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
@@ -312,6 +315,10 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
         DeviceModel::comparable_body(self)
+    }
+
+    fn reported_status(&self) -> Option<Vec<StatusLine>> {
+        DeviceModel::reported_status(self)
     }
 
     fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

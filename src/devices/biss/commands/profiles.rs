@@ -6,7 +6,7 @@ use super::BissCommands;
 use super::plan::{commit_plan, plan_report, prepare_plan};
 use super::run::Runner;
 use crate::app::Text;
-use crate::app::report::{DeviceReading, StatusLine};
+use crate::app::report::DeviceReading;
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
@@ -17,12 +17,11 @@ use crate::cli::profiles::{
 use crate::cli::undo::single_bytes;
 use crate::cli::{Result, Success};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
-use crate::devices::biss::procedures::FlagRegister;
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity, RegisterRange};
 use crate::devices::biss::protocol::DeviceMode;
 use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::status_lines;
 use crate::profile::{Body, ChangedItem};
-use crate::report::Mark;
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -67,17 +66,7 @@ impl ProfileCommands for BissCommands {
         let mut runner = Runner::open(common)?;
         let status = result_of!(runner.run(BissJob::Status)?, BissOutput::Status(status) => *status);
         let profile = result_of!(runner.run(BissJob::Save)?, BissOutput::Saved(profile) => *profile);
-        let lines = |bits: Option<FlagRegister>, mark: Mark| {
-            let set = bits.into_iter().flat_map(|bits| bits.set);
-            set.map(move |(bit, name)| StatusLine {
-                mark,
-                code: format!("b{bit}"),
-                text: words::flag_text(name.as_ref()),
-                advice: Vec::new(),
-            })
-        };
-        let lines = lines(status.errors, Mark::Bad).chain(lines(status.warnings, Mark::Warning));
-        let status = Some(lines.collect());
+        let status = Some(status_lines(&status));
         Ok(DeviceReading { body: Body::new(profile), status })
     }
 

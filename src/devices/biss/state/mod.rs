@@ -35,5 +35,6 @@ pub use guide::{GuideStep, ProcedureEnd, ProcedureRun, StepStatus};
 pub use mark::ValidityMark;
 pub use memory::{EditedRuns, Memory, MemoryError, area_addresses};
 pub use record::{FrameStream, Record};
+pub use report::status_lines;
 pub use review::{Review, ReviewState};
 pub use table::{Group, RegisterEntry, Row, Table};

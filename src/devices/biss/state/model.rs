@@ -2,8 +2,9 @@
 
 use std::convert::Infallible;
 
-use super::{BissAction, Encoder};
+use super::{BissAction, Encoder, status_lines};
 use crate::app::action::OpenedConnection;
+use crate::app::report::StatusLine;
 use crate::app::services::{JobState, Services};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
@@ -29,6 +30,10 @@ impl DeviceModel for Encoder {
 
     fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
+    }
+
+    fn reported_status(&self) -> Option<Vec<StatusLine>> {
+        self.status.as_ref().map(status_lines)
     }
 
     fn position_job(&self) -> BissJob {

@@ -6,10 +6,11 @@ use super::explain as explained;
 use super::{Encoder, TEXTS, words};
 use crate::app::Text;
 use crate::app::explain::literal_text;
-use crate::app::report::{ReportContent, ReportContext, byte_table};
+use crate::app::report::{ReportContent, ReportContext, StatusLine, byte_table};
 use crate::app::session::Session;
 use crate::bits::hex;
 use crate::devices::biss::jobs::{load_descriptions, logbook_key};
+use crate::devices::biss::procedures::{EncoderStatus, FlagRegister};
 use crate::devices::biss::profile::{BissProfile, DataImage};
 use crate::devices::biss::protocol::{PulseVoltage, RegisterAddress, WiegandResult};
 use crate::profile::ProfileDocument;
@@ -34,6 +35,20 @@ pub(super) fn content(
     sections.extend(profile.data.iter().map(|area| data_section(context, profile, area)));
     let key = logbook_key(&identity.kind(), &identity.serial_number, false);
     Ok(ReportContent { title, key: Some(key), sections })
+}
+
+/// Returns the errors and warnings of an encoder for a report.
+pub fn status_lines(status: &EncoderStatus) -> Vec<StatusLine> {
+    let lines = |bits: &Option<FlagRegister>, mark: Mark| {
+        let set = bits.as_ref().map(|bits| bits.set.clone()).unwrap_or_default();
+        set.into_iter().map(move |(bit, name)| StatusLine {
+            mark,
+            code: format!("b{bit}"),
+            text: explained::flag_text(name.as_ref()),
+            advice: Vec::new(),
+        })
+    };
+    lines(&status.errors, Mark::Bad).chain(lines(&status.warnings, Mark::Warning)).collect()
 }
 
 fn identity_section(context: &ReportContext<'_>, profile: &BissProfile) -> Section {

@@ -5,22 +5,19 @@ use serde_json::json;
 use super::HiperdriveCommands;
 use super::plan::{commit_plan, plan_report, prepare_plan};
 use super::run::Runner;
-use crate::app::Text;
-use crate::app::report::{DeviceReading, StatusLine};
+use crate::app::report::DeviceReading;
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{UnrestoredItems, profile_to_restore, restore_options, save_profile, write_restore};
 use crate::cli::{Result, Success};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
-use crate::devices::hiperdrive::procedures::DriveStatus;
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
+use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
-use crate::devices::hiperdrive::protocol::{ErrorCode, ParameterNumber, StatusBit};
-use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::status_lines;
 use crate::profile::{Body, ChangedItem};
-use crate::report::Mark;
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -109,32 +106,6 @@ impl ProfileCommands for HiperdriveCommands {
             other => format!("{other}."),
         })
     }
-}
-
-/// Returns the errors of a drive, newest first, and whether it is outside its limits. Errors that were acknowledged are
-/// earlier ones.
-fn status_lines(drive: &DriveStatus) -> Vec<StatusLine> {
-    let place = TEXTS.text("report.hd_drive").with("drive", drive.number.get());
-    let present = drive.present_error_count();
-    let error = |(at, code): (usize, &ErrorCode)| {
-        let explained = words::error_code_explanation(*code);
-        StatusLine {
-            mark: if at < present { Mark::Bad } else { Mark::None },
-            code: format!("0x{:04X}", code.code()),
-            text: Text::new("plain.words").with_list("words", [place.clone(), explained.name]),
-            advice: vec![explained.cause, explained.remedy],
-        }
-    };
-    let mut lines: Vec<StatusLine> = drive.buffer.iter().enumerate().map(error).collect();
-    if drive.status.is_set(StatusBit::PositionLimit) {
-        lines.push(StatusLine {
-            mark: Mark::Warning,
-            code: format!("0x{:04X}", drive.status.to_u16()),
-            text: Text::new("plain.words").with_list("words", [place, words::status_bit(StatusBit::PositionLimit)]),
-            advice: Vec::new(),
-        });
-    }
-    lines
 }
 
 fn read_profile(common: &CommonArgs) -> Result<HiperdriveProfile> {

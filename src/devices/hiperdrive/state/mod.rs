@@ -45,6 +45,7 @@ pub use connect_form::{HiperdriveForm, HiperdriveLinkKind, VirtualHub};
 pub use discovery::{Discovery, DiscoveryAction, DiscoveryFinder, DiscoveryStub, FoundDevice};
 pub use moves::DriveMotion;
 pub use record::Record;
+pub use report::status_lines;
 pub use request_state::RequestState;
 pub use review::{Review, ReviewState};
 pub use rows::Row;

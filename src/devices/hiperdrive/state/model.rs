@@ -2,10 +2,11 @@
 
 use std::convert::Infallible;
 
-use super::{HiperdriveAction, HiperdriveDevice};
+use super::{HiperdriveAction, HiperdriveDevice, status_lines};
 use crate::app::action::OpenedConnection;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
+use crate::app::report::StatusLine;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{Phase, SessionEvents};
 use crate::app::{
@@ -44,6 +45,10 @@ impl DeviceModel for HiperdriveDevice {
 
     fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
+    }
+
+    fn reported_status(&self) -> Option<Vec<StatusLine>> {
+        Some(self.status.as_ref()?.drives.iter().flat_map(status_lines).collect())
     }
 
     fn position_job(&self) -> HiperdriveJob {

@@ -3,14 +3,15 @@
 use super::rows::Row;
 use super::{HiperdriveDevice, TEXTS};
 use crate::app::Text;
-use crate::app::report::{ReportContent, ReportContext};
+use crate::app::report::{ReportContent, ReportContext, StatusLine};
 use crate::app::session::Session;
 use crate::devices::hiperdrive::jobs::logbook_key;
+use crate::devices::hiperdrive::procedures::DriveStatus;
 use crate::devices::hiperdrive::profile::{HiperdriveProfile, Item, ProfileDrive};
-use crate::devices::hiperdrive::protocol::{DriveNumber, Topology};
+use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, StatusBit, Topology};
 use crate::devices::hiperdrive::state::explain;
 use crate::profile::ProfileDocument;
-use crate::report::{Block, CellStyle, Fact, Section, Table};
+use crate::report::{Block, CellStyle, Fact, Mark, Section, Table};
 
 pub(super) fn content(
     profile: &HiperdriveProfile,
@@ -42,6 +43,32 @@ pub(super) fn content(
     sections.extend(unit.drives().into_iter().map(|drive| drive_section(context, profile, &unit, drive)));
     let key = (!identity.serial_number.is_empty()).then(|| logbook_key(category, &identity.serial_number, false));
     Ok(ReportContent { title, key, sections })
+}
+
+/// Returns the errors of a drive, newest first, and whether it is outside its limits. Errors that were acknowledged are
+/// earlier ones.
+pub fn status_lines(drive: &DriveStatus) -> Vec<StatusLine> {
+    let place = TEXTS.text("report.hd_drive").with("drive", drive.number.get());
+    let present = drive.present_error_count();
+    let error = |(at, code): (usize, &ErrorCode)| {
+        let explained = explain::error_code_explanation(*code);
+        StatusLine {
+            mark: if at < present { Mark::Bad } else { Mark::None },
+            code: format!("0x{:04X}", code.code()),
+            text: Text::new("plain.words").with_list("words", [place.clone(), explained.name]),
+            advice: vec![explained.cause, explained.remedy],
+        }
+    };
+    let mut lines: Vec<StatusLine> = drive.buffer.iter().enumerate().map(error).collect();
+    if drive.status.is_set(StatusBit::PositionLimit) {
+        lines.push(StatusLine {
+            mark: Mark::Warning,
+            code: format!("0x{:04X}", drive.status.to_u16()),
+            text: Text::new("plain.words").with_list("words", [place, explain::status_bit(StatusBit::PositionLimit)]),
+            advice: Vec::new(),
+        });
+    }
+    lines
 }
 
 fn drive_section(

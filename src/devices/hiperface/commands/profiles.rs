@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::HiperfaceCommands;
 use super::write::{commit_plan, operations_json, plan_text};
-use crate::app::report::{DeviceReading, StatusLine};
+use crate::app::report::DeviceReading;
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
@@ -18,10 +18,10 @@ use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownMeaningField};
-use crate::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
+use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::status_lines;
 use crate::profile::{Body, ChangedItem};
-use crate::report::Mark;
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -83,13 +83,7 @@ impl ProfileCommands for HiperfaceCommands {
         let codes = result_of!(runner.run(HiperfaceJob::Status)?, HiperfaceOutput::Status(codes) => codes);
         let saved = read_saved_profile(&mut runner, SaveOptions::default())?;
         report_locked_fields(output, &saved, "reported without its bytes");
-        let line = |code: &StatusCode| StatusLine {
-            mark: if code.is_warning() { Mark::Warning } else { Mark::Bad },
-            code: format!("{:02X}h", code.byte()),
-            text: words::status_code_name(*code),
-            advice: Vec::new(),
-        };
-        let status = Some(codes.iter().map(line).collect());
+        let status = Some(status_lines(&codes));
         Ok(DeviceReading { body: Body::new(saved.profile), status })
     }
 

@@ -34,6 +34,7 @@ pub use connect_form::{LinkForm, LinkKind};
 pub use encoder::Encoder;
 pub use position_entry::{PositionEntry, PositionUnit, position_text};
 pub use record::{Record, watch_name};
+pub use report::status_lines;
 pub use review::{Review, ReviewState};
 pub use rules::ActionPermission;
 pub use search::{EncoderSearchForm, Search, SearchAction};

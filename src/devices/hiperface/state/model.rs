@@ -2,8 +2,9 @@
 
 use std::convert::Infallible;
 
-use super::{Encoder, HiperfaceAction};
+use super::{Encoder, HiperfaceAction, status_lines};
 use crate::app::action::OpenedConnection;
+use crate::app::report::StatusLine;
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, PrepareFn, Recording, SineCosineSource, Tab, Text};
@@ -36,6 +37,10 @@ impl DeviceModel for Encoder {
 
     fn handle_result(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
+    }
+
+    fn reported_status(&self) -> Option<Vec<StatusLine>> {
+        self.codes.as_deref().map(status_lines)
     }
 
     fn position_job(&self) -> HiperfaceJob {

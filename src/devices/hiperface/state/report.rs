@@ -5,13 +5,14 @@ use std::ops::Range;
 use super::TEXTS;
 use super::explain as words;
 use crate::app::Text;
-use crate::app::report::{ReportContent, ReportContext, byte_table};
+use crate::app::report::{ReportContent, ReportContext, StatusLine, byte_table};
 use crate::devices::hiperface::jobs::{device_key, encoder_types};
 use crate::devices::hiperface::procedures::{Identity, recorded_identity};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile};
+use crate::devices::hiperface::protocol::StatusCode;
 use crate::drawing::{Drawing, DrawingLabel, DrawingShape, LabelAlign};
 use crate::profile::ProfileDocument;
-use crate::report::{Block, CellStyle, Fact, Section};
+use crate::report::{Block, CellStyle, Fact, Mark, Section};
 
 /// Bytes in a block of the memory.
 const BLOCK_BYTES: usize = 16;
@@ -38,6 +39,17 @@ pub(super) fn content(
     sections.extend(label_section(context, &identity));
     sections.push(memory_section(context, profile));
     Ok(ReportContent { title, key: Some(device_key(&identity, false)), sections })
+}
+
+/// Returns the status codes of an encoder for a report.
+pub fn status_lines(codes: &[StatusCode]) -> Vec<StatusLine> {
+    let line = |code: &StatusCode| StatusLine {
+        mark: if code.is_warning() { Mark::Warning } else { Mark::Bad },
+        code: format!("{:02X}h", code.byte()),
+        text: words::status_code_name(*code),
+        advice: Vec::new(),
+    };
+    codes.iter().map(line).collect()
 }
 
 fn identity_section(context: &ReportContext<'_>, identity: &Identity) -> Section {
