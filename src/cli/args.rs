@@ -93,7 +93,7 @@ pub enum Command {
     /// Save all restorable values in a profile.
     Save(SaveArgs),
     /// Write a report of a profile, a device or a capture: all values with their meaning, the history in the logbook, and the
-    /// differences to a profile. Reading a device changes nothing.
+    /// differences to a profile. A device is read in the same way as by save.
     Report(ReportArgs),
     /// Compare two profiles, or a profile with a device.
     Diff(DiffArgs),

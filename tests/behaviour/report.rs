@@ -201,6 +201,23 @@ fn the_pdf_document_has_the_texts_of_the_page() {
     }
 }
 
+/// Steps of 0.1 degree, 3600 a turn, with limits at half a turn either way.
+#[test]
+fn the_limits_of_a_drive_are_in_turns() {
+    let bench = Bench::new();
+    let profile = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive/rotary-axis-in-0.1-degree.ron");
+    for (language, travel) in [
+        ("en", "-0.500 to 0.500 turns, in total 1.000 turns"),
+        ("de", "-0,500 bis 0,500 Umdrehungen, insgesamt 1,000 Umdrehungen"),
+    ] {
+        let out = bench.file("r.html");
+        let ran = bench.run(&["report", profile.to_str().unwrap(), "-o", &out, "--language", language]);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        let page = texts(&bench.read("r.html"));
+        assert!(page.iter().any(|text| text == travel), "{page:?}");
+    }
+}
+
 /// The numbers of `analyse` stand beside their limits, with a verdict.
 #[test]
 fn a_capture_has_a_report_with_limits() {

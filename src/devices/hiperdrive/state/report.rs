@@ -1,6 +1,7 @@
 //! Values of an adapter or a hub in a report: identities, the travel of each drive, and all parameters.
 
 use super::rows::Row;
+use super::ruler::PositionUnit;
 use super::{HiperdriveDevice, TEXTS};
 use crate::app::Text;
 use crate::app::report::{ReportContent, ReportContext, StatusLine};
@@ -79,10 +80,31 @@ fn drive_section(
 ) -> Section {
     let title = context.say(TEXTS.text("report.hd_drive").with("drive", drive.get()));
     let mut section = Section::new(title);
-    if let Some(own) = profile.drive(drive) {
-        section = section.with(Block::Facts(drive_facts(context, own)));
+    let identity = profile.drive(drive).map(|own| drive_facts(context, own)).unwrap_or_default();
+    let facts: Vec<Fact> = identity.into_iter().chain(travel_fact(context, profile, unit, drive)).collect();
+    if !facts.is_empty() {
+        section = section.with(Block::Facts(facts));
     }
     section.with(Block::Table(parameter_table(context, profile, unit.rows(Some(drive)))))
+}
+
+/// Returns the limits of travel of a drive in turns of its shaft, and the distance between them.
+fn travel_fact(
+    context: &ReportContext<'_>,
+    profile: &HiperdriveProfile,
+    unit: &HiperdriveDevice,
+    drive: DriveNumber,
+) -> Option<Fact> {
+    let (lower, upper) = profile.image.limits(drive)?;
+    let ruler = unit.edited_ruler(drive);
+    let turns = |steps| ruler.from_steps(steps, PositionUnit::Turns);
+    let text = TEXTS
+        .text("report.hd_travel")
+        .with_number("lower", turns(lower)?, 3)
+        .with_number("upper", turns(upper)?, 3)
+        .with_number("span", turns(upper - lower)?, 3)
+        .with_text("unit", TEXTS.text(PositionUnit::Turns.unit()));
+    Some(context.fact(TEXTS.text("hd_travel.title"), text))
 }
 
 fn drive_facts(context: &ReportContext<'_>, drive: &ProfileDrive) -> Vec<Fact> {
@@ -93,6 +115,8 @@ fn drive_facts(context: &ReportContext<'_>, drive: &ProfileDrive) -> Vec<Fact> {
         ("hd_device.serial", &drive.serial_number),
         ("hd_device.version", &drive.version),
     ];
+    // A profile that was written by hand has no identity.
+    let facts = facts.into_iter().filter(|(_, value)| !value.is_empty());
     variant.into_iter().chain(facts.map(|(label, value)| context.code(TEXTS.text(label), value))).collect()
 }
 
