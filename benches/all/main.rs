@@ -5,6 +5,7 @@
 
 mod analyse;
 mod biss;
+mod growth;
 mod hiperdrive;
 mod history;
 mod interbus;
@@ -37,6 +38,7 @@ type Benchmark = (&'static str, fn(&[String]));
 const ALL: &[Benchmark] = &[
     ("analyse", |_| analyse::run()),
     ("biss", |_| biss::run()),
+    ("growth", growth::run),
     ("hiperdrive", |_| hiperdrive::run()),
     ("history", history::run),
     ("interbus", |_| interbus::run()),

@@ -32,7 +32,7 @@ const FRAME: Duration = Duration::from_micros(16_667);
 /// Time for which a tab is shown.
 const SHOWN: Duration = Duration::from_secs(1);
 
-struct Shown(Window);
+pub(crate) struct Shown(Window);
 
 impl eframe::App for Shown {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
@@ -40,7 +40,7 @@ impl eframe::App for Shown {
     }
 }
 
-type Screen = Harness<'static, Shown>;
+pub(crate) type Screen = Harness<'static, Shown>;
 
 pub(crate) fn run(parts: &[String]) {
     let seconds = parts.first().and_then(|word| word.parse().ok()).unwrap_or(60);
@@ -89,26 +89,37 @@ pub(crate) fn run(parts: &[String]) {
     }
 }
 
-/// Returns a window in which all virtual devices are polled.
+/// Returns a window in which all virtual devices are polled, and sine and cosine are recorded.
 fn connected(folder: &Path) -> Screen {
+    let mut screen = open_window(folder);
+    connect_devices(&mut screen, DEVICES);
+    screen.state().0.studio().mailbox().send(Action::tool(SignalsAction::Source(SourceAction::Start)));
+    screen
+}
+
+/// Returns the window as after the start of the program, with its files in a folder.
+pub(crate) fn open_window(folder: &Path) -> Screen {
     let environment = StudioEnvironment::production(Store::at_root(folder), program().studio);
     let mut studio = Studio::new(environment, Arc::new(|| {}));
     studio.start_with(None, None);
-    let mut screen: Screen = Harness::builder().with_size([1280.0, 800.0]).build_eframe(|cc| {
+    Harness::builder().with_size([1280.0, 800.0]).build_eframe(|cc| {
         install_fonts(&cc.egui_ctx);
         Shown(Window::new(studio, ThemeData::built_in().unwrap(), program().tabs))
-    });
-    until(&mut screen, "the first device", |studio| polled(studio) == 1);
-    for (tab, count) in TABS[1..DEVICES].iter().zip(2..) {
+    })
+}
+
+/// Connects virtual devices, up to one of each kind, and polls them as fast as their links allow. The first one is
+/// connected when the program starts.
+pub(crate) fn connect_devices(screen: &mut Screen, wanted: usize) {
+    until(screen, "the first device", |studio| polled(studio) == 1);
+    for (tab, count) in TABS[1..wanted].iter().zip(2..) {
         let mailbox = screen.state().0.studio().mailbox();
         mailbox.send(Action::ShowTab(*tab));
         mailbox.send(Action::Connect(Connect::Open));
         mailbox.send(Action::Connect(Connect::Use("sim:".to_owned())));
         mailbox.send(Action::Connect(Connect::Connect));
-        until(&mut screen, "a device is polled", |studio| polled(studio) == count);
+        until(screen, "a device is polled", |studio| polled(studio) == count);
     }
-    screen.state().0.studio().mailbox().send(Action::tool(SignalsAction::Source(SourceAction::Start)));
-    screen
 }
 
 /// Draws frames until a condition holds. Devices that are ready are polled as fast as their links allow.

@@ -47,6 +47,7 @@ pub(crate) fn run(parts: &[String]) {
     let mut child = display.start(program, &[], folder.path());
     thread::sleep(Duration::from_secs(3));
     println!("idle, connected to the virtual encoder: {:.2} % of a processor", busy(&child));
+    println!("resident memory of the same:            {:.0} MB", resident_mb(child.id()));
     end(&mut child);
     let mut child = display.start(program, &["--profile", "profiles/hiperface/multiturn-skm36.ron"], folder.path());
     thread::sleep(Duration::from_secs(3));
@@ -215,7 +216,10 @@ fn plot() {
                 let median = median(&mut took) as f64 / 1e3;
                 let most = took[took.len() - 1] as f64 / 1e3;
                 let text = format!(
-                    "the window with 4 × 10 M samples:       {median:.1} ms a picture, median, {most:.1} at most\n"
+                    "the window with 4 × 10 M samples:       {median:.1} ms a picture, median, {most:.1} at most; {:.0} MB resident, \
+                     {:.0} MB of raw samples and times\n",
+                    resident_mb(std::process::id()),
+                    (5 * SAMPLES * 8) as f64 / 1e6
                 );
                 fs::write(format!("{folder}/plot.txt"), text).unwrap();
                 self.times.clear();
@@ -284,6 +288,13 @@ fn wait_for_up_to(patience: Duration, mut look: impl FnMut() -> Option<u64>) -> 
         assert!(began.elapsed() < patience, "nothing in {patience:?}");
         thread::sleep(Duration::from_millis(5));
     }
+}
+
+/// Returns the resident memory of a process in megabytes.
+fn resident_mb(process: u32) -> f64 {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let kilobytes = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    kilobytes.trim().trim_end_matches(" kB").parse::<f64>().unwrap() * 1.024e-3
 }
 
 /// Returns the share of one processor over some seconds, in percent.
