@@ -6,20 +6,18 @@
 
 use std::fmt::Write as _;
 use std::hint::black_box;
-use std::path::Path;
 use std::time::Duration;
 
 use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::history::{ColumnPart, Grid, History, HistoryPicture, Kind};
-use encoder_studio::app::{FrameExplanation, Language, LogbookPage, Text, TraceFilter, TraceLog, TraceMatches};
+use encoder_studio::app::{FrameExplanation, Language, Text, TraceFilter, TraceLog, TraceMatches};
 use encoder_studio::bits::MaskedBytes;
 use encoder_studio::kinds::program;
 use encoder_studio::link::{Direction, TraceEntry};
 use encoder_studio::profile::ProfileDocument;
-use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Event, Logbook};
 use encoder_studio::units::Moment;
-use jiff::Timestamp;
 
+use crate::logbook::{fill, search, view};
 use crate::median;
 use crate::soak::{connect_devices, open_window};
 
@@ -175,56 +173,28 @@ fn trace() {
     print("trace: bytes alone, every frame again", &all);
 }
 
-/// Creates a logbook with this number of entries of twenty devices.
-fn fill(path: &Path, count: usize) {
-    let mut logbook = Logbook::open(path).unwrap();
-    for device in 0..20 {
-        let key = DeviceKey::new("hiperface", "SKM36", &format!("GB{device:05}"), false);
-        logbook.record(Timestamp::UNIX_EPOCH, &key, &Event::new(EntryKind::Connected, "serial:/dev/ttyUSB0")).unwrap();
-    }
-    drop(logbook);
-    let database = rusqlite::Connection::open(path).unwrap();
-    let columns = "what, kind, device_type, serial_number, is_virtual, items, planned_cycles, backup, bench, user, \
-                   version, asset";
-    let sql = format!(
-        "WITH RECURSIVE n(i) AS (SELECT 21 UNION ALL SELECT i + 1 FROM n WHERE i < {count})
-         INSERT INTO event (uid, at, description, {columns})
-         SELECT lower(hex(randomblob(16))), strftime('%Y-%m-%dT%H:%M:%SZ', 1764000000 + i, 'unixepoch'),
-                'field 3: offset ' || i || ': 0 → ' || (i % 256), {columns}
-         FROM n JOIN event ON event.id = i % 20 + 1"
-    );
-    database.execute_batch(&sql).unwrap();
-}
-
 fn logbook() {
-    let (mut open, mut search, mut scan) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut open, mut found, mut scan) = (Vec::new(), Vec::new(), Vec::new());
     for count in [1_000, 10_000, 100_000] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("logbook.sqlite");
         fill(&path, count);
-        let entries = |search: &str| {
-            let filter = EntryFilter { search: search.to_owned(), ..EntryFilter::default() };
-            Logbook::open(&path).unwrap().entries(&filter, LogbookPage::LIMIT + 1).unwrap()
-        };
-        assert_eq!(entries("").len(), count.min(LogbookPage::LIMIT as usize + 1));
-        assert_eq!(entries("not in any entry").len(), 0);
-        open.push((count, median(ROUNDS, || (entries(""), Logbook::open(&path).unwrap().devices().unwrap()))));
-        search.push((count, median(ROUNDS, || entries("not in any entry"))));
+        let size = count as usize;
+        open.push((size, median(ROUNDS, || view(&path))));
+        found.push((size, median(ROUNDS, || search(&path, "not in any entry"))));
         let database = rusqlite::Connection::open(&path).unwrap();
         scan.push((
-            count,
+            size,
             median(ROUNDS, || {
-                let mut statement = database.prepare("SELECT description, serial_number, bench FROM event").unwrap();
-                let rows = statement.query_map((), |row| {
-                    Ok((row.get::<_, String>(0)?, row.get::<_, String>(1)?, row.get::<_, String>(2)?))
-                });
-                rows.unwrap().filter(|row| row.as_ref().unwrap().0.contains("not in any entry")).count()
+                let mut statement = database.prepare("SELECT description FROM event").unwrap();
+                let rows = statement.query_map((), |row| row.get::<_, String>(0)).unwrap();
+                rows.filter(|row| row.as_ref().unwrap().contains("not in any entry")).count()
             }),
         ));
     }
-    print("logbook: open with the newest 2,000 entries", &open);
-    print("logbook: a search without a match", &search);
-    print("logbook: every entry read and compared", &scan);
+    print("logbook: open the view", &open);
+    print("logbook: a search without a match", &found);
+    print("logbook: every description read and compared", &scan);
 }
 
 fn devices() {

@@ -18,7 +18,7 @@ const ROUNDS: usize = 7;
 const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Adds entries of 500 devices and ten benches, three writes in ten. One entry in a thousand has the word `needle`.
-fn fill(path: &Path) {
+pub(crate) fn fill(path: &Path, entries: u32) {
     drop(Logbook::open(path).unwrap());
     let mut database = Connection::open(path).unwrap();
     let transaction = database.transaction().unwrap();
@@ -30,7 +30,7 @@ fn fill(path: &Path) {
         let mut result =
             transaction.prepare("INSERT INTO result SELECT uid, at, 'done', NULL, 1 FROM event WHERE id = ?1").unwrap();
         let begin: jiff::Timestamp = "2026-01-01T00:00:00Z".parse().unwrap();
-        for number in 0..ENTRIES {
+        for number in 0..entries {
             let at = begin + jiff::SignedDuration::from_secs(i64::from(number) * 60);
             let is_write = number % 10 < 3;
             let what = if is_write { EntryKind::Write } else { EntryKind::Connected };
@@ -49,13 +49,13 @@ fn fill(path: &Path) {
     transaction.commit().unwrap();
 }
 
-fn view(path: &Path) -> usize {
+pub(crate) fn view(path: &Path) -> usize {
     let logbook = Logbook::open(path).unwrap();
     let entries = logbook.entries(&EntryFilter::default(), SHOWN).unwrap();
     logbook.devices().unwrap().len() + logbook.assets().unwrap().len() + entries.len()
 }
 
-fn search(path: &Path, text: &str) -> usize {
+pub(crate) fn search(path: &Path, text: &str) -> usize {
     let filter = EntryFilter { search: text.to_owned(), ..EntryFilter::default() };
     Logbook::open(path).unwrap().entries(&filter, SHOWN).unwrap().len()
 }
@@ -86,7 +86,7 @@ pub(crate) fn run() {
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let [one, two] = [one.path(), two.path()].map(Store::at_root);
     let path = one.logbook_path();
-    fill(&path);
+    fill(&path, ENTRIES);
     println!("{ENTRIES} entries on SQLite, median of {ROUNDS} (goals: 200 and 50 ms)");
     print_times(&path, || ());
     let Ok(address) = std::env::var("ENCODER_STUDIO_LOGBOOK") else {
