@@ -24,7 +24,8 @@ const FRAME_BYTES: usize = 8 << 20;
 impl Studio {
     /// Returns the tab of the device to which a link refers.
     ///
-    /// If several kinds of devices are possible, this is a tab in which the link has been used, or else the open tab.
+    /// If several kinds of devices are possible, this is a tab in which the link has been used, or else the open tab, or
+    /// else another one. Kinds for which such links are usual come first.
     /// Without a link, the open tab is returned.
     pub(super) fn tab_for_link(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
@@ -40,8 +41,12 @@ impl Studio {
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
         let leads_there =
             |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| !kind.check_link(link).is_err_and(is_elsewhere));
+        let is_usual = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.is_usual_link(link));
+        let find = |fits: &dyn Fn(&Tab) -> bool| {
+            tabs().find(|tab| is_usual(tab) && fits(tab)).or_else(|| tabs().find(|tab| fits(tab)))
+        };
         // An invalid link is reported by a kind of device to which such links can lead.
-        tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
+        tabs().find(used).or_else(|| find(&fits)).or_else(|| find(&leads_there)).unwrap_or(shown)
     }
 
     /// Opens a link to a kind of device. If a session of this kind uses the connection, the link is opened there,

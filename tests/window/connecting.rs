@@ -155,7 +155,8 @@ fn a_link_can_be_typed_or_pasted() {
         (crate::tabs::HIPERFACE, "/dev/ttyUSB0", "form.other", "a link begins with sim:, serial:"),
         (crate::tabs::HIPERFACE, "serial:", "form.other", "serial:/dev/ttyUSB0"),
         (crate::tabs::HIPERFACE, "tcp:moxa", "form.other", "tcp:192.168.0.7:4001"),
-        (crate::tabs::HIPERFACE, "bridge:/dev/ttyACM0", "form.other", "cannot be used for this device"),
+        (crate::tabs::HIPERFACE, "enip:192.168.1.7", "form.other", "cannot be used for this device"),
+        (crate::tabs::HIPERFACE, "bridge:/dev/ttyACM0?clock=1000000", "form.other", "clock is not a parameter"),
         (crate::tabs::HIPERFACE, "serial:x?clock=1", "form.other", "clock is not a parameter"),
         (crate::tabs::HIPERFACE, "serial:x?baud=fast", "form.parameter", "baud=fast"),
         (crate::tabs::BISS, "serial:x?address=0x40", "form.other", "address is not a parameter"),
@@ -347,8 +348,7 @@ fn a_search_on_an_open_wire_closes_it_first() {
 #[test]
 fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     for (link, tab) in [
-        // An adapter serves several kinds; the open tab is one of them.
-        ("bridge:/dev/nothing?clok=1", crate::tabs::HIPERFACE),
+        ("bridge:/dev/nothing?clok=1", crate::tabs::BISS),
         ("bridge:/dev/nothing?mt=12", crate::tabs::BISS),
         ("bridge:/dev/nothing?pause=30", crate::tabs::SSI),
         ("modbus:nowhere.invalid?colour=red", crate::tabs::INTERBUS),

@@ -53,6 +53,12 @@ pub trait DeviceType: DeviceModel + Sized {
         false
     }
 
+    /// Returns whether such a link usually refers to a device of this kind, rather than to one of another kind for which
+    /// it is valid as well.
+    fn is_usual_link(_url: &LinkUrl) -> bool {
+        true
+    }
+
     /// Creates a device from an opened profile and the tables for reading it, or a device about which nothing is known.
     fn create(
         session: Session<Self::Device>,
@@ -130,6 +136,8 @@ pub trait DeviceKind: Sync {
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be connected to the line of a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
+    /// Returns whether such a link usually refers to a device of this kind.
+    fn is_usual_link(&self, url: &LinkUrl) -> bool;
     /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
     /// Returns the values of a profile with their meaning, for a report. Returns `None` if the profile is of another kind
@@ -199,6 +207,10 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
 
     fn may_have_other_master(&self, url: &LinkUrl) -> bool {
         M::may_have_other_master(url)
+    }
+
+    fn is_usual_link(&self, url: &LinkUrl) -> bool {
+        M::is_usual_link(url)
     }
 
     fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm> {

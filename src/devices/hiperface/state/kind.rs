@@ -11,7 +11,7 @@ use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
 use crate::devices::hiperface::state::explain as words;
-use crate::link::LinkUrl;
+use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::ParameterGroup as _;
 use crate::profile::{Cause, ProfileDocument};
 use crate::store::{Store, StoreError};
@@ -25,6 +25,11 @@ impl DeviceType for Encoder {
 
     fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
         check_link(url)
+    }
+
+    fn is_usual_link(url: &LinkUrl) -> bool {
+        // Adapters were made for clocked buses, and only some have a serial line.
+        url.scheme != LinkScheme::Bridge
     }
 
     fn may_have_other_master(url: &LinkUrl) -> bool {
