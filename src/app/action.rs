@@ -21,7 +21,7 @@ use super::tab::Tab;
 use super::{ColorScheme, Language, Picture, Settings, Text, connect};
 use crate::link::LinkError;
 use crate::profile::{PlanId, ProfileDocument, ProfileError};
-use crate::store::{DeviceKey, EntryFilter, FileError, KeyringError, LogbookError, ServerError, UserName};
+use crate::store::{DeviceKey, Entry, EntryFilter, FileError, KeyringError, LogbookError, ServerError, UserName};
 use crate::worker::{OpenError, Worker};
 
 pub enum Action {
@@ -187,12 +187,7 @@ pub enum TaskResult {
         state: ServerExchange,
     },
     /// Reading a backup has succeeded or failed.
-    Backup {
-        session: SessionId,
-        of: DeviceKey,
-        path: PathBuf,
-        result: Result<Box<ProfileDocument>, ReadError>,
-    },
+    Backup(SessionId, Box<ReadBackup>),
     /// A task of one kind of device has ended, for one session. See `TaskResult::device`.
     Device(SessionId, Payload),
     /// A task of a tool has ended. See [`TaskResult::from_tool`].
@@ -258,6 +253,15 @@ pub enum OpenFailure {
 
 /// Function that handles a result without a session.
 pub(crate) type SharedResultHandler = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
+
+/// A backup that was read in order to be restored, or the error.
+pub struct ReadBackup {
+    pub of: DeviceKey,
+    pub path: PathBuf,
+    /// Entry of the logbook that is to be undone with the backup, if any.
+    pub undone: Option<Box<Entry>>,
+    pub result: Result<Box<ProfileDocument>, ReadError>,
+}
 
 #[derive(Debug)]
 pub enum ReadError {

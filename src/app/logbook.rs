@@ -10,7 +10,7 @@ use super::logbook_server::ServerExchange;
 use super::services::Services;
 use super::studio::Studio;
 use super::tab::Tab;
-use super::{Severity, Text, explain};
+use super::{AnyDevice, Severity, Text, explain};
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store};
 
 /// Tab that shows the logbook.
@@ -133,6 +133,24 @@ impl Studio {
 
     pub fn logbook(&self) -> &LogbookPage {
         &self.logbook
+    }
+
+    /// Returns the open device to which an entry belongs, if any.
+    pub fn device_of(&self, key: &DeviceKey) -> Option<&AnyDevice> {
+        self.devices.iter().map(Box::as_ref).find(|own| own.logbook_key().as_ref() == Some(key))
+    }
+
+    /// Returns the connected device on which an entry can be undone now.
+    ///
+    /// # Errors
+    /// Returns the reason why the entry cannot be undone.
+    pub fn undo_target(&self, entry: &Entry) -> Result<&AnyDevice, Text> {
+        entry.undo_backup().map_err(explain::undo_obstacle_text)?;
+        match self.device_of(&entry.device) {
+            Some(device) if device.is_ready() => Ok(device),
+            Some(device) if device.is_busy() => Err(Text::new("session.busy")),
+            Some(_) | None => Err(Text::new("undo.not_connected")),
+        }
     }
 
     /// Starts a task that reads the entries which match the filter.

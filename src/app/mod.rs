@@ -58,7 +58,7 @@ mod tool;
 mod trace;
 pub mod track;
 
-pub use action::{Action, OpenedConnection, RecorderOwner, ReviewAction, TaskResult};
+pub use action::{Action, OpenedConnection, ReadBackup, RecorderOwner, ReviewAction, TaskResult};
 pub use brakes::{DriveStopHandle, DriveStopHandles};
 pub use comparison::ProfileComparison;
 pub(crate) use devices::PrepareFn;

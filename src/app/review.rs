@@ -1,10 +1,12 @@
 //! The review of a write, for every kind of device: its effect, the approval of the user, the progress and the result.
 
 mod permit;
+mod undone;
 
 use std::path::PathBuf;
 
 pub use permit::{Permit, PermitToggle};
+pub use undone::UndoneEntry;
 
 use super::session::Kind;
 use super::{Severity, Text, explain};
@@ -23,6 +25,8 @@ pub struct Review<K: Reviewable> {
     pub(crate) change: K::Change,
     /// Permissions that affect the plan, each with its present state.
     permits: Vec<PermitToggle>,
+    /// Entry of the logbook that the write undoes, if any.
+    undone: Option<UndoneEntry>,
 }
 
 pub enum ReviewState<K: Reviewable> {
@@ -55,7 +59,37 @@ impl<K: Reviewable> Review<K> {
             is_for_other_type,
             change,
             permits,
+            undone: None,
         }
+    }
+
+    /// Makes this the review of an undo. Another device is never allowed for an undo.
+    pub(in crate::app) fn undoing(mut self, undone: UndoneEntry) -> Self {
+        self.title = undone.title();
+        self.permits.clear();
+        self.undone = Some(undone);
+        self
+    }
+
+    /// Returns a review for which the plan is requested again.
+    pub(crate) fn renewed(&self, change: K::Change) -> Self {
+        let again = Review::new(change, self.is_for_another, self.is_for_other_type);
+        match &self.undone {
+            Some(undone) => again.undoing(undone.clone()),
+            None => again,
+        }
+    }
+
+    /// Adopts a plan, unless it would undo values that have changed since. Of the items that a restore leaves
+    /// unchanged, an undo reports only those of the write.
+    pub(in crate::app) fn adopt_plan(&mut self, mut prepared: Box<K::Prepared>) {
+        if let Some(undone) = &self.undone {
+            if let Some(texts) = undone.rejection(&*prepared) {
+                return self.end_early(texts, false, 0);
+            }
+            K::retain_missing(&mut prepared, &|item| undone.concerns(item));
+        }
+        self.state = ReviewState::Ready(prepared);
     }
 
     /// Returns the displayed plan. It exists until the review ends.
@@ -91,11 +125,20 @@ impl<K: Reviewable> Review<K> {
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
+    /// Returns the change with a permission granted or withdrawn. An undo has no permissions.
     pub(crate) fn with_toggled_permit(&self, permit: Permit) -> Option<K::Change> {
+        if self.undone.is_some() {
+            return None;
+        }
         let mut change = self.change.clone();
         let own = K::permit_flag(&mut change, permit)?;
         *own = !*own;
         Some(change)
+    }
+
+    fn warnings(&self, prepared: &K::Prepared) -> Vec<Text> {
+        let kept = self.undone.as_ref().map(UndoneEntry::kept_texts).unwrap_or_default();
+        kept.into_iter().chain(K::warnings(prepared)).collect()
     }
 
     /// Returns the permissions to offer to the user: those already granted, and those that would change the plan.
@@ -249,6 +292,10 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
+    /// Removes the items from the report of missing ones that do not concern the write. The default is for kinds whose
+    /// backups contain the complete device.
+    fn retain_missing(_prepared: &mut Self::Prepared, _concerns: &dyn Fn(&str) -> bool) {}
+
     fn warnings(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
@@ -349,7 +396,7 @@ impl<K: Reviewable> Review<K> {
             title: self.title.clone(),
             stage,
             lines: carried.map(lines).unwrap_or_default(),
-            warnings: shown.map(K::warnings).unwrap_or_default(),
+            warnings: shown.map(|own| self.warnings(own)).unwrap_or_default(),
             needs: shown.map(|own| K::requirements(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost_text),

@@ -373,8 +373,8 @@ impl Studio {
             TaskResult::EntriesExchanged { received, state } => self.show_exchange(received, state),
             TaskResult::LogbookRead(number, matches) => self.show_logbook_matches(number, matches),
             TaskResult::NoteAdded(result) => self.finish_note(result),
-            TaskResult::Backup { session, of, path, result } => {
-                self.with_device(session, |device, services| device.apply_backup(&of, &path, result, services));
+            TaskResult::Backup(session, read) => {
+                self.with_device(session, |device, services| device.apply_backup(*read, services));
             }
             TaskResult::Tool(tab, done) => self.finish_tool_action(tab, done),
         }

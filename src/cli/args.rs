@@ -17,7 +17,7 @@ pub(crate) use decode::{Direction, DirectionOption};
 
 use super::Failure;
 use super::commands::{Commands, KindOptions};
-use super::undo::UndoneWrite;
+use super::undo::UndoneEntry;
 use crate::app::TypeMap;
 use crate::link::LinkUrl;
 use crate::store::{AssetName, EntryId, LogbookServer};
@@ -288,12 +288,12 @@ pub struct Restore {
     pub(super) asset: AssetArgs,
     /// The write that the restore undoes. Set by the command undo.
     #[arg(skip)]
-    pub(super) undone: Option<UndoneWrite>,
+    pub(super) undone: Option<UndoneEntry>,
 }
 
 impl Restore {
     /// Returns a restore of the backup of a write that is undone. Another device is never allowed.
-    pub(super) fn of_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneWrite) -> Self {
+    pub(super) fn of_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneEntry) -> Self {
         Restore {
             file,
             dry_run: undo.dry_run,

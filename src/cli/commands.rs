@@ -12,7 +12,7 @@ use super::simulate::ServableDevice;
 use super::{Failure, Result};
 use crate::app::report::{DeviceReading, ReportContext};
 use crate::app::{Text, TypeMap};
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, KeptItem};
 use crate::report::Report;
 
 /// Commands that a kind of device may support.
@@ -173,17 +173,9 @@ pub trait ProfileCommands: Sync {
         Ok(DeviceReading { body, status: None })
     }
 
-    /// Splits an item of the logbook into single values: bytes or registers. An undo compares them one by one.
-    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
-        vec![item.clone()]
-    }
-
-    /// Removes the values that a write did not change from its backup, if the backup contains more than the
-    /// surroundings of the write.
-    fn keep_items(&self, _backup: &mut Body, _items: &[ChangedItem]) {}
-
-    /// Returns an instruction for the user if a restore of the backup cannot write back an item.
-    fn instead_of_undo(&self, _item: &ChangedItem, _backup: &Body) -> Option<String> {
+    /// Returns an instruction with the command of this kind for an item that cannot be undone, if there is such a
+    /// command.
+    fn redo_command(&self, _kept: &KeptItem) -> Option<String> {
         None
     }
 

@@ -37,11 +37,12 @@ pub(super) fn entry_with_number(common: &CommonArgs, id: EntryId) -> Result<Entr
 
 /// Returns the path of the profile with the values before a write, or of the profile that was saved.
 pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
-    entry.backup.clone().ok_or_else(|| {
-        let (id, what) = (entry.id, entry.kind.keyword());
-        let why = format!("Entry {id} ({what}) has no backup. Only writes and saved profiles have one.");
-        Failure::Failed(vec![why])
-    })
+    entry.backup.clone().ok_or_else(|| no_backup(entry))
+}
+
+pub(super) fn no_backup(entry: &Entry) -> Failure {
+    let (id, what) = (entry.id, entry.kind.keyword());
+    Failure::Failed(vec![format!("Entry {id} ({what}) has no backup. Only writes and saved profiles have one.")])
 }
 
 /// Returns the path of a profile. `log:ENTRY` means the backup of an entry.

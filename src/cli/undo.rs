@@ -5,80 +5,75 @@ use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, Restore, UndoArgs};
 use super::commands::DeviceCommands;
-use super::log::{entry_with_number, profile_of};
+use super::log::{entry_with_number, no_backup};
 use super::output::Output;
 use super::profiles::load_profile_to_write;
 use super::{Failure, Result};
-use crate::profile::{ChangedItem, ChangedSince, ValueChanges};
-use crate::store::{DeviceKey, Entry, EntryId, EntryKind};
+use crate::profile::{ChangedSince, KeptItem, Redo, UndoneWrite};
+use crate::store::{DeviceKey, Entry, EntryId, UndoObstacle};
 use crate::worker::commit::PlannedWrite;
 
 /// Number of changed values that a refusal names.
 const NAMED: usize = 3;
 
-/// A write that a restore undoes.
+/// An entry of the logbook that a restore undoes.
 #[derive(Clone)]
-pub(crate) struct UndoneWrite {
+pub(crate) struct UndoneEntry {
     entry: EntryId,
     device: DeviceKey,
-    changes: ValueChanges,
-    kind: &'static dyn DeviceCommands,
-    kept: Vec<KeptItem>,
-}
-
-/// An item that cannot be undone.
-#[derive(Clone)]
-struct KeptItem {
-    item: String,
-    /// Instruction for the user.
-    instead: String,
+    write: UndoneWrite,
+    /// Items that cannot be undone, with an instruction for the user.
+    kept: Vec<(String, String)>,
 }
 
 pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Result {
     let entry = entry_with_number(common, undo.entry)?;
-    check_kind(&entry)?;
-    let file = profile_of(&entry)?;
+    let file = entry.undo_backup().map_err(|why| obstacle(&entry, why))?.to_owned();
     let kind = output.commands().device(&entry.device.kind)?;
     let mut profile = load_profile_to_write(output, &file)?;
     if profile.kind() != kind.name() {
         return Err(Failure::Failed(vec![format!("{} is not a profile of {}.", file.display(), kind.name())]));
     }
-    let kept = entry
-        .items
-        .iter()
-        .filter_map(|item| Some(KeptItem { item: item.item.clone(), instead: kind.instead_of_undo(item, &profile)? }));
-    let kept: Vec<KeptItem> = kept.collect();
-    kind.keep_items(&mut profile, &entry.items);
-    let single = entry.items.iter().flat_map(|item| kind.single_values(item));
-    let changes = ValueChanges::of(single.filter(|value| kept.iter().all(|own| own.item != value.item)));
-    if entry.items.len() == kept.len() {
-        let lines = kept.iter().map(|own| format!("{} cannot be undone: {}.", own.item, own.instead));
+    let write = UndoneWrite::new(&entry.items, &mut profile);
+    let kept: Vec<_> = write.kept().iter().map(|own| (own.item.clone(), instruction(kind, own))).collect();
+    if !write.has_effect() {
+        let lines = kept.iter().map(|(item, instead)| format!("{item} cannot be undone: {instead}."));
         return Err(Failure::Failed(lines.take(NAMED).collect()));
     }
-    for KeptItem { item, instead } in &kept {
+    for (item, instead) in &kept {
         output.print_message(&format!("{item} is not undone: {instead}."));
     }
-    let undone = UndoneWrite { entry: entry.id, device: entry.device, changes, kind, kept };
+    let undone = UndoneEntry { entry: entry.id, device: entry.device, write, kept };
     let restore = Restore::of_backup(file, undo, undone);
     kind.restore(common, output, &restore, profile)
 }
 
-/// Rejects an entry that is not a write of single values.
-fn check_kind(entry: &Entry) -> Result<()> {
+/// Returns what to do instead of the undo of an item, with the command of the kind if there is one.
+fn instruction(kind: &dyn DeviceCommands, kept: &KeptItem) -> String {
+    let general = match &kept.redo {
+        Redo::Write(value) => format!("write {value} again"),
+        Redo::Delete => "delete it if its content is not needed".to_owned(),
+        Redo::SetPosition => "set the position again".to_owned(),
+        Redo::ChangeCode => "change the access code again".to_owned(),
+        Redo::ChangeNetwork => "change the settings of the network again".to_owned(),
+        Redo::Repeat => "repeat the procedure".to_owned(),
+        Redo::KeepCounter => "the encoder can only increment or clear its counter".to_owned(),
+    };
+    kind.redo_command(kept).unwrap_or(general)
+}
+
+fn obstacle(entry: &Entry, why: UndoObstacle) -> Failure {
     let (id, kind) = (entry.id, entry.device.kind.as_str());
-    let why = match entry.kind {
-        EntryKind::Write | EntryKind::Restore => {
-            if entry.items.is_empty() {
-                format!("Entry {id} is of an older version and does not contain the changed values.")
-            } else {
-                return Ok(());
-            }
+    let why = match why {
+        UndoObstacle::NoBackup => return no_backup(entry),
+        UndoObstacle::NoItems => {
+            format!("Entry {id} is of an older version and does not contain the changed values.")
         }
-        EntryKind::Preset => format!(
+        UndoObstacle::Preset => format!(
             "Entry {id} cannot be undone: the position was set or a preset was stored. Set the position again (help do \
              lists the actions of {kind})."
         ),
-        EntryKind::Procedure => match &entry.backup {
+        UndoObstacle::Procedure => match &entry.backup {
             Some(backup) => format!(
                 "Entry {id} is a procedure and cannot be undone. Its wear remains. The values before it are in {}, \
                  for restore.",
@@ -86,19 +81,14 @@ fn check_kind(entry: &Entry) -> Result<()> {
             ),
             None => format!("Entry {id} is a procedure and cannot be undone. Its wear remains."),
         },
-        EntryKind::Connected
-        | EntryKind::Assigned
-        | EntryKind::Status
-        | EntryKind::Backup
-        | EntryKind::Check
-        | EntryKind::Note => {
+        UndoObstacle::NothingWritten => {
             format!("Entry {id} ({}) wrote nothing to the device: there is nothing to undo.", entry.kind.keyword())
         }
     };
-    Err(Failure::Failed(vec![why]))
+    Failure::Failed(vec![why])
 }
 
-impl UndoneWrite {
+impl UndoneEntry {
     /// Rejects the undo on a different device, or if values have changed since the write.
     fn check<P: PlannedWrite>(&self, common: &CommonArgs, prepared: &P) -> Result<()> {
         let (id, of) = (self.entry, &self.device);
@@ -111,8 +101,7 @@ impl UndoneWrite {
             return Err(Failure::Failed(vec![why]));
         }
         let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
-        let planned = ValueChanges::of(planned.flat_map(|item| self.kind.single_values(&item)));
-        let changed = self.changes.changed_since(&planned);
+        let changed = self.write.changed_since(planned);
         let Some((first, further)) = changed.split_first() else { return Ok(()) };
         let mut lines = vec![format!("Entry {id} cannot be undone, because values have changed since.")];
         lines.extend(std::iter::once(first).chain(further).take(NAMED - 1).map(describe));
@@ -122,16 +111,10 @@ impl UndoneWrite {
         Err(Failure::Failed(lines))
     }
 
-    /// Returns whether a message about an item of the profile is about the write.
-    fn concerns(&self, item: &str) -> bool {
-        let is_part =
-            |value: &str| value.strip_prefix(item).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
-        self.changes.items().any(is_part)
-    }
-
     /// Adds the keys of an undo to the result of a restore.
     pub(super) fn add_keys(&self, json: &mut Json, operations: &[Json]) {
-        let kept: Vec<Json> = self.kept.iter().map(|own| json!({"item": own.item, "instead": own.instead})).collect();
+        let kept: Vec<Json> =
+            self.kept.iter().map(|(item, instead)| json!({"item": item, "instead": instead})).collect();
         if let Some(keys) = json.as_object_mut() {
             keys.insert("entry".to_owned(), json!(self.entry.to_string()));
             keys.insert("operations".to_owned(), json!(operations));
@@ -157,17 +140,6 @@ impl Restore {
 
     /// Returns whether an item that is left unchanged has to be reported. An undo reports only items of the write.
     pub(crate) fn concerns(&self, item: &str) -> bool {
-        self.undone.as_ref().is_none_or(|undone| undone.concerns(item))
+        self.undone.as_ref().is_none_or(|undone| undone.write.concerns(item))
     }
-}
-
-/// Splits an item whose values are hexadecimal bytes into one item for each byte. `name` returns the name of a byte.
-pub(crate) fn single_bytes(item: &ChangedItem, name: impl Fn(usize) -> String) -> Vec<ChangedItem> {
-    let bytes = |text: &Option<String>| -> Vec<String> {
-        let text = text.as_deref().unwrap_or_default().as_bytes();
-        text.chunks(2).map(|digits| String::from_utf8_lossy(digits).into_owned()).collect()
-    };
-    let (old, new) = (bytes(&item.old), bytes(&item.new));
-    let count = old.len().max(new.len());
-    (0..count).map(|at| ChangedItem::new(name(at), old.get(at).cloned(), new.get(at).cloned())).collect()
 }

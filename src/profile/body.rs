@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use super::ron_text::{Entries, Writer};
-use super::{Comparison, ProfileError};
+use super::{ChangedItem, Comparison, ProfileError, Redo};
 
 /// The profile type of one kind of device.
 pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
@@ -30,6 +30,20 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// Compares this profile with another one.
     fn compare(&self, other: &Self) -> Comparison;
+
+    /// Splits an item of the logbook into single values: bytes or registers. An undo compares them one by one.
+    fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+        vec![item.clone()]
+    }
+
+    /// Removes the values that a write did not change from its backup, if the backup contains more than the
+    /// surroundings of the write.
+    fn keep_items(&mut self, _items: &[ChangedItem]) {}
+
+    /// Returns what to do about a written item that a restore of this backup cannot write back.
+    fn redo(&self, _item: &ChangedItem) -> Option<Redo> {
+        None
+    }
 }
 
 /// A parser for the profiles of one kind of device.
@@ -60,6 +74,15 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
 
     /// Compares this body with another one. Returns `None` if the other body is for a different kind of device.
     fn compare_with(&self, other: &dyn ProfileBody) -> Option<Comparison>;
+
+    /// Returns the function that splits an item of the logbook into single values.
+    fn single_values(&self) -> fn(&ChangedItem) -> Vec<ChangedItem>;
+
+    /// Removes the values that a write did not change from its backup.
+    fn keep_items(&mut self, items: &[ChangedItem]);
+
+    /// Returns what to do about a written item that a restore of this backup cannot write back.
+    fn redo(&self, item: &ChangedItem) -> Option<Redo>;
 }
 
 impl<P: Profile> ProfileBody for P {
@@ -83,6 +106,18 @@ impl<P: Profile> ProfileBody for P {
     fn compare_with(&self, other: &dyn ProfileBody) -> Option<Comparison> {
         let other: &dyn Any = other;
         other.downcast_ref::<P>().map(|other| self.compare(other))
+    }
+
+    fn single_values(&self) -> fn(&ChangedItem) -> Vec<ChangedItem> {
+        P::single_values
+    }
+
+    fn keep_items(&mut self, items: &[ChangedItem]) {
+        Profile::keep_items(self, items);
+    }
+
+    fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+        Profile::redo(self, item)
     }
 }
 
@@ -128,6 +163,18 @@ impl Body {
     /// Returns [`ProfileError::OtherKind`] if the other profile is for a different kind of device.
     pub fn compare(&self, other: &Body) -> Result<Comparison, ProfileError> {
         self.0.compare_with(other.0.as_ref()).ok_or_else(|| other.wrong_kind_error(self.kind()))
+    }
+
+    pub(super) fn single_values(&self) -> fn(&ChangedItem) -> Vec<ChangedItem> {
+        self.0.single_values()
+    }
+
+    pub(super) fn keep_items(&mut self, items: &[ChangedItem]) {
+        self.0.keep_items(items);
+    }
+
+    pub(super) fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+        self.0.redo(item)
     }
 
     /// Returns the error for a profile that is not for a `wanted` device.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::ChangedItem;
+use super::{Body, ChangedItem};
 
 /// The values that some operations change in total, from the first old value to the last new one. Values that the
 /// operations change and change back, such as the protection of a field, are not included.
@@ -25,6 +25,91 @@ pub struct ChangedSince {
     pub expected: Option<String>,
     /// Present value. `None` if the item does not exist.
     pub found: Option<String>,
+}
+
+/// What to do about an item instead of undoing its write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Redo {
+    /// Write this value again. The backup does not contain it.
+    Write(String),
+    /// Delete the created data if they are not needed. Their content may have been used since.
+    Delete,
+    /// Set the position again.
+    SetPosition,
+    /// Change the access code again. Access codes are never stored.
+    ChangeCode,
+    /// Change the settings of the network again.
+    ChangeNetwork,
+    /// Repeat the procedure.
+    Repeat,
+    /// Leave the counter as it is. The device can only increment or clear it.
+    KeepCounter,
+}
+
+/// An item of a write that cannot be undone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeptItem {
+    /// Name of the item.
+    pub item: String,
+    /// What to do instead.
+    pub redo: Redo,
+}
+
+/// A write that is undone by restoring its backup.
+#[derive(Clone, Debug)]
+pub struct UndoneWrite {
+    changes: ValueChanges,
+    kept: Vec<KeptItem>,
+    item_count: usize,
+    single_values: fn(&ChangedItem) -> Vec<ChangedItem>,
+}
+
+impl UndoneWrite {
+    /// Prepares the undo of a write of these items. Removes from the backup the values that the write did not change.
+    pub fn new(items: &[ChangedItem], backup: &mut Body) -> Self {
+        let kept = |item: &ChangedItem| Some(KeptItem { item: item.item.clone(), redo: backup.redo(item)? });
+        let kept: Vec<KeptItem> = items.iter().filter_map(kept).collect();
+        backup.keep_items(items);
+        let single_values = backup.single_values();
+        let single = items.iter().flat_map(single_values);
+        let changes = ValueChanges::of(single.filter(|value| kept.iter().all(|own| own.item != value.item)));
+        UndoneWrite { changes, kept, item_count: items.len(), single_values }
+    }
+
+    /// Returns the items that cannot be undone.
+    pub fn kept(&self) -> &[KeptItem] {
+        &self.kept
+    }
+
+    /// Returns whether any item can be undone.
+    pub fn has_effect(&self) -> bool {
+        self.kept.len() < self.item_count
+    }
+
+    /// Returns whether a message about an item of the profile is about the write.
+    pub fn concerns(&self, item: &str) -> bool {
+        let is_part =
+            |value: &str| value.strip_prefix(item).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
+        self.changes.items().any(is_part)
+    }
+
+    /// Returns the values that have changed since the write. `planned` are the items that the restore of the backup
+    /// would change.
+    pub fn changed_since(&self, planned: impl IntoIterator<Item = ChangedItem>) -> Vec<ChangedSince> {
+        let planned = ValueChanges::of(planned.into_iter().flat_map(|item| (self.single_values)(&item)));
+        self.changes.changed_since(&planned)
+    }
+}
+
+/// Splits an item whose values are hexadecimal bytes into one item for each byte. `name` returns the name of a byte.
+pub(crate) fn single_bytes(item: &ChangedItem, name: impl Fn(usize) -> String) -> Vec<ChangedItem> {
+    let bytes = |text: &Option<String>| -> Vec<String> {
+        let text = text.as_deref().unwrap_or_default().as_bytes();
+        text.chunks(2).map(|digits| String::from_utf8_lossy(digits).into_owned()).collect()
+    };
+    let (old, new) = (bytes(&item.old), bytes(&item.new));
+    let count = old.len().max(new.len());
+    (0..count).map(|at| ChangedItem::new(name(at), old.get(at).cloned(), new.get(at).cloned())).collect()
 }
 
 impl ValueChanges {

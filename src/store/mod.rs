@@ -33,7 +33,7 @@ pub use log_file::LogFile;
 pub use logbook::{
     AssetName, AssetNameError, Contact, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent,
     KeyringError, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder, Outcome, Password,
-    ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UserName, WriteResult,
+    ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UndoObstacle, UserName, WriteResult,
 };
 
 use crate::profile::Cause;

@@ -1,9 +1,9 @@
 //! The page of the logbook, with the real widgets: entries with old and new values, the filter, backups and notes.
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio, Text};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio, Tab, Text};
 use encoder_studio::devices::hiperface::state::{HiperfaceAction, ReviewState};
-use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Logbook};
+use encoder_studio::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook};
 
 use crate::screen::Screen;
 use crate::support::is_review;
@@ -66,6 +66,77 @@ fn a_write_is_shown_with_old_and_new_values_and_its_backup() {
     assert_ne!(screen.studio().settings.tab, LOGBOOK_TAB);
 }
 
+/// Issue 30: a write is undone as on the command line, from the device and after a review.
+#[test]
+fn a_write_is_undone_after_a_review() {
+    let mut screen = after_a_write();
+    select_first_entry(&mut screen);
+    screen.click("undo.button");
+    screen.until("the way back is planned", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    assert_ne!(screen.studio().settings.tab, LOGBOOK_TAB);
+    assert!(screen.shows("58  →  45"));
+    assert!(!screen.shows(&screen.say("review.recreate")), "an undo has no permissions");
+    screen.check_language();
+    screen.click("review.write");
+    screen.until("it is undone", |studio| is_review(studio, |state| matches!(state, ReviewState::Done(..))));
+    let entries = recorded_entries(&screen);
+    let undone = &entries[0];
+    assert_eq!((undone.kind, undone.items[0].new.as_deref()), (EntryKind::Restore, Some("45")));
+}
+
+/// Issue 30: what has changed since is named, and then nothing can be written.
+#[test]
+fn an_undo_refuses_a_value_that_has_changed_since() {
+    let mut screen = after_a_write();
+    let first = recorded_entries(&screen)[0].clone();
+    screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x59] });
+    screen.command(DeviceCommand::Review);
+    screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    screen.act(Action::ShowTab(Tab::named("Hiperface")));
+    screen.click("review.write");
+    screen.until("it is written", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Done(..)))
+            && studio.hiperface().unwrap().session.is_ready()
+    });
+    screen.click("review.close");
+    screen.command(DeviceCommand::UndoWrite(Box::new(first)));
+    screen.until("it is refused", |studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. })));
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        assert!(screen.shows(&screen.say("undo.changed")));
+        screen.check_language();
+    }
+    assert!(screen.shows("field:0@0: expected 58, found 59."));
+    assert!(!screen.has_button("review.write"));
+}
+
+/// Issue 30: without the device, or for an entry that wrote nothing, there is nothing to click.
+#[test]
+fn an_undo_requires_the_device_and_a_write() {
+    let mut screen = after_a_write();
+    let [write, connected] = recorded_entries(&screen).try_into().unwrap();
+    let why = |screen: &Screen, entry: &Entry| {
+        screen.studio().undo_target(entry).err().map(|text| text.to_string_in(Language::English))
+    };
+    let text = |id| Some(Text::new(id).to_string_in(Language::English));
+    assert_eq!(why(&screen, &write), None);
+    assert_eq!(why(&screen, &connected), text("undo.nothing_written"));
+    let other = Entry { device: DeviceKey::new("hiperface", "37h", "other", true), ..write.clone() };
+    assert_eq!(why(&screen, &other), text("undo.not_connected"));
+    let old = Entry { items: Vec::new(), ..write };
+    assert_eq!(why(&screen, &old), text("undo.no_items"));
+    let session = screen.encoder().session.id;
+    screen.act(Action::CloseSession(session));
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.until("the logbook is read", |studio| entry_count(studio) == Some(2));
+    select_first_entry(&mut screen);
+    assert!(!screen.is_enabled("undo.button"));
+}
+
+fn recorded_entries(screen: &Screen) -> Vec<Entry> {
+    Logbook::open(&screen.outside.store().logbook_path()).unwrap().entries(&EntryFilter::default(), 10).unwrap()
+}
+
 #[test]
 fn a_note_is_added_to_the_device_of_the_selected_entry() {
     let mut screen = after_a_write();
@@ -93,7 +164,7 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     let mut logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
     logbook.add_note(jiff::Timestamp::now(), &other, "spare part").unwrap();
     // The other entry comes from another program, so the list is read again when the tab is opened.
-    screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
+    screen.act(Action::ShowTab(Tab::named("Hiperface")));
     screen.act(Action::ShowTab(LOGBOOK_TAB));
     screen.until("all entries are shown", |studio| entry_count(studio) == Some(3));
     let word = screen.say("logbook.search");
@@ -102,7 +173,7 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     screen.harness.get_by_label(&word).type_text("SPARE");
     screen.until("only the note is shown", |studio| entry_count(studio) == Some(1));
     assert!(screen.harness.query_by_label_contains("spare part").is_some());
-    screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
+    screen.act(Action::ShowTab(Tab::named("Hiperface")));
     screen.act(Action::ShowTab(LOGBOOK_TAB));
     screen.until("it is read again", |studio| entry_count(studio) == Some(1));
     screen.act(Action::SearchLogbook(EntryFilter { search: "nothing like this".into(), ..EntryFilter::default() }));
@@ -129,7 +200,7 @@ fn a_saved_profile_is_recorded_and_found_by_its_asset() {
     assert_eq!((saved.kind, saved.backup, saved.asset.as_deref()), (EntryKind::Backup, Some(path), Some("Achse 7")));
     assert_eq!((assigned.kind, &saved.device), (EntryKind::Assigned, &write.device));
 
-    screen.act(Action::ShowTab(encoder_studio::app::Tab::named("Hiperface")));
+    screen.act(Action::ShowTab(Tab::named("Hiperface")));
     screen.act(Action::ShowTab(LOGBOOK_TAB));
     screen.until("all entries are shown", |studio| entry_count(studio) == Some(4));
     let choice = screen.say("asset_card.name");

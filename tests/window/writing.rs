@@ -3,7 +3,7 @@
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::DeviceHistory;
-use encoder_studio::app::{Action, Language, PendingEdits, Severity, TaskResult, Text};
+use encoder_studio::app::{Action, Language, PendingEdits, ReadBackup, Severity, TaskResult, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
@@ -295,7 +295,10 @@ fn late_results_for_another_encoder_are_dropped() {
     assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
     let document = Box::new(ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
-    desk.act(Action::Done(TaskResult::Backup { session: id, of: other, path, result: Ok(document) }));
+    desk.act(Action::Done(TaskResult::Backup(
+        id,
+        Box::new(ReadBackup { of: other, path, undone: None, result: Ok(document) }),
+    )));
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 

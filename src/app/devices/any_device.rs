@@ -1,19 +1,18 @@
 //! Methods of all devices, based on their common interface.
 
 use std::any::Any;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::AnyDevice;
 use super::model::DeviceMemory;
 use crate::app::Text;
-use crate::app::action::{ReadError, ReviewAction};
+use crate::app::action::{ReadBackup, ReviewAction};
 use crate::app::closing::LONG_RECORDING_NS;
 use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
 use crate::app::session::{DeviceHistory, PendingOpen, Phase, Source};
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
-use crate::profile::ProfileDocument;
 use crate::store::{Backup, DeviceKey, Entry};
 
 impl AnyDevice {
@@ -131,15 +130,9 @@ impl AnyDevice {
         }
     }
 
-    pub(in crate::app) fn apply_backup(
-        &mut self,
-        of: &DeviceKey,
-        path: &Path,
-        result: Result<Box<ProfileDocument>, ReadError>,
-        services: &mut Services,
-    ) {
+    pub(in crate::app) fn apply_backup(&mut self, read: ReadBackup, services: &mut Services) {
         if let Some(memory) = self.memory_mut() {
-            memory.apply_backup(of, path, result, services);
+            memory.apply_backup(read, services);
         }
     }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
-use crate::store::AssetName;
+use crate::store::{AssetName, Entry};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceCommand {
@@ -24,6 +24,8 @@ pub enum DeviceCommand {
     /// Assign the device to an asset in the logbook.
     Assign(AssetName),
     Restore(PathBuf),
+    /// Show the effect of undoing a write of the logbook.
+    UndoWrite(Box<Entry>),
     AskRestore,
     AskCompare,
     AskReport,

@@ -5,7 +5,7 @@
 use std::any::Any;
 use std::path::{Path, PathBuf};
 
-use crate::app::action::{OpenedConnection, ReadError, ReviewAction};
+use crate::app::action::{OpenedConnection, ReadBackup, ReviewAction};
 use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
 use crate::app::report::StatusLine;
@@ -17,8 +17,8 @@ use crate::app::{
     AnyDevice, DeviceAction, DeviceCommand, EditStep, Recording, Severity, SineCosineSource, StoredDriveData, Tab, Text,
 };
 use crate::link::LinkUrl;
-use crate::profile::{Body, ProfileDocument, ProfileError};
-use crate::store::{AssetName, DeviceKey};
+use crate::profile::{Body, ProfileError};
+use crate::store::{AssetName, DeviceKey, Entry};
 use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
@@ -99,7 +99,14 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
                 self.with_memory(services, |memory, services| memory.assign_asset(asset, services));
             }
             DeviceCommand::Restore(path) => {
-                self.with_memory(services, |memory, services| memory.read_backup(path, services));
+                self.with_memory(services, |memory, services| memory.read_backup(path, None, services));
+            }
+            DeviceCommand::UndoWrite(entry) => {
+                self.with_memory(services, |memory, services| {
+                    if let Ok(path) = entry.undo_backup().map(Path::to_owned) {
+                        memory.read_backup(path, Some(entry), services);
+                    }
+                });
             }
         }
     }
@@ -321,8 +328,8 @@ pub trait DeviceMemory {
     /// Assigns the device to an asset in the logbook.
     fn assign_asset(&mut self, asset: AssetName, services: &mut Services);
 
-    /// Reads a backup that is to be restored.
-    fn read_backup(&mut self, path: PathBuf, services: &mut Services);
+    /// Reads a backup that is to be restored, or from which an entry of the logbook is to be undone.
+    fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services);
 
     /// Returns the device as the logbook names it. Returns `None` before the device has been read.
     fn logbook_key(&self) -> Option<DeviceKey>;
@@ -331,13 +338,7 @@ pub trait DeviceMemory {
     fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
     /// Handles a backup that was read, or the error. A backup of another device is ignored.
-    fn apply_backup(
-        &mut self,
-        of: &DeviceKey,
-        path: &Path,
-        result: Result<Box<ProfileDocument>, ReadError>,
-        services: &mut Services,
-    );
+    fn apply_backup(&mut self, read: ReadBackup, services: &mut Services);
 }
 
 impl<T: HasProfile> DeviceMemory for T {
@@ -394,8 +395,8 @@ impl<T: HasProfile> DeviceMemory for T {
         }
     }
 
-    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
-        HasProfile::read_backup(self, path, services);
+    fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services) {
+        HasProfile::read_backup(self, path, undone, services);
     }
 
     fn logbook_key(&self) -> Option<DeviceKey> {
@@ -408,15 +409,9 @@ impl<T: HasProfile> DeviceMemory for T {
         }
     }
 
-    fn apply_backup(
-        &mut self,
-        of: &DeviceKey,
-        path: &Path,
-        result: Result<Box<ProfileDocument>, ReadError>,
-        services: &mut Services,
-    ) {
-        if self.device_key().as_ref() == Some(of) {
-            HasProfile::apply_backup(self, path, result, services);
+    fn apply_backup(&mut self, read: ReadBackup, services: &mut Services) {
+        if self.device_key().as_ref() == Some(&read.of) {
+            HasProfile::apply_backup(self, read, services);
         }
     }
 }

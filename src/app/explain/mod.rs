@@ -19,10 +19,44 @@ use super::action::OpenFailure;
 use super::{KindRegistry, Text};
 use crate::analysis::check::CycleCount;
 use crate::link::{LinkError, LinkErrorKind};
-use crate::profile::{ProfileDocument, ProfileError, SCHEMA};
-use crate::store::{AssetNameError, FileError, FileErrorKind, LogbookError, StoreError};
+use crate::profile::{ProfileDocument, ProfileError, Redo, SCHEMA};
+use crate::store::{AssetNameError, FileError, FileErrorKind, LogbookError, StoreError, UndoObstacle};
 use crate::units::Parity;
 use crate::worker::{NotStarted, OpenError};
+
+/// Maximum number of remarks of one kind that are listed.
+const MAX_LISTED_REMARKS: usize = 3;
+
+/// Lists the first few items, and the number of the remaining ones.
+pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
+    let more = things.len().saturating_sub(MAX_LISTED_REMARKS);
+    let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
+    things.iter().take(MAX_LISTED_REMARKS).map(words).chain(rest).collect()
+}
+
+/// Describes what to do about an item that cannot be undone.
+pub fn redo_text(redo: &Redo) -> Text {
+    match redo {
+        Redo::Write(value) => Text::new("undo.write").with("value", value),
+        Redo::Delete => Text::new("undo.delete"),
+        Redo::SetPosition => Text::new("undo.set_position"),
+        Redo::ChangeCode => Text::new("undo.change_code"),
+        Redo::ChangeNetwork => Text::new("undo.change_network"),
+        Redo::Repeat => Text::new("undo.repeat"),
+        Redo::KeepCounter => Text::new("undo.keep_counter"),
+    }
+}
+
+/// Describes why an entry of the logbook cannot be undone.
+pub fn undo_obstacle_text(why: UndoObstacle) -> Text {
+    Text::new(match why {
+        UndoObstacle::NoItems => "undo.no_items",
+        UndoObstacle::Preset => "undo.preset",
+        UndoObstacle::Procedure => "undo.procedure",
+        UndoObstacle::NothingWritten => "undo.nothing_written",
+        UndoObstacle::NoBackup => "undo.no_backup",
+    })
+}
 
 pub fn link_error_text(error: &LinkError) -> Text {
     let target = &error.target;

@@ -4,7 +4,9 @@
 #![warn(missing_docs)]
 
 use super::{EarlyEnd, HasDraft, HasSession, Kind, SessionEvents};
-use crate::app::review::{self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewable, written_texts};
+use crate::app::review::{
+    self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewable, UndoneEntry, written_texts,
+};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
@@ -109,11 +111,22 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Requests a plan for a change, to be reviewed by the user.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
+        let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_other_type(&change));
+        self.request_plan(change, review, services);
+    }
+
+    /// Requests a plan for the change that undoes an entry of the logbook, to be reviewed by the user.
+    fn plan_undo(&mut self, change: Change<Self>, undone: UndoneEntry, services: &mut Services) {
+        let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_other_type(&change));
+        self.request_plan(change, review.undoing(undone), services);
+    }
+
+    /// Opens a review, and requests its plan.
+    fn request_plan(&mut self, change: Change<Self>, review: Review<Self::Device>, services: &mut Services) {
         self.prepare_review();
         if let Some(why) = self.session().plan_obstacle() {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
-        let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_other_type(&change));
         let objection = self.change_rejection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {
@@ -157,7 +170,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         let objection = self.rejection_reason(&prepared);
         let Some(review) = self.review_mut() else { return };
         match objection {
-            None => review.state = ReviewState::Ready(prepared),
+            None => review.adopt_plan(prepared),
             Some(why) => review.end_early(vec![why], false, 0),
         }
     }

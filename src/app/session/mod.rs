@@ -23,7 +23,6 @@ pub use has_session::HasSession;
 pub use kind::{JobCompletion, Kind};
 pub use memory::{ApprovedPlanOf, HasMemory};
 pub use profiles::DeviceHistory;
-pub(crate) use saved::truncated_list;
 pub use saved::{HasProfile, KnownProfile, unsaved_edits_remark};
 pub(in crate::app) use saving::DivergedFile;
 pub use saving::{FileSnapshot, ProfileFile, SaveRequest};
@@ -32,6 +31,7 @@ pub use session_events::{EarlyEnd, SessionEvents};
 pub use state::SessionState;
 
 use super::action::OpenedConnection;
+pub(crate) use super::explain::truncated_list;
 use super::kinds::KindRegistry;
 use super::live_session::LiveSession;
 use super::services::{JobState, Services};

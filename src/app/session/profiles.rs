@@ -6,7 +6,7 @@ use jiff::Timestamp;
 
 use super::{FileSnapshot, ProfileFile, SaveRequest, SessionState, Source};
 use crate::analysis::check::CycleCount;
-use crate::app::action::TaskResult;
+use crate::app::action::{ReadBackup, TaskResult};
 use crate::app::documents::{new_document, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
@@ -107,11 +107,17 @@ impl SessionState {
         });
     }
 
-    pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
+    pub(in crate::app) fn read_backup(
+        &self,
+        of: DeviceKey,
+        path: PathBuf,
+        undone: Option<Box<Entry>>,
+        services: &Services,
+    ) {
         let (session, formats) = (self.id, services.world.kinds.formats);
         services.tasks.run("backup", move || {
             let result = read_profile(&path, formats).map(Box::new);
-            Action::Done(TaskResult::Backup { session, of, path, result })
+            Action::Done(TaskResult::Backup(session, Box::new(ReadBackup { of, path, undone, result })))
         });
     }
 

@@ -1,16 +1,19 @@
 //! The content of a memory as a profile: saving, restoring and backing up.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::{HasMemory, HasSession, Phase, Source};
-use crate::app::Text;
-use crate::app::action::ReadError;
+use crate::app::action::{ReadBackup, ReadError};
 use crate::app::documents::{new_document, read_error, read_only_reason};
+use crate::app::review::{Reviewable, UndoneEntry};
 use crate::app::services::Services;
-use crate::profile::{Body, ProfileDocument, ProfileError};
+use crate::app::{Severity, Text};
+use crate::profile::{Body, ProfileError};
+use crate::store::Entry;
 use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
+type Change<T> = <<T as HasSession>::Device as Reviewable>::Change;
 
 /// A profile of earlier readings with remarks, or a message for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
@@ -38,11 +41,32 @@ pub trait HasProfile: HasMemory {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()
     }
 
+    /// Returns the change that restores a profile.
+    ///
+    /// # Errors
+    /// Returns an error if the profile belongs to another kind of device.
+    fn restore_change(body: Body) -> Result<Change<Self>, ProfileError>;
+
     /// Requests a plan for restoring a profile, to be reviewed by the user.
     ///
     /// # Errors
     /// Returns an error if the profile belongs to another kind of device.
-    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan(Self::restore_change(body)?, services);
+        Ok(())
+    }
+
+    /// Requests a plan for undoing an entry of the logbook, to be reviewed by the user. `backup` is that of the entry.
+    ///
+    /// # Errors
+    /// Returns an error if the backup belongs to another kind of device.
+    fn undo(&mut self, entry: &Entry, mut backup: Body, services: &mut Services) -> Result<(), ProfileError> {
+        match UndoneEntry::new(entry, &mut backup) {
+            Ok(undone) => self.plan_undo(Self::restore_change(backup)?, undone, services),
+            Err(texts) => services.notify(Severity::Error, texts, Some(&self.session().name())),
+        }
+        Ok(())
+    }
 
     /// Returns the remarks to show when the edited profile is saved.
     fn save_remarks(&self) -> Vec<Text> {
@@ -79,20 +103,26 @@ pub trait HasProfile: HasMemory {
         }
     }
 
-    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
+    /// Reads a backup that is to be restored, or from which an entry of the logbook is to be undone.
+    fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services) {
         match self.device_key() {
-            Some(of) => self.session().read_backup(of, path, services),
+            Some(of) => self.session().read_backup(of, path, undone, services),
             None => self.session().report_rejection(Text::new("session.not_connected"), services),
         }
     }
 
-    fn apply_backup(&mut self, path: &Path, result: Result<Box<ProfileDocument>, ReadError>, services: &mut Services) {
+    fn apply_backup(&mut self, read: ReadBackup, services: &mut Services) {
+        let ReadBackup { path, undone, result, .. } = read;
         let restored = result.and_then(|own| {
-            let known = own.check_schema().map_err(ReadError::Profile)?;
-            self.restore(known.body, services).map_err(ReadError::Profile)
+            let body = own.check_schema().map_err(ReadError::Profile)?.body;
+            let planned = match &undone {
+                Some(entry) => self.undo(entry, body, services),
+                None => self.restore(body, services),
+            };
+            planned.map_err(ReadError::Profile)
         });
         if let Err(error) = restored {
-            self.session().report_rejection(read_error(path, &error, services.world.kinds), services);
+            self.session().report_rejection(read_error(&path, &error, services.world.kinds), services);
         }
     }
 
@@ -102,14 +132,4 @@ pub trait HasProfile: HasMemory {
             self.session().list_backups(key, services);
         }
     }
-}
-
-/// Maximum number of remarks of one kind that are listed.
-const MAX_LISTED_REMARKS: usize = 3;
-
-/// Lists the first few items, and the number of the remaining ones.
-pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
-    let more = things.len().saturating_sub(MAX_LISTED_REMARKS);
-    let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
-    things.iter().take(MAX_LISTED_REMARKS).map(words).chain(rest).collect()
 }

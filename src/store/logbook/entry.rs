@@ -215,7 +215,41 @@ pub struct Entry {
     pub conclusion: Option<WriteResult>,
 }
 
+/// The reason why an entry cannot be undone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UndoObstacle {
+    /// The entry is of an older version and does not contain the changed values.
+    NoItems,
+    /// The position was set, or a preset was stored or fired.
+    Preset,
+    /// A procedure was executed.
+    Procedure,
+    /// Nothing was written to the device.
+    NothingWritten,
+    /// The entry has no backup.
+    NoBackup,
+}
+
 impl Entry {
+    /// Returns the path of the backup from which the write can be undone.
+    ///
+    /// # Errors
+    /// Returns the reason why the entry cannot be undone.
+    pub fn undo_backup(&self) -> Result<&Path, UndoObstacle> {
+        match self.kind {
+            EntryKind::Write | EntryKind::Restore if self.items.is_empty() => Err(UndoObstacle::NoItems),
+            EntryKind::Write | EntryKind::Restore => self.backup.as_deref().ok_or(UndoObstacle::NoBackup),
+            EntryKind::Preset => Err(UndoObstacle::Preset),
+            EntryKind::Procedure => Err(UndoObstacle::Procedure),
+            EntryKind::Connected
+            | EntryKind::Assigned
+            | EntryKind::Status
+            | EntryKind::Backup
+            | EntryKind::Check
+            | EntryKind::Note => Err(UndoObstacle::NothingWritten),
+        }
+    }
+
     /// Returns the write cycles spent. For a write without a result, these are its planned cycles, because the program
     /// may have died after the last byte.
     pub fn write_cycles(&self) -> u64 {

@@ -26,7 +26,9 @@ use jiff::Timestamp;
 use rusqlite::{Connection, named_params};
 
 pub use asset::{AssetName, AssetNameError};
-pub use entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, WriteResult};
+pub use entry::{
+    DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, UndoObstacle, WriteResult,
+};
 pub use error::{LogbookError, LogbookErrorKind};
 pub use server::{
     Contact, DeviceHold, KeyringError, LogbookServer, OtherHolder, Password, ServerAddress, ServerAddressError,

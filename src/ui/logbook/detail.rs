@@ -41,7 +41,12 @@ pub(super) fn entry_ui(
                         let hint = theme.translate("logbook.backup_hint");
                         ui.label(theme.label(theme.translate("logbook.backup"))).on_hover_text(hint);
                     }
-                    backup_ui(ui, theme, studio, (&entry.device, path), actions);
+                    ui.horizontal_wrapped(|ui| {
+                        if entry.kind.has_result() {
+                            undo_ui(ui, theme, studio, entry, actions);
+                        }
+                        backup_ui(ui, theme, studio, (&entry.device, path), actions);
+                    });
                 }
                 ui.add_space(theme.space.inside);
                 origin_ui(ui, theme, &entry.origin);
@@ -101,36 +106,48 @@ fn backup_ui(
     (device, path): (&DeviceKey, &Path),
     actions: &mut Vec<Action>,
 ) {
-    let device = studio.devices().iter().map(Box::as_ref).find(|own| own.logbook_key().as_ref() == Some(device));
-    ui.horizontal_wrapped(|ui| {
-        if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
-            actions.push(Action::Open(path.to_owned()));
+    let device = studio.device_of(device);
+    if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
+        actions.push(Action::Open(path.to_owned()));
+    }
+    let compare = enabled_button(
+        ui,
+        device.is_some_and(|device| device.is_comparable()),
+        COMPARE,
+        &theme.translate("backups_card.compare"),
+    );
+    let restore = enabled_button(
+        ui,
+        device.is_some_and(|device| device.is_ready()),
+        icons::CLOCK_COUNTER_CLOCKWISE,
+        &theme.translate("backups_card.restore"),
+    );
+    let Some(device) = device else {
+        let why = theme.translate("logbook.not_connected");
+        compare.on_disabled_hover_text(&why);
+        restore.on_disabled_hover_text(&why);
+        return;
+    };
+    if compare.clicked() {
+        push_for(device, DeviceCommand::Compare(path.to_owned()), actions);
+    }
+    if restore.clicked() {
+        push_for(device, DeviceCommand::Restore(path.to_owned()), actions);
+    }
+}
+
+/// Draws the button that plans the write back. If that is impossible, its tooltip says why.
+fn undo_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry, actions: &mut Vec<Action>) {
+    let target = studio.undo_target(entry);
+    let button = enabled_button(ui, target.is_ok(), icons::ARROW_COUNTER_CLOCKWISE, &theme.translate("undo.button"));
+    match target {
+        Ok(device) => {
+            if button.on_hover_text(theme.translate("undo.hint")).clicked() {
+                push_for(device, DeviceCommand::UndoWrite(Box::new(entry.clone())), actions);
+            }
         }
-        let compare = enabled_button(
-            ui,
-            device.is_some_and(|device| device.is_comparable()),
-            COMPARE,
-            &theme.translate("backups_card.compare"),
-        );
-        let restore = enabled_button(
-            ui,
-            device.is_some_and(|device| device.is_ready()),
-            icons::CLOCK_COUNTER_CLOCKWISE,
-            &theme.translate("backups_card.restore"),
-        );
-        let Some(device) = device else {
-            let why = theme.translate("logbook.not_connected");
-            compare.on_disabled_hover_text(&why);
-            restore.on_disabled_hover_text(&why);
-            return;
-        };
-        if compare.clicked() {
-            push_for(device, DeviceCommand::Compare(path.to_owned()), actions);
-        }
-        if restore.clicked() {
-            push_for(device, DeviceCommand::Restore(path.to_owned()), actions);
-        }
-    });
+        Err(why) => drop(button.on_disabled_hover_text(theme.format_text(&why))),
+    }
 }
 
 /// Shows a device and executes a command for it.

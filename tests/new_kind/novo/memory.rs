@@ -4,7 +4,7 @@ use encoder_studio::app::review::{OperationTexts, Permit, Reviewable};
 use encoder_studio::app::session::{
     ApprovedPlanOf, HasDraft, HasMemory, HasProfile, KnownProfile, ProfileFile, unsaved_edits_remark,
 };
-use encoder_studio::app::{PendingEdits, Services, Text, explain};
+use encoder_studio::app::{PendingEdits, Text, explain};
 use encoder_studio::profile::{Body, ProfileDocument, ProfileError, WrittenChanges};
 use encoder_studio::store::DeviceKey;
 
@@ -96,9 +96,8 @@ impl HasProfile for Encoder {
         let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(self.read()?.clone()), remarks)))
     }
-    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+    fn restore_change(body: Body) -> Result<Change, ProfileError> {
         let NovoProfile { serial, values } = body.into_profile()?;
-        self.plan(Change { restored: Some(serial), values, options: Default::default() }, services);
-        Ok(())
+        Ok(Change { restored: Some(serial), values, options: Default::default() })
     }
 }

@@ -14,14 +14,13 @@ use crate::cli::profiles::{
     UnrestoredItems, print_missing, print_skipped_mounting, profile_to_restore, restore_options, save_profile,
     write_restore,
 };
-use crate::cli::undo::single_bytes;
 use crate::cli::{Result, Success};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
-use crate::devices::biss::profile::{BissProfile, ProfileIdentity, RegisterRange};
+use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::DeviceMode;
 use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::status_lines;
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, KeptItem, Redo};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -70,27 +69,12 @@ impl ProfileCommands for BissCommands {
         Ok(DeviceReading { body: Body::new(profile), status })
     }
 
-    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
-        match (item.item.parse::<RegisterRange>(), item.name.as_deref()) {
-            // Their values are texts.
-            (_, Some("filter" | "preset value")) | (Err(_), _) => vec![item.clone()],
-            (Ok(range), _) => {
-                let addresses: Vec<String> = range.addresses().map(|address| address.to_string()).collect();
-                single_bytes(item, |at| addresses.get(at).cloned().unwrap_or_default())
-            }
+    fn redo_command(&self, kept: &KeptItem) -> Option<String> {
+        match &kept.redo {
+            Redo::Write(old) => Some(format!("use \"write biss {} 0x{old}\"", kept.item)),
+            Redo::Repeat => Some("repeat the procedure (help do lists the actions)".to_owned()),
+            _ => None,
         }
-    }
-
-    fn instead_of_undo(&self, item: &ChangedItem, backup: &Body) -> Option<String> {
-        let range = match (item.item.parse::<RegisterRange>(), item.name.as_deref()) {
-            (_, Some("filter" | "preset value")) => return None,
-            (Ok(range), _) => range,
-            (Err(_), _) => return Some("repeat the procedure (help do lists the actions)".to_owned()),
-        };
-        let bank = range.start().bank();
-        let is_saved = backup.get::<BissProfile>()?.banks().any(|own| Some(own.number) == bank);
-        let old = item.old.as_deref().filter(|_| !is_saved)?;
-        Some(format!("use \"write biss {range} 0x{old}\""))
     }
 
     /// Returns the message that a profile was read in a device mode.

@@ -15,6 +15,7 @@ mod restore;
 #[cfg(test)]
 mod test_profiles;
 mod text;
+mod undo;
 
 pub use edit::{
     MotorSource, MountingSteps, RegisterKind, find_procedure, plan_edits, plan_filter, plan_mounting, plan_preset,

@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::{
 use crate::expected::AllowedValues;
 use crate::profile::mounting::MOUNTING_COMMENT;
 use crate::profile::ron_text::{Entries, Writer, quote};
-use crate::profile::{Comparison, Profile, ProfileError};
+use crate::profile::{ChangedItem, Comparison, Profile, ProfileError, Redo};
 
 /// Range of each part of a preset value. A part occupies three registers.
 const PRESET_NUMBER: AllowedValues = AllowedValues::whole_range(0, 16_777_215);
@@ -71,6 +71,14 @@ impl Profile for BissProfile {
 
     fn compare(&self, other: &Self) -> Comparison {
         super::compare::compare(self, other)
+    }
+
+    fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+        super::undo::single_values(item)
+    }
+
+    fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+        self.redo_item(item)
     }
 }
 

@@ -12,9 +12,7 @@ use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
 use crate::devices::biss::procedures::procedure::{Failure, OperatorAnswer, OperatorTask, UnattendedOperator};
 use crate::devices::biss::procedures::{Error, create_profile};
-use crate::devices::biss::profile::{
-    Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type,
-};
+use crate::devices::biss::profile::{Bank, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type};
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
@@ -24,11 +22,6 @@ use crate::worker::JobInterruption;
 const UNATTENDED: UnattendedOperator = UnattendedOperator { patience: Duration::from_secs(3) };
 
 impl Encoder {
-    pub(crate) fn plan_restore(&mut self, profile: BissProfile, services: &mut Services) {
-        let options = RestoreOptions::default();
-        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
-    }
-
     pub(super) fn answer_task(&mut self, task: OperatorTask, answer: OperatorAnswer) {
         if let Some(guide) = &mut self.guide {
             guide.answer_task(task, answer);
@@ -181,9 +174,9 @@ impl HasProfile for Encoder {
         Some(Ok((Body::new(profile), remarks)))
     }
 
-    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_profile()?, services);
-        Ok(())
+    fn restore_change(body: Body) -> Result<Change, ProfileError> {
+        let profile = Box::new(body.into_profile()?);
+        Ok(Change::Restore { profile, options: RestoreOptions::default() })
     }
 }
 

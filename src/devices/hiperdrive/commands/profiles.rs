@@ -13,11 +13,10 @@ use crate::cli::profiles::{UnrestoredItems, profile_to_restore, restore_options,
 use crate::cli::{Result, Success};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
-use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::devices::hiperdrive::state::status_lines;
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, KeptItem, Redo};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -70,26 +69,10 @@ impl ProfileCommands for HiperdriveCommands {
         Ok(DeviceReading { body: Body::new(profile), status })
     }
 
-    /// A backup contains all parameters, of which a later write may have changed others.
-    fn keep_items(&self, backup: &mut Body, items: &[ChangedItem]) {
-        if let Some(profile) = backup.get_mut::<HiperdriveProfile>() {
-            let is_changed = |name: &str| items.iter().any(|item| item.item == name);
-            profile.image.values.retain(|number, _| is_changed(&Item(*number).to_string()));
-        }
-    }
-
-    /// The save at the end of a write is not a value.
-    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
-        if item.item == ParameterNumber::SAVE.to_string() { Vec::new() } else { vec![item.clone()] }
-    }
-
-    fn instead_of_undo(&self, item: &ChangedItem, _backup: &Body) -> Option<String> {
-        match item.item.parse::<Item>() {
-            Ok(item) if item.0.drive1_number() == REFERENCE => {
-                Some("set the reference again with \"do hiperdrive set-position\"".to_owned())
-            }
-            Ok(_) => None,
-            Err(_) => Some("change the settings of the network again".to_owned()),
+    fn redo_command(&self, kept: &KeptItem) -> Option<String> {
+        match &kept.redo {
+            Redo::SetPosition => Some("set the reference again with \"do hiperdrive set-position\"".to_owned()),
+            _ => None,
         }
     }
 

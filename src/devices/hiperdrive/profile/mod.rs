@@ -15,6 +15,7 @@ mod restore;
 #[cfg(test)]
 mod test_profiles;
 mod text;
+mod undo;
 mod warning;
 
 pub use edit::{Positions, plan_edits, plan_service, plan_set_position};

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER_LIMIT, UPPER_L
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
 use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, Writer, value_text};
-use crate::profile::{Comparison, Profile, ProfileError};
+use crate::profile::{ChangedItem, Comparison, Profile, ProfileError, Redo};
 
 const PORT_NUMBER: AllowedValues = AllowedValues::whole_range(1, 8);
 const VARIANT: AllowedValues = AllowedValues::whole_range(0, 65_535);
@@ -78,6 +78,18 @@ impl Profile for HiperdriveProfile {
             comparison.compare_item(Item(number).to_string(), self.image.get(number), other.image.get(number));
         }
         comparison
+    }
+
+    fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+        super::undo::single_values(item)
+    }
+
+    fn keep_items(&mut self, items: &[ChangedItem]) {
+        self.keep_parameters(items);
+    }
+
+    fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+        super::undo::redo(item)
     }
 }
 

@@ -17,12 +17,7 @@ use crate::devices::hiperdrive::profile::{
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::{Body, ProfileError};
 
-impl HiperdriveDevice {
-    pub(crate) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
-        let options = RestoreOptions::default();
-        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
-    }
-}
+impl HiperdriveDevice {}
 
 impl HasMemory for HiperdriveDevice {
     fn operation_texts(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
@@ -109,8 +104,8 @@ impl HasProfile for HiperdriveDevice {
         Some(Ok((Body::new(profile), remarks)))
     }
 
-    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_profile()?, services);
-        Ok(())
+    fn restore_change(body: Body) -> Result<Change, ProfileError> {
+        let profile = Box::new(body.into_profile()?);
+        Ok(Change::Restore { profile, options: RestoreOptions::default() })
     }
 }

@@ -12,16 +12,14 @@ use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
 use crate::cli::profiles::{UnrestoredItems, print_skipped_mounting, profile_to_restore, save_profile, write_restore};
-use crate::cli::undo::single_bytes;
 use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownMeaningField};
-use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::status_lines;
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, KeptItem, Redo};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -87,43 +85,16 @@ impl ProfileCommands for HiperfaceCommands {
         Ok(DeviceReading { body: Body::new(saved.profile), status })
     }
 
-    /// Splits bytes of a field. Bytes of a field that is created or deleted belong to its status.
-    fn single_values(&self, item: &ChangedItem) -> Vec<ChangedItem> {
-        match item.item.parse() {
-            Ok(Item::Field(_)) if item.old.is_none() => Vec::new(),
-            Ok(Item::Field(range)) => {
-                single_bytes(item, |at| format!("field:{}@{}", range.field, range.start.saturating_add(at)))
+    fn redo_command(&self, kept: &KeptItem) -> Option<String> {
+        match (&kept.redo, kept.item.parse()) {
+            (Redo::Delete, Ok(Item::Status(field))) => {
+                Some(format!("use \"do hiperface delete-field {field}\" if its bytes are not needed"))
             }
-            Ok(Item::Status(_)) => {
-                let existing = |value: &Option<String>| {
-                    let byte = u8::from_str_radix(value.as_deref()?, 16).ok()?;
-                    value.clone().filter(|_| DataFieldStatus::from_byte(byte).exists())
-                };
-                vec![ChangedItem::new(&item.item, existing(&item.old), existing(&item.new))]
-            }
-            _ => vec![item.clone()],
+            (Redo::Write(old), _) => Some(format!("use \"write hiperface {} 0x{old}\"", kept.item)),
+            (Redo::SetPosition, _) => Some("set it again with \"do hiperface set-position\"".to_owned()),
+            (Redo::ChangeCode, _) => Some("use \"do hiperface change-code\" with the code before".to_owned()),
+            _ => None,
         }
-    }
-
-    fn instead_of_undo(&self, item: &ChangedItem, backup: &Body) -> Option<String> {
-        // The content of a field that was only created is unknown, and it may have been used since.
-        let is_known = |field: u8| {
-            let created = backup.get::<HiperfaceProfile>().map(|profile| profile.created.as_slice());
-            created.unwrap_or_default().iter().any(|own| own.number == field)
-        };
-        let old = item.old.as_deref().unwrap_or_default();
-        Some(match item.item.parse() {
-            Ok(Item::Status(field)) if item.old.is_none() && !is_known(field) => {
-                format!("use \"do hiperface delete-field {field}\" if its bytes are not needed")
-            }
-            Ok(Item::Field(_) | Item::Status(_) | Item::Analogue(_)) => return None,
-            Ok(Item::Address) => format!("use \"write hiperface address 0x{old}\""),
-            Ok(Item::Settings) => format!("use \"write hiperface settings 0x{old}\""),
-            Ok(Item::Counter) => "the encoder can only increment or clear its counter".to_owned(),
-            Err(_) if item.item == "position" => "set it again with \"do hiperface set-position\"".to_owned(),
-            // Access codes are not in the logbook.
-            Err(_) => "use \"do hiperface change-code\" with the code before".to_owned(),
-        })
     }
 
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {

@@ -10,6 +10,7 @@ mod item;
 mod plan;
 mod record;
 mod restore;
+mod undo;
 
 pub use commutation::{CommutationRecord, CommutationRecordError};
 pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};

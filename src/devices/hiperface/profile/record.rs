@@ -5,7 +5,7 @@ use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
 use crate::expected::AllowedValues;
 use crate::profile::mounting::MOUNTING_COMMENT;
 use crate::profile::ron_text::{Entries, UnknownValues, Writer};
-use crate::profile::{Comparison, Profile, ProfileError};
+use crate::profile::{ChangedItem, Comparison, Profile, ProfileError, Redo};
 
 /// Profile of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq)]
@@ -203,6 +203,14 @@ impl Profile for HiperfaceProfile {
 
     fn compare(&self, other: &Self) -> Comparison {
         super::compare::compare(&self.fields, &other.fields)
+    }
+
+    fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+        super::undo::single_values(item)
+    }
+
+    fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+        self.redo_item(item)
     }
 }
 

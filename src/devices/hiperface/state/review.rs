@@ -50,6 +50,10 @@ impl Reviewable for Hiperface {
         !prepared.mounting_left.is_empty()
     }
 
+    fn retain_missing(prepared: &mut Prepared, concerns: &dyn Fn(&str) -> bool) {
+        prepared.missing.retain(|item| concerns(&item.to_string()));
+    }
+
     fn redo(prepared: &Prepared) -> Vec<Text> {
         prepared.redo().iter().map(words::required_setup_text).collect()
     }

@@ -10,22 +10,17 @@ use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, S
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
 use crate::devices::hiperface::procedures::{SaveOptions, create_profile};
-use crate::devices::hiperface::profile::{HiperfaceProfile, RecordedValues, RestoreOptions, check_device};
+use crate::devices::hiperface::profile::{RecordedValues, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    pub(crate) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
-        let options = RestoreOptions::default();
-        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
-    }
-
     /// Prepares the plan under review again, for example after the encoder did not reply.
     pub(super) fn refresh_plan(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
         }
         let Some(review) = &mut self.session.review else { return };
-        *review = Review::new(change.clone(), review.is_for_another, review.is_for_other_type);
+        *review = review.renewed(change.clone());
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.session.review = None;
         }
@@ -116,9 +111,9 @@ impl HasProfile for Encoder {
         Some(Ok((Body::new(create_profile(identity, fields, recorded)), remarks)))
     }
 
-    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_profile()?, services);
-        Ok(())
+    fn restore_change(body: Body) -> Result<Change, ProfileError> {
+        let profile = Box::new(body.into_profile()?);
+        Ok(Change::Restore { profile, options: RestoreOptions::default() })
     }
 }
 

@@ -3,7 +3,6 @@
 use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
-use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob};
@@ -30,11 +29,6 @@ impl Encoder {
             }
         }
         Some(edited)
-    }
-
-    pub(crate) fn plan_restore(&mut self, profile: InterbusProfile, services: &mut Services) {
-        let options = RestoreOptions::default();
-        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 }
 
@@ -105,9 +99,9 @@ impl HasProfile for Encoder {
         Some(Ok((Body::new(profile), remarks)))
     }
 
-    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_profile()?, services);
-        Ok(())
+    fn restore_change(body: Body) -> Result<Change, ProfileError> {
+        let profile = Box::new(body.into_profile()?);
+        Ok(Change::Restore { profile, options: RestoreOptions::default() })
     }
 }
 

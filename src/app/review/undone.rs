@@ -1,0 +1,64 @@
+//! The undo of a write of the logbook: the check whether values have changed since, and what is not undone.
+
+use jiff::tz::TimeZone;
+
+use crate::app::Text;
+use crate::app::explain::{literal_text, redo_text, truncated_list};
+use crate::profile::{Body, ChangedSince, KeptItem, UndoneWrite};
+use crate::store::Entry;
+use crate::worker::commit::PlannedWrite;
+
+/// An entry of the logbook that a restore of its backup undoes.
+#[derive(Clone, Debug)]
+pub struct UndoneEntry {
+    /// Local time of the entry.
+    at: String,
+    write: UndoneWrite,
+}
+
+impl UndoneEntry {
+    /// Removes from the backup the values that the write did not change.
+    ///
+    /// # Errors
+    /// Returns a text for each item if none of them can be undone.
+    pub(in crate::app) fn new(entry: &Entry, backup: &mut Body) -> Result<Self, Vec<Text>> {
+        let write = UndoneWrite::new(&entry.items, backup);
+        let at = entry.at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string();
+        let undone = UndoneEntry { at, write };
+        if undone.write.has_effect() { Ok(undone) } else { Err(undone.kept_texts()) }
+    }
+
+    pub(super) fn title(&self) -> Text {
+        Text::new("undo.title").with("time", &self.at)
+    }
+
+    pub(super) fn concerns(&self, item: &str) -> bool {
+        self.write.concerns(item)
+    }
+
+    /// Describes the items that are not undone, with what to do instead.
+    pub(super) fn kept_texts(&self) -> Vec<Text> {
+        let kept =
+            |own: &KeptItem| Text::new("undo.kept").with("item", &own.item).with_text("instead", redo_text(&own.redo));
+        truncated_list(self.write.kept(), kept)
+    }
+
+    /// Returns the reason why a plan is not executed: the values that have changed since the write.
+    pub(super) fn rejection<P: PlannedWrite>(&self, prepared: &P) -> Option<Vec<Text>> {
+        let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
+        let changed = self.write.changed_since(planned);
+        let texts = std::iter::once(Text::new("undo.changed")).chain(truncated_list(&changed, changed_text));
+        (!changed.is_empty()).then(|| texts.collect())
+    }
+}
+
+fn changed_text(changed: &ChangedSince) -> Text {
+    let value = |value: &Option<String>| match value {
+        Some(value) => literal_text(value),
+        None => Text::new("undo.no_value"),
+    };
+    Text::new("undo.changed_value")
+        .with("item", &changed.item)
+        .with_text("expected", value(&changed.expected))
+        .with_text("found", value(&changed.found))
+}

@@ -1,0 +1,45 @@
+//! Undoing a write to an encoder: its single registers, and what the backup cannot write back.
+
+use super::{BissProfile, RegisterRange};
+use crate::profile::{ChangedItem, Redo, single_bytes};
+
+/// An item of the logbook.
+enum LoggedItem {
+    Registers(RegisterRange),
+    /// The position filter or the preset value, whose old and new values are texts.
+    Setting,
+    Procedure,
+}
+
+fn logged_item(item: &ChangedItem) -> LoggedItem {
+    match (item.item.parse::<RegisterRange>(), item.name.as_deref()) {
+        (_, Some("filter" | "preset value")) => LoggedItem::Setting,
+        (Ok(range), _) => LoggedItem::Registers(range),
+        (Err(_), _) => LoggedItem::Procedure,
+    }
+}
+
+/// Splits registers.
+pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+    match logged_item(item) {
+        LoggedItem::Setting | LoggedItem::Procedure => vec![item.clone()],
+        LoggedItem::Registers(range) => {
+            let addresses: Vec<String> = range.addresses().map(|address| address.to_string()).collect();
+            single_bytes(item, |at| addresses.get(at).cloned().unwrap_or_default())
+        }
+    }
+}
+
+impl BissProfile {
+    /// Returns what to do about an item that this backup does not contain.
+    pub(super) fn redo_item(&self, item: &ChangedItem) -> Option<Redo> {
+        let range = match logged_item(item) {
+            LoggedItem::Setting => return None,
+            LoggedItem::Procedure => return Some(Redo::Repeat),
+            LoggedItem::Registers(range) => range,
+        };
+        let bank = range.start().bank();
+        let is_saved = self.banks().any(|own| Some(own.number) == bank);
+        item.old.clone().filter(|_| !is_saved).map(Redo::Write)
+    }
+}

@@ -1,0 +1,29 @@
+//! Undoing a write to a device: its single parameters, and what the backup cannot write back.
+
+use super::{HiperdriveProfile, Item};
+use crate::devices::hiperdrive::protocol::ParameterNumber;
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
+use crate::profile::{ChangedItem, Redo};
+
+/// Omits the save at the end of a write, which is not a value.
+pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+    if item.item == ParameterNumber::SAVE.to_string() { Vec::new() } else { vec![item.clone()] }
+}
+
+/// Returns what to do about an item that is never restored.
+pub(super) fn redo(item: &ChangedItem) -> Option<Redo> {
+    match item.item.parse::<Item>() {
+        Ok(item) if item.0.drive1_number() == REFERENCE => Some(Redo::SetPosition),
+        Ok(_) => None,
+        Err(_) => Some(Redo::ChangeNetwork),
+    }
+}
+
+impl HiperdriveProfile {
+    /// Keeps the parameters that a write has changed. A backup contains all parameters, of which a later write may have
+    /// changed others.
+    pub(super) fn keep_parameters(&mut self, items: &[ChangedItem]) {
+        let is_changed = |name: &str| items.iter().any(|item| item.item == name);
+        self.image.values.retain(|number, _| is_changed(&Item(*number).to_string()));
+    }
+}

@@ -1,0 +1,40 @@
+//! Undoing a write to an encoder: its single bytes, and what the backup cannot write back.
+
+use super::{HiperfaceProfile, Item};
+use crate::devices::hiperface::protocol::DataFieldStatus;
+use crate::profile::{ChangedItem, Redo, single_bytes};
+
+/// Splits bytes of a field. Bytes of a field that is created or deleted belong to its status.
+pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
+    match item.item.parse() {
+        Ok(Item::Field(_)) if item.old.is_none() => Vec::new(),
+        Ok(Item::Field(range)) => {
+            single_bytes(item, |at| format!("field:{}@{}", range.field, range.start.saturating_add(at)))
+        }
+        Ok(Item::Status(_)) => {
+            let existing = |value: &Option<String>| {
+                let byte = u8::from_str_radix(value.as_deref()?, 16).ok()?;
+                value.clone().filter(|_| DataFieldStatus::from_byte(byte).exists())
+            };
+            vec![ChangedItem::new(&item.item, existing(&item.old), existing(&item.new))]
+        }
+        _ => vec![item.clone()],
+    }
+}
+
+impl HiperfaceProfile {
+    /// Returns what to do about an item that this backup cannot write back.
+    pub(super) fn redo_item(&self, item: &ChangedItem) -> Option<Redo> {
+        // The content of a field that was only created is unknown, and it may have been used since.
+        let is_known = |field: u8| self.created.iter().any(|own| own.number == field);
+        let old = || item.old.clone().unwrap_or_default();
+        Some(match item.item.parse() {
+            Ok(Item::Status(field)) if item.old.is_none() && !is_known(field) => Redo::Delete,
+            Ok(Item::Field(_) | Item::Status(_) | Item::Analogue(_)) => return None,
+            Ok(Item::Address | Item::Settings) => Redo::Write(old()),
+            Ok(Item::Counter) => Redo::KeepCounter,
+            Err(_) if item.item == "position" => Redo::SetPosition,
+            Err(_) => Redo::ChangeCode,
+        })
+    }
+}
