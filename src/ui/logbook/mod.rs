@@ -58,6 +58,7 @@ pub(super) fn logbook_ui(
     egui::Frame::NONE.inner_margin(page_margin(ui, theme)).show(ui, |ui| {
         let room = ui.available_rect_before_wrap();
         let (entries, line) = room.split_top_bottom_at_y(room.bottom() - sharing::HEIGHT);
+        let entries = Rect { max: entries.max - egui::vec2(0.0, theme.space.between), ..entries };
         ui.scope_builder(UiBuilder::new().max_rect(entries), |ui| entries_ui(ui, theme, studio, view, actions));
         ui.scope_builder(UiBuilder::new().max_rect(line), |ui| sharing::sharing_ui(ui, theme, studio, actions));
     });
