@@ -210,7 +210,7 @@ fn a_valid_link_is_required() {
         bench.run(&[command, &["--link", "serial:/dev/x?baud=fast"]].concat()).fails(2, &["baud=fast", "9600"]);
         bench.run(&[command, &["--link", "serial:/dev/x?speed=1"]].concat()).fails(2, &["speed", "baud"]);
         bench.run(&[command, &["--link", "sim:?fault=drop:2"]].concat()).fails(2, &["drop:2", "0 to 1"]);
-        bench.run(&[command, &["--link", "bridge:/dev/x"]].concat()).fails(2, &["bridge:", "serial:"]);
+        bench.run(&[command, &["--link", "enip:192.168.1.7"]].concat()).fails(2, &["enip:", "serial:"]);
         bench.run(&[command, &["--link", "bridge:tcp:host"]].concat()).fails(2, &["bridge:tcp:192.168.0.7:4001"]);
     }
     bench.run(&["diff", &profile(&bench), "--json"]).fails(2, &["--link"]);

@@ -114,16 +114,18 @@ fn common_commands_are_as_recorded() {
 }
 
 /// Every connection to a device, as kind and beginning of a link.
-const LINKS: [&str; 16] = [
+const LINKS: [&str; 18] = [
     "hiperface sim:",
     "hiperface serial:none",
     "hiperface tcp:none:1",
+    "hiperface bridge:none",
     "hiperface replay:none",
     "biss sim:",
     "biss sim:?bridge=on",
     "biss serial:none",
     "biss tcp:none:1",
     "biss bridge:none",
+    "biss bridge:none?pin=on",
     "biss bridge:tcp:none:1",
     "ssi sim:",
     "ssi bridge:none",

@@ -390,7 +390,7 @@ fn links_open_the_interface_they_name() {
         ),
         (
             "bridge:/dev/null?echo=on",
-            "echo is not a parameter of bridge: links; valid parameters are margin, clock, voltage, leave-supply, mt, st, crc",
+            "echo is not a parameter of bridge: links; valid parameters are margin, clock, voltage, leave-supply, mt, st, crc, pin",
         ),
         ("bridge:/dev/null?clock=1", "clock=1 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),
     ];

@@ -72,7 +72,9 @@ fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
     } else {
         let mut known = way.parameters();
         known.extend((url.scheme == LinkScheme::Replay).then_some(BRIDGE));
-        known.extend(if url.scheme == LinkScheme::Bridge { PinAtAdapter::KEYS } else { &[] });
+        let of_the_pin = if url.scheme == LinkScheme::Bridge { PinAtAdapter::KEYS } else { &[] };
+        // The bus has some of them as well.
+        known.extend(of_the_pin.iter().filter(|name| !way.parameters().contains(name)));
         check_parameters(&url.query, url.scheme, &known)?;
     }
     let mut station = Station::from_query(&url.query, way, reply_margin(url.scheme))?;
