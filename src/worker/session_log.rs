@@ -35,7 +35,7 @@ impl SessionLog {
         self.state().device.clone()
     }
 
-    /// Tells other benches with the next transfer that the device is not connected any more.
+    /// Tells other benches with the next transfer that the device is no longer connected.
     pub fn release_device(&self) {
         self.state().hold = None;
     }

@@ -290,7 +290,7 @@ fn device() -> DeviceKey {
     DeviceKey::new("hiperface", "37h", "GB1", false)
 }
 
-/// The part of the next test that runs in a process of its own: it records entries as fast as it can, prints each one
+/// The part of the next test that runs in a separate process: it records entries as fast as it can, prints each one
 /// that is acknowledged, and sends them at the same time.
 #[test]
 #[ignore = "is started by another test"]

@@ -1,4 +1,4 @@
-//! A PostgreSQL server of Debian's package, in a folder of its own and on a free port.
+//! A PostgreSQL server of Debian's package, in a separate folder and on a free port.
 
 use std::fs;
 use std::net::TcpListener;

@@ -1,5 +1,5 @@
 //! Damaged files of the logbook. Such a file is kept under another name, and a new one is begun that knows of it: the
-//! write cycles in the damaged file are not counted any more.
+//! write cycles in the damaged file are no longer counted.
 
 use std::ffi::OsString;
 use std::fs;

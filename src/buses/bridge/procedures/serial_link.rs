@@ -142,7 +142,7 @@ impl AdapterSerialLink {
         let microseconds = |duration: Duration| u32::try_from(duration.as_micros()).unwrap_or(u32::MAX);
         let request = Request::UartTransfer { timeout_us: microseconds(timeout), idle_us: microseconds(idle), tx };
         self.last_transfer = Some(self.clock.now());
-        let (start, rx) = self.with_adapter(|adapter| {
+        let transferred = self.with_adapter(|adapter| {
             // Not repeated: the device may already have executed the request.
             let answered = match adapter.request_within(&request, longest) {
                 Ok(Some(answered)) => answered,
@@ -150,10 +150,10 @@ impl AdapterSerialLink {
                 Ok(None) => {
                     adapter.adapter.forget_identity();
                     adapter.read_identity()?;
-                    return Ok((None, Vec::new()));
+                    return Ok(None);
                 }
                 Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_ANSWER, .. })) => {
-                    return Ok((None, Vec::new()));
+                    return Ok(Some((None, Vec::new())));
                 }
                 Err(failure) => return Err(failure),
             };
@@ -161,12 +161,13 @@ impl AdapterSerialLink {
                 return Err(AdapterError::unexpected_reply(request.operation(), &answered.reply).into());
             };
             let start = adapter.adapter.local_time_of(*t_us, &answered);
-            Ok((Some(start), rx.clone()))
+            Ok(Some((Some(start), rx.clone())))
         })?;
-        if start.is_none() {
+        if transferred.is_none() {
             // A restarted adapter has lost its settings, and its supply is off.
             (self.configured, self.is_supplied) = (None, false);
         }
+        let (start, rx) = transferred.unwrap_or_default();
         self.reply_start = start.filter(|_| !rx.is_empty());
         self.last_transfer = Some(self.clock.now());
         Ok(rx)

@@ -142,7 +142,7 @@ fn tls_config(authorities: Option<&Path>) -> Result<ClientConfig, ServerErrorKin
     Ok(builder.with_root_certificates(roots).with_no_client_auth())
 }
 
-/// Returns the reason why an encrypted connection failed. A server without TLS says so in an error of its own.
+/// Returns the reason why an encrypted connection failed. A server without TLS reports a distinct error.
 fn not_encrypted(error: tokio_postgres::Error) -> ServerErrorKind {
     match ServerErrorKind::from(error) {
         ServerErrorKind::Database { code: None, what } => ServerErrorKind::Encryption { why: what },
