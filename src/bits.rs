@@ -36,12 +36,12 @@ impl fmt::Display for Word {
     }
 }
 
-/// Bytes of which some may be masked because they are secret. A masked byte displays as `**`.
+/// A byte sequence in which secret bytes may be masked. A masked byte displays as `**`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaskedBytes(Vec<Option<u8>>);
 
 impl MaskedBytes {
-    /// Creates bytes that are all visible.
+    /// Creates bytes without any mask.
     pub fn clear(bytes: &[u8]) -> Self {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
@@ -50,7 +50,7 @@ impl MaskedBytes {
         MaskedBytes(vec![None; count])
     }
 
-    /// Creates bytes of which those at the positions in `secret` are masked.
+    /// Creates a sequence in which the bytes at the positions in `secret` are masked.
     pub fn with_masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())

@@ -84,13 +84,13 @@ pub struct DrawingLabel {
     pub is_bold: bool,
     /// Text colour, or `None` for black.
     pub colour: Option<&'static str>,
-    /// Part of the label that is at `x`.
+    /// Point of the label to which `x` refers.
     pub align: LabelAlign,
     /// Label text.
     pub text: String,
 }
 
-/// The part of a label that is at its horizontal position.
+/// The point of a label to which its horizontal position refers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum LabelAlign {
     /// The left end.

@@ -20,12 +20,12 @@ pub struct RejectedParameter {
 }
 
 impl RejectedParameter {
-    /// Creates the error for a rejected value. `allowed` describes the accepted values.
+    /// Creates an error for a rejected value. `allowed` describes the accepted values.
     pub fn new(key: &str, value: impl ToString, allowed: AllowedValues) -> Self {
         RejectedParameter { key: key.to_owned(), value: value.to_string(), allowed }
     }
 
-    /// Replaces a secret value by asterisks.
+    /// Replaces a secret value with asterisks.
     #[must_use]
     pub fn masked(self) -> Self {
         RejectedParameter { value: "**".to_owned(), ..self }

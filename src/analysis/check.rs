@@ -36,7 +36,7 @@ pub struct CycleCount {
 }
 
 impl CycleCount {
-    /// Returns a count of which none is missing.
+    /// Returns a count that is known to be complete.
     pub const fn complete(seen: u64) -> Self {
         CycleCount { seen, is_complete: true }
     }

@@ -4,7 +4,7 @@
 
 use super::ellipse::{Ellipse, FitError};
 
-/// Highest sum of both powers.
+/// Maximum sum of both powers.
 const ORDER: usize = 4;
 /// Number of powers in a row of the table.
 const ROW: usize = ORDER + 1;

@@ -89,7 +89,7 @@ pub fn compute_nonlinearity(
     })
 }
 
-/// Splits the error at each sample that is surrounded by a whole period. The mean over the period integrates the
+/// Splits the error at each sample that has half a period on either side. The mean over the period integrates the
 /// straight lines between samples. The mean is therefore independent of where the samples are in the period.
 fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
     let start = reference.first().copied().unwrap_or(0.0);

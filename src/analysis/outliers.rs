@@ -1,6 +1,6 @@
-//! Detection of samples far off the ellipse, caused by a relay's spark or a loose contact. A few of them would distort
-//! an ellipse fitted by least squares. Outliers are found by a robust deviation, which is the median of the distances.
-//! They are left out of a second fit, and reported.
+//! Detection of samples far from the ellipse, which are caused by a relay's spark or a loose contact. A few of them
+//! would distort an ellipse fitted by least squares. Outliers are found by a robust deviation, which is the median of
+//! the distances. They are left out of a second fit, and reported.
 
 use std::ops::Range;
 
@@ -170,14 +170,14 @@ fn median_deviation(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     value_at_rank(&mut offs, middle)
 }
 
-/// Returns the value of the given rank. Rank 0 is the smallest value.
+/// Returns the value with the given rank. Rank 0 is the smallest value.
 fn value_at_rank(values: &mut [f64], rank: usize) -> f64 {
     if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
 }
 
 /// Returns the ranges of samples farther from the ellipse than `limit` volts.
 fn find_outliers(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
-    /// Number of samples checked together. Usually, none of them is an outlier.
+    /// Number of samples that are checked at a time. Usually, none of them is an outlier.
     const BLOCK: usize = 256;
     let correction = ellipse.correction();
     let squared = |volts: f64| volts * volts;

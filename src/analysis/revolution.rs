@@ -90,7 +90,7 @@ impl Revolution {
     }
 }
 
-/// Angle that continues beyond the wraps of the measured value.
+/// Unwraps a measured angle.
 struct AngleUnwrapper {
     whole: f64,
     last: Option<f64>,

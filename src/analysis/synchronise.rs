@@ -37,7 +37,8 @@ pub struct SynchronisedPosition {
     pub verdict: Verdict,
 }
 
-/// Difference of exactly half a period between the positions. Either neighbouring period could be correct.
+/// The positions differ by exactly half a period, so the period is ambiguous. Either neighbouring period could be
+/// correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
 pub struct AmbiguousPeriodError;

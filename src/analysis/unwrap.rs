@@ -1,5 +1,5 @@
-//! Unwrapping of positions. A rotary encoder wraps from the end of its range to 0, which a plot would show as a spike
-//! of thousands of turns. Unwrapped positions serve display and speed only and are never written to a device.
+//! Unwrapping positions. A rotary encoder wraps from the end of its range to 0, which a plot would show as a spike of
+//! thousands of turns. Unwrapped positions serve display and speed only and are never written to a device.
 
 #[derive(Clone, Copy, Debug)]
 pub struct PositionUnwrapper {

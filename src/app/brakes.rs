@@ -1,6 +1,6 @@
-//! Stop of the drives in all sessions when the program ends: when the window is closed, on a signal, or when the
-//! display is lost. The drives are stopped and switched off, and their connections are closed. This works even if the
-//! window no longer draws.
+//! Stops the drives of all sessions when the program ends: when the window is closed, on a signal, or when the display
+//! is lost. The drives are stopped and switched off, and their connections are closed. This works even if the window no
+//! longer draws.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

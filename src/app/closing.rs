@@ -1,5 +1,5 @@
-//! Closing of a session or the window. The user is asked once if data would be lost or a job interrupted. Everything
-//! else is waited for.
+//! Closing a session or the window. The user is asked once if data would be lost or a job interrupted. Everything else
+//! is waited for.
 
 use super::action::{Action, ShutdownWait, TaskResult};
 use super::brakes::DriveStopHandles;

@@ -1,5 +1,5 @@
-//! Resolution of a conflict if a profile was changed on disk after it had been opened. The versions are compared entry
-//! by entry.
+//! Resolution of the conflict between an edited profile and a file that has changed on disk. The versions are compared
+//! entry by entry.
 
 use super::KindRegistry;
 use super::action::ReadError;
@@ -10,7 +10,7 @@ use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
 use crate::profile::{Change, ChangedSide, ProfileDocument, ProfileError, diverging_changes};
 
-/// A profile that exists in two different versions.
+/// A profile of which the window and the file contain different versions.
 #[derive(Debug)]
 pub struct ProfileConflict {
     saving: SaveRequest,

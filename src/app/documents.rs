@@ -1,4 +1,4 @@
-//! Opening of profiles. They are read in a task and added to the open devices.
+//! Opening profiles. They are read in a task and added to the open devices.
 
 use std::path::{Path, PathBuf};
 
@@ -98,7 +98,7 @@ pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
     document.is_newer().then(|| explain::newer_profile(path, document))
 }
 
-/// Creates a document for a profile that was read just now.
+/// Creates a document for a profile that has just been read.
 pub(crate) fn new_document(body: Body) -> ProfileDocument {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);

@@ -1,5 +1,5 @@
-//! Data about drives that the program stores because the drives do not: spindle pitch, position unit, limits that have
-//! not been confirmed since the scaling changed, and values that are not saved.
+//! Data about drives that the program stores on their behalf: spindle pitch, position unit, limits that have not been
+//! confirmed since the scaling changed, and values that are not saved.
 //!
 //! A drive may also be open in another session or window. Entries in one of them do not change the others. However,
 //! limits marked as unconfirmed in one of them lock all of them, and must be confirmed in each.
@@ -75,7 +75,8 @@ pub trait StoredDriveData {
     /// All data are adopted once per device. After that, only limits marked elsewhere are adopted.
     fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
-    /// Locks the drives whose limits were marked elsewhere. The settings need not contain the mark yet.
+    /// Locks the drives whose limits another session or window has marked as unconfirmed. The settings need not contain
+    /// the mark yet.
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings have been read since control was taken.

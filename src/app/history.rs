@@ -66,8 +66,8 @@ impl<T: PartialEq> History<T> {
         true
     }
 
-    /// Applies `follow` to the present state and all earlier ones, because the data on which they are based have
-    /// changed. Steps that no longer change anything are removed.
+    /// Applies `follow` to the present state and all earlier ones, because their base data have changed. Steps that no
+    /// longer change anything are removed.
     pub(crate) fn update_all_states(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);

@@ -1,5 +1,5 @@
-//! State of a button that is active while it is held: how a hold begins, and everything that ends it. Nothing is drawn
-//! here.
+//! State of a button that is active while it is held, with the rules for the start and the end of a hold. Nothing is
+//! drawn here.
 //!
 //! | what comes | nothing is held | held by the pointer | held by a key |
 //! |---|---|---|---|
@@ -24,12 +24,12 @@ pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether a motion that this button does not hold is in progress or was stopped just now. If so, a key press is a
+    /// Whether a motion that this button does not hold is in progress or has just been stopped. If so, a key press is a
     /// request to stop.
     pub moving: bool,
 }
 
-/// Input since the previous frame, in order.
+/// An input event since the previous frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldInput {
     /// The window gained or lost the keyboard focus.
@@ -177,8 +177,8 @@ impl HoldState {
         self.holder == Some(HoldSource::Pointer)
     }
 
-    /// Returns whether the button has the keyboard focus but no key has been seen up yet. In this state, the first
-    /// press is ignored.
+    /// Returns whether the button has the keyboard focus but is still waiting for a key to be released. In this state,
+    /// the first press is ignored.
     pub fn is_waiting_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

@@ -1,4 +1,4 @@
-//! Parsing of numbers that the user types. Decimal point and comma are accepted. Numbers are finite, and an error names
+//! Parsing numbers that the user types. Decimal point and comma are accepted. Numbers are finite, and an error names
 //! the allowed range.
 
 use super::Text;

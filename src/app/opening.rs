@@ -1,4 +1,4 @@
-//! Opening of links. A link is opened on a thread as soon as the previous user of the connection has released it. If a
+//! Opening links. A link is opened on a thread as soon as the previous user of the connection has released it. If a
 //! session already uses the connection, the link is opened in that session.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -24,9 +24,8 @@ const FRAME_BYTES: usize = 8 << 20;
 impl Studio {
     /// Returns the tab of the device to which a link refers.
     ///
-    /// If several kinds of devices are possible, this is a tab in which the link has been used, or else the open tab, or
-    /// else another one. Kinds for which such links are usual come first.
-    /// Without a link, the open tab is returned.
+    /// If several kinds of devices are possible, a tab in which the link has been used takes precedence, then the open
+    /// tab. Kinds for which such links are usual come first. Without a link, the open tab is returned.
     pub(super) fn tab_for_link(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
@@ -104,7 +103,7 @@ impl Studio {
         Some(id)
     }
 
-    /// Releases the session on a connection for another use, unless it is writing.
+    /// Releases the connection that a session uses, unless the session is writing.
     ///
     /// If the link of the session is still being opened, the returned channel closes when the attempt has ended.
     ///

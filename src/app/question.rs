@@ -1,5 +1,5 @@
-//! A question to the user before data are lost, a job is interrupted, or bytes are sent to a line that may have a drive
-//! on it.
+//! A question to the user before data are lost, a job is interrupted, or bytes are sent to a line to which a drive may
+//! be connected.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,5 @@
-//! Names stored in users' files: settings and edits written with today's names are read and written unchanged. Tests of
-//! drafts are in the folders of their devices.
+//! Tests of the names in users' files: recorded settings and edits are read and written unchanged. Tests of drafts are
+//! in the folders of their devices.
 
 use std::fmt::Debug;
 

@@ -1,11 +1,11 @@
-//! Presses that closely follow a stop. A user who stops a machine may press twice, hold the key, or release the button
+//! Repeated presses of a stop button. A user who stops a machine may press twice, hold the key, or release the button
 //! after the machine has stopped. Such presses must have no other effect. They still stop a motion that has started in
 //! the meantime. Times are those of the frames, in seconds.
 
 /// Time in seconds after a stop during which another press is also a stop.
 const REPEAT_WINDOW_S: f64 = 0.5;
 
-/// Times of the last stop of a motion, and of the last press of a stop button.
+/// Times of the last stop and of the last press of a stop button.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopPresses {
     stopped: Option<f64>,
@@ -13,8 +13,8 @@ pub struct StopPresses {
 }
 
 impl StopPresses {
-    /// Returns whether a press at the given time is meant for a motion that is running or has just ended. Such a press
-    /// is another stop.
+    /// Returns whether a press at the given time counts as a stop, because a motion is running or has just been
+    /// stopped.
     pub fn register_stop_press(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_recently_stopped(pressed);
         if means {
@@ -23,7 +23,7 @@ impl StopPresses {
         means
     }
 
-    /// Returns whether the last stop was so recent that a press must be meant for the same motion.
+    /// Returns whether the last stop was so recent that a press must belong to it.
     pub fn has_recently_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= REPEAT_WINDOW_S)
     }
@@ -32,7 +32,7 @@ impl StopPresses {
         self.pressed = Some(now);
     }
 
-    /// Returns the time of the press that started the present click. A click by the keyboard has no separate press.
+    /// Returns the time of the press that started the current click. A click with the keyboard has no separate press.
     pub fn press_time(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }

@@ -85,42 +85,42 @@ impl Text {
         COMMON.text(id)
     }
 
-    /// Replaces `{name}` by a word, a number or a name.
+    /// Replaces `{name}` with a word, a number or a name.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Words(value.to_string())));
         self
     }
 
-    /// Replaces `{name}` by another text.
+    /// Replaces `{name}` with another text.
     #[must_use]
     pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
         self.arguments.push((name, TextArgument::Text(text)));
         self
     }
 
-    /// Replaces `{name}` by a name that is not in a catalogue, given in English and German.
+    /// Replaces `{name}` with a name that is not in a catalogue, given in English and German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
         self.arguments.push((name, TextArgument::Name(english.to_owned(), german.to_owned())));
         self
     }
 
-    /// Replaces `{name}` by a number with the given decimals, such as 1.5 in English and 1,5 in German.
+    /// Replaces `{name}` with a number with the given decimals, such as 1.5 in English and 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, TextArgument::Number(format!("{value:.decimals$}"))));
         self
     }
 
-    /// Replaces `{name}` by a number that is given with a decimal point.
+    /// Replaces `{name}` with a number that is already formatted, except for the decimal sign of the language.
     #[must_use]
     pub(crate) fn with_formatted_number(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Number(digits.to_string())));
         self
     }
 
-    /// Replaces `{name}` by other texts, separated by commas.
+    /// Replaces `{name}` with other texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
         self.arguments.push((name, TextArgument::List(texts.into_iter().collect())));

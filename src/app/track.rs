@@ -1,4 +1,4 @@
-//! Recording of a device that is being read: position without wrap-around, speed, acceleration and watched values. The
+//! Recording a device that is being read: position without wrap-around, speed, acceleration and watched values. The
 //! kind of device supplies the meaning of positions and values.
 
 use std::time::Duration;
@@ -343,7 +343,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.follower = Some(PositionTracker::new(meaning.clone()));
     }
 
-    /// Replaces the lines by new ones for positions with the given meaning.
+    /// Replaces the lines with new ones for positions on the given scales.
     fn replace_series(&mut self, meaning: &PositionScales) {
         let has_samples = self.position_count() > 0;
         let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(MAX_JOINED_GAP_NS));

@@ -1,4 +1,4 @@
-//! Output of `do DEVICE check`: one line for each item of a device check.
+//! Output of `do DEVICE check`, with one line per item.
 
 use serde_json::{Value as Json, json};
 

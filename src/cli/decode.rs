@@ -1,5 +1,4 @@
-//! Parts of `decode` shared by all kinds of device: reading captured bytes from the arguments and printing their
-//! meaning.
+//! Parts of `decode` shared by all kinds of device: parsing captured bytes and printing their meaning.
 
 use serde_json::{Map, Value as Json, json};
 

@@ -84,7 +84,7 @@ impl Output {
         })
     }
 
-    /// Prints a message that is not a result.
+    /// Prints a message in addition to the result.
     pub fn print_message(&self, text: &str) {
         write_stderr(&format!("{text}\n"));
     }
@@ -102,7 +102,8 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{ending}")
 }
 
-/// Prints help unchanged. The message of an argument error is joined into one line, followed by a line with the usage.
+/// Prints the help as it is. The message of an argument error is joined into one line, followed by a line with the
+/// usage.
 pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {

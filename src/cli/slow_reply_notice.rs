@@ -19,14 +19,14 @@ pub struct ReplyTiming {
     pub(crate) longest: Duration,
 }
 
-/// Monitor of a long command. It reports once if slow replies delay the command.
+/// Monitors a long command. It reports once if slow replies delay the command.
 pub(super) struct SlowReplyNotice {
     pace: Option<ReplyTiming>,
     look: Instant,
 }
 
 impl SlowReplyNotice {
-    /// Starts to measure the time. If `pace` is `None`, the device is never reported as slow.
+    /// Starts measuring the time. If `pace` is `None`, the device is never reported as slow.
     pub(super) fn start(pace: Option<ReplyTiming>) -> Self {
         SlowReplyNotice { pace, look: Instant::now() + FIRST_NOTICE_DELAY }
     }

@@ -1,4 +1,4 @@
-//! A plot of curves with two axes, as a drawing for paper.
+//! A printable plot of curves with two axes.
 
 use super::ticks::{decimal_places, step_1_2_5, tick_values};
 use super::{Drawing, DrawingLabel, DrawingShape, FAINT_COLOUR, LabelAlign, PathSegment};
@@ -36,7 +36,7 @@ const LEFT: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 34.0;
-/// Least distance between two numbers of the axes.
+/// Minimum distance between two axis labels.
 const APART: (f64, f64) = (70.0, 30.0);
 const GRID: &str = "#d5dadf";
 
@@ -71,7 +71,7 @@ impl Plot<'_> {
         (LEFT + part(x, self.x) * (self.right() - LEFT), self.bottom() - part(y, self.y) * (self.bottom() - TOP))
     }
 
-    /// Returns the parts of a curve within the plot, in drawing units.
+    /// Returns the visible parts of a curve in drawing units.
     fn visible_runs(&self, points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
         let within = |(x, y): (f64, f64)| (self.x.0..=self.x.1).contains(&x) && (self.y.0..=self.y.1).contains(&y);
         let mut runs: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
@@ -122,9 +122,9 @@ impl Plot<'_> {
         ]);
     }
 
-    /// Names the curves in the colours of their lines, below the plot.
+    /// Draws the names of the curves below the plot, in the colours of their lines.
     fn draw_legend(&self, drawing: &mut Drawing) {
-        /// Width of a character of the legend, of which the exact width is not known here.
+        /// Assumed average width of a character in the legend.
         const CHARACTER: f64 = 5.6;
         let y = self.bottom() + 28.0;
         let mut x = LEFT;

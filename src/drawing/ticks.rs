@@ -19,8 +19,8 @@ pub fn decimal_places(step: f64) -> usize {
 
 /// Returns the multiples of a step within a range.
 pub fn tick_values(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// Maximum number of ticks, more than a plot can display. Without this limit, a step of zero would cause an endless
-    /// loop.
+    /// Maximum number of ticks, which exceeds what a plot can display. Without this limit, a step of zero would cause
+    /// an endless loop.
     const MAX_TICKS: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MAX_TICKS) } else { 0 };

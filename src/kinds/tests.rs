@@ -1,4 +1,4 @@
-//! Tests of the profiles of every kind: the ready-made ones, those of schema 1, and the names of their entries.
+//! Tests of profiles of every kind: ready-made profiles, profiles of schema 1, and misspelt entry names.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
     all.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
 }
 
-/// Returns the names before colons, outside of texts and comments, with the start and end of each.
+/// Returns the names before colons outside strings and comments, each with its start and end.
 fn names(text: &str) -> Vec<(usize, usize)> {
     let bytes = text.as_bytes();
     let (mut at, mut found) = (0, Vec::new());
@@ -44,7 +44,7 @@ fn names(text: &str) -> Vec<(usize, usize)> {
     found
 }
 
-/// Returns typing errors of a name: a letter omitted, doubled, exchanged with its neighbour, or added.
+/// Returns a name with typing errors: a letter omitted, doubled, swapped with its neighbour, or added.
 fn typing_errors(name: &str) -> Vec<String> {
     let short = name[..name.len() - 1].to_owned();
     let doubled = format!("{name}{}", &name[name.len() - 1..]);

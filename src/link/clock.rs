@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::units::Moment;
 
-/// A source of time on which threads can wait.
+/// A source of time that threads can wait on.
 pub trait Clock: Send + Sync {
     /// Returns the current time.
     fn now(&self) -> Moment;

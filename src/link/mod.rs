@@ -43,8 +43,8 @@ use crate::units::{CharacterFormat, Moment};
 
 /// A connection that transports bytes in both directions.
 pub trait ByteLink: Send {
-    /// Sends bytes in one call, without a gap within a frame. This function may return before the last bit has been
-    /// sent.
+    /// Sends all bytes of a frame in one call, so that there is no gap within the frame. This function may return
+    /// before the last bit has been sent.
     ///
     /// # Errors
     /// Returns an error if the connection was lost.
@@ -79,7 +79,7 @@ pub trait ByteLink: Send {
         None
     }
 
-    /// Restores the state of the far side that must not outlast the session, such as the supply of the device.
+    /// Restores the state of the far side that must not outlive the session, such as the supply of the device.
     ///
     /// # Errors
     /// Returns an error if the connection was lost or the far side rejects the request.

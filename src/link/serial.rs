@@ -65,7 +65,7 @@ pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
     Ok(ports)
 }
 
-/// Splits the name of a port before its number, so that `COM3` comes before `COM10`.
+/// Splits the name of a port from its number, so that `COM3` is sorted before `COM10`.
 fn number_last(path: &str) -> (&str, u64, &str) {
     let name = path.trim_end_matches(|c: char| c.is_ascii_digit());
     (name, path.strip_prefix(name).and_then(|number| number.parse().ok()).unwrap_or(0), path)

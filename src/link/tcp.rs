@@ -17,7 +17,7 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// Duration below which a wait polls the socket, because the socket's time-out is only as precise as the system
+    /// Duration below which a wait polls the socket, because the time-out of a socket has the resolution of the system
     /// tick.
     const POLL_THRESHOLD: Duration = Duration::from_millis(10);
     const POLL_INTERVAL: Duration = Duration::from_micros(500);

@@ -69,7 +69,7 @@ impl DatagramPort for UdpPort {
     }
 }
 
-/// Returns the local address from which packets to the target are sent.
+/// Returns the local address that routes to the target.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     // Connecting a UDP socket does not send anything, but selects the network interface.

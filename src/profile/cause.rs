@@ -1,4 +1,4 @@
-//! Device-specific errors in code that is common to all devices.
+//! Type-erased errors of devices in code that is common to all devices.
 
 use std::any::Any;
 use std::error::Error;

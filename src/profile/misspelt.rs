@@ -39,7 +39,7 @@ impl Reading {
         self.newer.get().is_some()
     }
 
-    /// Records that the schema does not define the entry at this path.
+    /// Records an entry that the schema does not define.
     pub(super) fn is_beyond(&self, path: String) {
         self.beyond.borrow_mut().push(path);
     }

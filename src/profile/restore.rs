@@ -1,4 +1,4 @@
-//! Options and result of restoring a profile, for any kind of device.
+//! Options and result of a restore, for any kind of device.
 
 /// Options for restoring a profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

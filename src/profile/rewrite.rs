@@ -1,4 +1,4 @@
-//! Saving of a profile over a file that a user has edited, and merging of the profiles of two users.
+//! Saving a profile over a file that a user has edited, and merging the profiles of two users.
 
 use super::source::{Change, UpdatedText, apply_all, carry_changes, find_changes, lost_comments};
 use super::{ProfileDocument, ProfileError, ProfileFormats};

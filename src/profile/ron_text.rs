@@ -16,7 +16,7 @@ use crate::expected::AllowedValues;
 /// Unknown entries by name, which were added by the user or belong to a newer schema.
 pub type UnknownValues = BTreeMap<String, Value>;
 
-/// Name of the structure that holds the user's own entries.
+/// Name of the structure with entries added by the user.
 const EXTRA_ENTRY: &str = "extra";
 
 /// The entries of a structure. The parser removes them one by one. The remaining entries were added by the user or are
@@ -170,8 +170,8 @@ impl Entries {
         }
     }
 
-    /// Returns the remaining entries, which are the user's own or belong to a newer schema. The user's entries outside
-    /// `extra`, as in older files, are moved into `extra`.
+    /// Returns the remaining entries, which were added by the user or belong to a newer schema. The user's entries
+    /// outside `extra`, as in older files, are moved into `extra`.
     ///
     /// # Errors
     /// Returns [`ProfileError::Misspelt`] if a remaining entry is a misspelling of a missing one.
@@ -199,7 +199,7 @@ impl Entries {
         Ok(own)
     }
 
-    /// Records that the schema does not define the entry at this path.
+    /// Records an entry that the schema does not define.
     pub fn is_beyond(&self, path: String) {
         self.reading.is_beyond(path);
     }
@@ -309,7 +309,7 @@ pub(crate) fn quote(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Formats the user's own entries for the end of a single-line structure, as in `, extra: {…}`.
+/// Formats the entries added by the user for the end of a single-line structure, as in `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &UnknownValues) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA_ENTRY}: {}", extra_text(unknown)) }
 }

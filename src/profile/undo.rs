@@ -1,11 +1,11 @@
-//! Undoing a write of the logbook: the check that each value is still the one that the write has left. A value that has
-//! changed since is not overwritten.
+//! Undoing a write of the logbook, provided that each value is still the written one. A value that has changed since is
+//! not overwritten.
 
 use std::collections::BTreeMap;
 
 use super::{Body, ChangedItem};
 
-/// The values that some operations change in total, from the first old value to the last new one. Values that the
+/// The total changes of values by a series of operations, from the first old value to the last new one. Values that the
 /// operations change and change back, such as the protection of a field, are not included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ValueChanges(BTreeMap<String, Change>);
@@ -27,7 +27,7 @@ pub struct ChangedSince {
     pub found: Option<String>,
 }
 
-/// What to do about an item instead of undoing its write.
+/// Instruction for an item whose write cannot be undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Redo {
     /// Write this value again. The backup does not contain it.
@@ -51,11 +51,11 @@ pub enum Redo {
 pub struct KeptItem {
     /// Name of the item.
     pub item: String,
-    /// What to do instead.
+    /// Instruction for the user.
     pub redo: Redo,
 }
 
-/// A write that is undone by restoring its backup.
+/// A write that can be undone by restoring its backup.
 #[derive(Clone, Debug)]
 pub struct UndoneWrite {
     changes: ValueChanges,
@@ -86,7 +86,7 @@ impl UndoneWrite {
         self.kept.len() < self.item_count
     }
 
-    /// Returns whether a message about an item of the profile is about the write.
+    /// Returns whether a message about a profile item concerns the write.
     pub fn concerns(&self, item: &str) -> bool {
         let is_part =
             |value: &str| value.strip_prefix(item).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
@@ -113,7 +113,7 @@ pub(crate) fn single_bytes(item: &ChangedItem, name: impl Fn(usize) -> String) -
 }
 
 impl ValueChanges {
-    /// Combines changes in the given order. Each item must be a single value.
+    /// Combines changes in chronological order. Each item must be a single value.
     pub fn of(items: impl IntoIterator<Item = ChangedItem>) -> Self {
         let mut values: BTreeMap<String, Change> = BTreeMap::new();
         for ChangedItem { item, old, new, .. } in items {

@@ -75,7 +75,7 @@ pub trait Write {
         ended
     }
 
-    /// Returns the state of the device after an aborted write.
+    /// Returns the state of the device after an interrupted write.
     fn end_state(&mut self, cause: &Self::Error) -> Self::EndState;
 }
 

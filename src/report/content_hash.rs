@@ -1,4 +1,4 @@
-//! The hash over the content of a report, from which its number follows.
+//! The hash of the content of a report, from which the report number is derived.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use super::Report;
 
-/// SHA-256 over the content of a report. The time of printing is not part of the content.
+/// SHA-256 hash of the content of a report. The time of printing is not part of the content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContentHash(String);
 
@@ -14,7 +14,7 @@ pub struct ContentHash(String);
 const NUMBER_DIGITS: usize = 10;
 
 impl Report {
-    /// Returns the hash over the content.
+    /// Returns the hash of the content.
     pub fn content_hash(&self) -> ContentHash {
         // Texts, numbers and lists always have a JSON form.
         let content = serde_json::to_vec(self).unwrap_or_default();
@@ -22,7 +22,7 @@ impl Report {
     }
 }
 
-/// Returns the SHA-256 of bytes in lower-case hexadecimal digits, as other programs print it.
+/// Returns the SHA-256 hash of bytes in lower-case hexadecimal digits, like `sha256sum`.
 pub fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

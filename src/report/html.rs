@@ -1,5 +1,5 @@
-//! A report as one self-contained HTML page for A4 paper. It has no script and no foreign resource, and the fonts are
-//! embedded.
+//! Rendering of a report as a self-contained HTML page for A4 paper. It has no script and no foreign resource, and the
+//! fonts are embedded.
 
 use askama::Template;
 use base64::Engine as _;

@@ -1,5 +1,5 @@
-//! A report as a document: sections of facts, tables and drawings in one language. It knows no device and does no I/O.
-//! Two renderers make a page set of the same document, [`html`] and [`pdf`].
+//! The document model of reports: sections with facts, tables and drawings in one language. It knows no device and does
+//! no I/O. Two renderers make a page set of the same document, [`html`] and [`pdf`].
 
 mod content_hash;
 pub mod html;
@@ -39,7 +39,7 @@ pub struct Company {
     pub logo: Option<Vec<u8>>,
 }
 
-/// Texts of the frame around the content of a report.
+/// Fixed texts around the content of a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Labels {
     /// Label of the report number.
@@ -193,7 +193,7 @@ impl Table {
         self.rows.push(Row { cells: cells.into_iter().collect(), mark });
     }
 
-    /// Removes the columns without an entry, which only take space.
+    /// Removes columns without entries.
     fn remove_empty_columns(&mut self) {
         let is_used =
             |index: usize| self.rows.iter().any(|row| row.cells.get(index).is_some_and(|cell| !cell.is_empty()));

@@ -65,7 +65,7 @@ pub(crate) struct SentCharacters {
     pub(crate) end: Moment,
 }
 
-/// State common to all lines, created from the settings of a device.
+/// State common to all virtual lines, created from the settings of a device.
 #[derive(Clone)]
 pub(crate) struct LineConditions {
     pub(crate) faults: SimulatedFaults,
@@ -91,8 +91,8 @@ impl LineConditions {
         }
     }
 
-    /// Number of bytes that a UART can buffer, as in a device server. Further bytes are lost. No request of the
-    /// simulated protocols is longer. 512 bytes take half a second at 9600 bit/s.
+    /// Buffer size of a UART in bytes, as in a device server. Further bytes are lost. No request of the simulated
+    /// protocols is longer. 512 bytes take half a second at 9600 bit/s.
     const BUFFER: usize = 512;
 
     /// Returns the number of further bytes that the host's UART can accept.

@@ -16,7 +16,7 @@ use super::files::{create_folder, write_new};
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
-/// Maximum number of backups of a device within a second. More would indicate a runaway loop.
+/// Maximum number of backups of a device per second. More would indicate a runaway loop.
 const MAX_BACKUPS_PER_SECOND: u32 = 1000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,4 +1,5 @@
-//! Locks between programs that use the same files. When a program ends for any reason, the system releases its locks.
+//! File locks between programs that use the same files. When a program ends for any reason, the system releases its
+//! locks.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -20,7 +21,7 @@ pub(super) struct FileLock {
 }
 
 impl FileLock {
-    /// Acquires a lock file, and creates it if missing. Returns `None` if this or another program holds the lock.
+    /// Locks a lock file, which is created if missing. Returns `None` if this or another program holds the lock.
     pub(super) fn try_lock_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileErrorKind::from(error).into_error(FileOperation::Write, path);
         let file = open(path).map_err(failed)?;
@@ -44,8 +45,8 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Replaces the text of a file with the result of `make`, while other programs that use this function wait. The folder
-/// is created if missing, and the text is written with [`write_atomically`].
+/// Replaces the text of a file with the result of `make`. Other programs that use this function wait in the meantime.
+/// The folder is created if missing, and the text is written with [`write_atomically`].
 ///
 /// `make` receives the current text, or the error if it cannot be read. It returns `None` to leave the file unchanged.
 ///

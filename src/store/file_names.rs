@@ -1,6 +1,6 @@
 //! Folder and file names derived from external strings such as serial numbers and item names.
 
-/// Representation of letter case in file names. Windows and macOS ignore the case of file names.
+/// Encoding of letter case in file names. Windows and macOS ignore the case of file names.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LetterCase {
     /// Case is not encoded, because no two names differ only in case.

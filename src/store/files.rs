@@ -35,7 +35,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically_with(path, |file| file.write_all(content))
 }
 
-/// Writes a text like [`write_atomically`], but preserves an existing byte order mark.
+/// Writes a text like [`write_atomically`] and preserves an existing byte order mark.
 ///
 /// # Errors
 /// Returns the same errors as [`write_atomically`].

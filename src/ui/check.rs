@@ -1,4 +1,4 @@
-//! Results of a device check, for every kind of device.
+//! Drawing the results of a device check, for every kind of device.
 
 use egui::{RichText, Ui};
 

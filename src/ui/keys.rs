@@ -1,6 +1,6 @@
-//! Keys before any widget receives them. A key that repeats, or follows immediately after another, does not press a
-//! button. Space stops a motion. While the pointer holds a button that moves a drive, every key stops the motion.
-//! [`HoldState`](crate::app::HoldState) handles a key that holds such a button.
+//! Filtering key events before any widget receives them. A key that repeats, or follows immediately after another, does
+//! not press a button. Space stops a motion. While the pointer holds a button that moves a drive, every key stops the
+//! motion. [`HoldState`](crate::app::HoldState) handles a key that holds such a button.
 
 use egui::{Context, Event, Key};
 

@@ -1,5 +1,5 @@
-//! Interval of frames while live values arrive. Where software draws the window, as in a virtual machine, a frame costs
-//! far more processor time. Frames are then further apart, which leaves processor time to other programs.
+//! Frame interval while live values arrive. Where software draws the window, as in a virtual machine, a frame costs far
+//! more processor time. Frames are then further apart, which leaves processor time to other programs.
 
 use std::time::Duration;
 

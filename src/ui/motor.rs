@@ -1,4 +1,4 @@
-//! The card of the motor that turns the shaft of a virtual encoder.
+//! The card for the motor of a virtual encoder.
 
 use egui::{Button, Ui};
 

@@ -126,8 +126,7 @@ const NOT_OPENED: &str = "The window cannot be opened: neither OpenGL 2 nor Dire
 const NOT_OPENED: &str = "The window cannot be opened: the display does not answer, or a run-time package is missing (the \
                           README lists them; the log file says more). Without a window: encoder-studio help.";
 
-/// Shows a message in a system dialog if there is no terminal for it, because the program was started from the start
-/// menu.
+/// Shows a message in a system dialog if the program was started without a terminal.
 #[cfg(windows)]
 fn show_without_terminal(message: &str) {
     use std::os::windows::io::AsRawHandle as _;
@@ -137,7 +136,7 @@ fn show_without_terminal(message: &str) {
     }
 }
 
-/// Does not show a message. Other systems cannot show a dialog without a window, and their desktops log the message.
+/// Does nothing. Other systems cannot show a dialog without a window, and their desktops log the message.
 #[cfg(not(windows))]
 const fn show_without_terminal(_message: &str) {}
 

@@ -1,4 +1,4 @@
-//! Presses that stop motion, as reported by the toolkit. [`StopPresses`] interprets them.
+//! Stop button presses as reported by egui. [`StopPresses`] interprets them.
 
 use egui::{Context, Event, Id, Key, Response, Ui};
 

@@ -138,7 +138,7 @@ pub trait Device: Send + 'static {
         false
     }
 
-    /// Restores any device state that must not outlast the session.
+    /// Restores any device state that must not outlive the session.
     fn restore_state(&mut self, _desk: &mut SessionContext) {}
 }
 

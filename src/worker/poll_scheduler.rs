@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(pace.next_due(None, start + ms(530)), None);
     }
 
-    /// Returns the requests up to `end` and the milliseconds at which they begin, if each takes 25 ms.
+    /// Returns the requests up to `end` and their start times in milliseconds, if each takes 25 ms.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();

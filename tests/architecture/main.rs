@@ -15,7 +15,7 @@ mod words;
 use paths::{Used, paths};
 use places::{Owner, Place, modules_of};
 
-/// The only file that names all devices, and what buses and Signals add to them.
+/// The only file that lists all devices, and the additions of buses and Signals.
 const LIST_OF_KINDS: &str = "src/kinds.rs";
 
 struct Source {
@@ -47,7 +47,7 @@ impl Source {
         self.path.contains("/tests") || self.path.contains("vectors")
     }
 
-    /// Modules of other places that the code uses.
+    /// Returns the modules of other folders that the code uses.
     fn uses(&self, text: &str) -> Vec<(Used, Place)> {
         let used = paths(&self.modules, text);
         let placed = used.into_iter().filter_map(|used| Place::of(&used.path).map(|place| (used, place)));
@@ -114,7 +114,8 @@ fn modules_of_one_layer_use_each_other_only_where_allowed() {
     }
 }
 
-/// No two folders of the core use each other: they would be one. A folder and its subfolders are one.
+/// No two folders of the core depend on each other, because they would effectively be one. A folder includes its
+/// subfolders.
 #[test]
 fn no_two_folders_of_the_core_use_each_other() {
     let sources: Vec<Source> = sources().into_iter().filter(|source| source.place.owner == Owner::Core).collect();
@@ -304,7 +305,8 @@ fn only_the_window_draws() {
 /// word has three letters or more that are not all capitals.
 #[test]
 fn no_view_contains_a_literal_text() {
-    /// Code before a literal that is a name for egui, for a position in a text, for the system or the compiler.
+    /// Code before a literal that is an identifier for egui, an argument of a text, or a name for the system or the
+    /// compiler.
     const NAMES: [&str; 21] = [
         "Id::unique(",
         "id_salt(",
@@ -328,10 +330,10 @@ fn no_view_contains_a_literal_text() {
         "target_os =",
         "reason =",
     ];
-    /// The program's name, examples of input, and names from the manual.
+    /// The name of the program, examples of input, and names from the manual.
     const ALLOWED: [&str; 7] =
         ["encoder-studio", "drop:0.01", "capture.trace", "atm60,code=gray", "error%1bposition%24ge", "nERR", "nWARN"];
-    /// Files that are no views: messages on the terminal, and the names of renderers and fonts.
+    /// Files that are not views: messages on the terminal, and the names of renderers and fonts.
     const NO_VIEWS: [&str; 3] = ["src/ui/renderer.rs", "src/ui/run.rs", "src/ui/theme.rs"];
     let sources = sources();
     let known = Known::read(&sources);
@@ -365,8 +367,8 @@ fn every_used_text_is_in_the_table() {
     }
 }
 
-/// Returns whether it has three letters or more in a row that are not all capitals, outside the places of a format
-/// string.
+/// Returns whether a string contains three or more consecutive letters that are not all capitals, outside format
+/// arguments.
 fn has_word(text: &str) -> bool {
     let mut bare = String::new();
     let mut rest = text;
@@ -425,7 +427,7 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Returns a text without its escapes, none of which is for a letter.
+/// Returns a text without its escape sequences, none of which stands for a letter.
 fn unescaped(text: &str) -> String {
     let mut characters = text.chars();
     let mut bare = String::new();

@@ -1,6 +1,6 @@
 //! The owner and the layer of a module: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
 
-/// Layers and their floors.
+/// Layers and their levels.
 const LAYERS: [(&str, u8); 21] = [
     ("units", 1),
     ("bits", 1),
@@ -25,10 +25,10 @@ const LAYERS: [(&str, u8); 21] = [
     ("kinds", 6),
 ];
 
-/// Layers that the core does not have: it knows neither the bytes nor the procedures of a device.
+/// Layers that do not exist in the core, which knows neither the bytes nor the procedures of a device.
 const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
 
-/// The modules of a device, a bus and Signals, and the layers that they are.
+/// The modules of a device, a bus and Signals, with their layers.
 const MODULES: [(&str, &str); 8] = [
     ("protocol", "protocol"),
     ("profile", "profile"),
@@ -57,7 +57,8 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Returns the place of a path of modules from the root of the crate; `None` if the first is no module of it.
+    /// Returns the owner and layer of a module path from the crate root, or `None` if the first segment is not a
+    /// module.
     pub(crate) fn of(path: &[String]) -> Option<Self> {
         let names: Vec<&str> = path.iter().map(String::as_str).collect();
         let place = |owner, layer| Some(Place { owner, layer });

@@ -33,7 +33,7 @@ fn golden_bytes_are_explained() {
     }
 }
 
-/// BiSS reference 2: every frame of the table, and one with its lowest data bit inverted.
+/// BiSS reference 2: every frame of the table, and a frame whose lowest data bit is inverted.
 #[test]
 fn position_frames_are_checked() {
     let bench = Bench::new();

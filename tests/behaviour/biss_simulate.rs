@@ -68,8 +68,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     port.end("TERM");
 }
 
-/// The encoder has one speed (UBICOM reference 1); a line at another speed is set to it, and the encoder does not
-/// understand.
+/// The encoder supports one speed (UBICOM reference 1) and does not understand a line at another speed.
 #[test]
 fn the_baud_rate_can_be_set_in_the_link() {
     let bench = Bench::new();

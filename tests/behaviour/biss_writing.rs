@@ -274,7 +274,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 1001);
 }
 
-/// Once in the reading and in three places of the writing.
+/// The link is lost once while reading and at three points while writing.
 #[test]
 fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();

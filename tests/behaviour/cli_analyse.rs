@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::support::Bench;
 
-/// R, p, q, r, α in degrees, as the program's description defines them.
+/// R, p, q, r, and α in degrees, as defined in the program's documentation.
 #[derive(Clone, Copy)]
 struct Signal {
     amplitude: f64,

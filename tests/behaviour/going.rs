@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::support::{Ran, ended};
 
-/// A program that runs until it is ended, and its output so far.
+/// A running program and its output so far.
 pub(crate) struct Going {
     pub(crate) child: Child,
     out: BufReader<ChildStdout>,
@@ -14,7 +14,7 @@ pub(crate) struct Going {
 }
 
 impl Going {
-    /// Starts it, and waits until it has printed this number of lines.
+    /// Starts the program, and waits until it has printed a number of lines.
     #[track_caller]
     pub(crate) fn since(mut command: Command, lines: usize) -> Self {
         let mut child = command.spawn().unwrap();
@@ -28,7 +28,7 @@ impl Going {
         Going { child, out, text }
     }
 
-    /// Waits for its end. The time is measured from now on.
+    /// Waits for the end of the program. The time is measured from now.
     pub(crate) fn ended(self) -> Ran {
         let Going { child, mut out, mut text } = self;
         let rest = std::thread::spawn(move || {

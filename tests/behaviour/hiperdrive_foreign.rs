@@ -92,7 +92,7 @@ fn targets_of_any_behaviour_are_read_and_written() {
     }
 }
 
-/// The commands as a user types them.
+/// The commands as typed by a user.
 #[test]
 fn the_commands_work_with_a_foreign_target() {
     let bench = Bench::new();
@@ -284,7 +284,7 @@ fn a_silent_or_lost_target_ends_everything_in_time() {
     }
 }
 
-/// Waits for a condition, for a few seconds.
+/// Waits a few seconds for a condition.
 fn comes(what: &str, mut has_come: impl FnMut() -> bool) {
     let begun = std::time::Instant::now();
     while !has_come() {

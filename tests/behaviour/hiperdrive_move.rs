@@ -30,7 +30,7 @@ fn a_drive_moves_to_a_position() {
     simulated.end("INT");
 }
 
-/// Status 2 for wrong usage: nothing is opened. There is no device at this address.
+/// Status 2 for wrong usage: nothing is opened, because there is no device at this address.
 #[test]
 fn without_consent_nothing_moves() {
     let bench = Bench::new();

@@ -20,11 +20,11 @@ use encoder_studio::worker::{Event, Session, Worker};
 use super::support::{Bench, Simulated, ended, signal};
 use wires::{Transport, Wires};
 
-/// Additional time on a busy computer.
+/// Additional time allowed for a busy computer.
 const BUSY: Duration = Duration::from_secs(1);
 /// Time without a report from the user interface.
 const FROZEN: Duration = Duration::from_millis(300);
-/// Slow enough for a machine that is busy.
+/// Slow enough for a busy machine.
 const RPI: &str = "rpi=50";
 /// Eight intervals, and the braking distance.
 const WATCHDOG: Duration = Duration::from_millis(500);
@@ -68,7 +68,7 @@ impl Drive {
         }
     }
 
-    /// Checks that it stops within the limit, and has the same position half a second later.
+    /// Checks that the drive stops within the limit and has the same position half a second later.
     #[track_caller]
     fn stops_within(&mut self, limit: Duration) {
         let until = Instant::now() + limit + BUSY;
@@ -109,7 +109,7 @@ impl Host {
         }
     }
 
-    /// A hand on the button.
+    /// Holds the button.
     fn holds(&self, time: Duration) {
         let until = Instant::now() + time;
         while Instant::now() < until {
@@ -118,7 +118,7 @@ impl Host {
         }
     }
 
-    /// Jogs, at full speed.
+    /// Jogs at full speed.
     fn jogs(&self, drive: &mut Drive) {
         let until = Instant::now() + Duration::from_secs(20);
         let mut act = 0;

@@ -158,8 +158,8 @@ fn a_save_is_interrupted_where_configured() {
     port.end("INT");
 }
 
-/// A client that others have written reads and writes plainly, wrapped, and over an explicit connection, for which it
-/// tries the long ForwardOpen first.
+/// A third-party client reads and writes unconnected, wrapped, and over an explicit connection, for which it tries the
+/// large ForwardOpen first.
 #[test]
 fn pycomm3_reads_and_writes() {
     let bench = Bench::new();

@@ -19,7 +19,7 @@ const HEADER: usize = 24;
 const BEFORE_REQUEST: usize = 16;
 
 impl Tapped {
-    /// Starts it; `arguments` follow `simulate hiperdrive --listen …`.
+    /// Starts the device. The `arguments` follow `simulate hiperdrive --listen …`.
     pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let device = Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat());
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -38,22 +38,22 @@ impl Tapped {
         Tapped { device, url, heard }
     }
 
-    /// Requests since the last time.
+    /// Returns the requests since the last call.
     pub(crate) fn heard(&self) -> Vec<String> {
         std::mem::take(&mut self.heard.lock().unwrap())
     }
 
-    /// Returns those that set a value (service 10h).
+    /// Returns the requests that set a value (service 10h).
     pub(crate) fn sets(&self) -> Vec<String> {
         self.heard().into_iter().filter(|request| request.starts_with("10 ")).collect()
     }
 
-    /// Runs the program with the link to it, and JSON.
+    /// Runs the program with the link to the device and JSON output.
     pub(crate) fn ask(&self, bench: &Bench, words: &[&str]) -> Ran {
         bench.run(&[words, &["--link", &self.url, "--json"]].concat())
     }
 
-    /// Sends a request as another host would, around the proxy; returns the reply.
+    /// Sends a request as another host, bypassing the proxy, and returns the reply.
     pub(crate) fn request(&self, request: &[u8]) -> Vec<u8> {
         let mut device = TcpStream::connect(&self.device.place).unwrap();
         let mut send = |command: u16, session: [u8; 4], data: &[u8]| {
@@ -77,7 +77,7 @@ impl Tapped {
         send(0x6F, session, &data).1.split_off(BEFORE_REQUEST)
     }
 
-    /// Returns the link around the proxy.
+    /// Returns the link that bypasses the proxy.
     pub(crate) fn url(&self) -> String {
         format!("enip:{}", self.device.place)
     }

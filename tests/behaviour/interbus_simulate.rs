@@ -76,7 +76,7 @@ fn the_worked_and_cam_examples_match_the_reference() {
     port.end("TERM");
 }
 
-/// Both were written from the reference, apart from each other.
+/// Both were written independently from the reference.
 #[test]
 fn the_foreign_encoder_matches_the_reference() {
     let bench = Bench::new();

@@ -11,7 +11,7 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the words that set a value, and their effects, since the last call; without those that read, select and end.
+/// Returns the words that set a value, and their effects, since the last call.
 fn written(encoder: &Foreign) -> Vec<String> {
     let reads = ["R", "W 2021", "W 2020", "W 2080", "W 80000000", "W 00000000"];
     encoder.requests().into_iter().filter(|line| !reads.iter().any(|begin| line.starts_with(begin))).collect()

@@ -15,7 +15,7 @@ fn fixtures() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/cli")
 }
 
-/// Runs the commands of a recording, one after the other in a folder of their own.
+/// Runs the commands of a recording in sequence in a separate folder.
 fn assert_recorded(kind: &str) {
     let path = fixtures().join(format!("{kind}.txt"));
     let recorded = std::fs::read_to_string(&path).unwrap();
@@ -49,7 +49,7 @@ fn assert_recorded(kind: &str) {
     assert_eq!(text, recorded, "{kind}");
 }
 
-/// Removes the values that differ between runs: times, and the names of backups.
+/// Removes values that differ between runs, such as times and the names of backups.
 fn steady(value: Value) -> Value {
     match value {
         Value::Object(entries) => entries.into_iter().map(|(key, value)| steady_entry(key, value)).collect(),
@@ -60,7 +60,7 @@ fn steady(value: Value) -> Value {
     }
 }
 
-/// Replaces each number, with any number of digits, by a sign: their lengths depend on how busy the computer is.
+/// Replaces each number with a placeholder, because the lengths depend on the load of the computer.
 fn without_numbers(text: &str) -> String {
     let mut signs = String::new();
     for sign in text.chars() {
@@ -113,7 +113,7 @@ fn common_commands_are_as_recorded() {
     assert_recorded("common");
 }
 
-/// Every connection to a device, as kind and beginning of a link.
+/// Every type of connection to a device, as its kind and the beginning of a link.
 const LINKS: [&str; 18] = [
     "hiperface sim:",
     "hiperface serial:none",

@@ -167,7 +167,7 @@ fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWid
     [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
-/// What an exported decoder of 32 bits says of frames, run in Python; `None` without Python.
+/// Returns the results of an exported 32-bit decoder for frames, run in Python, or `None` without Python.
 fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("decoder.txt");
@@ -222,8 +222,8 @@ fn what_32_bits_cannot_hold_is_refused() {
     }
 }
 
-/// What TIA Portal asks of an external source: the name in quotes, a version, local variables with `#`, parameters by
-/// name.
+/// Requirements of TIA Portal for an external source: a quoted name, a version, local variables with `#`, and named
+/// parameters.
 #[test]
 fn scl_has_the_form_of_an_external_source() {
     let text = scl_source(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();

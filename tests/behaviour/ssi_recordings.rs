@@ -32,7 +32,7 @@ fn positions(ran: &Ran) -> Vec<Option<u64>> {
     told.map(|told| told["position"].as_u64()).collect()
 }
 
-/// Runs the program with this on its standard input.
+/// Runs the program with `input` on its standard input.
 fn fed(bench: &Bench, arguments: &[&str], text: &str) -> Ran {
     let path = bench.write("input", text);
     let mut program = bench.program(arguments);

@@ -98,7 +98,7 @@ fn the_encoder_follows_its_layout() {
     assert_eq!((&silent[1]["clock_hz"], &silent[2]["error"]), (&json!(1_000_000), &json!("no answer")));
 }
 
-/// Our own host over both ways.
+/// The program's own host over both transports.
 #[test]
 fn the_programs_own_host_reads_the_encoder() {
     let bench = Bench::new();

@@ -10,7 +10,7 @@ use encoder_studio::units::Moment;
 
 use crate::{fuzz, hex_lines};
 
-/// Most bytes that a device sends in a second and a half: an adapter that streams as fast as it can.
+/// Maximum number of bytes that a device sends in a second and a half, as by an adapter that streams at full speed.
 const MOST: usize = 1_500_000;
 
 /// Sends an input in parts, polls the device for another second, and returns the number of bytes that it sent.

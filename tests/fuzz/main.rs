@@ -18,9 +18,9 @@ use fastrand::Rng;
 
 use mutation::mutate;
 
-/// Inputs made by chance if no time is given.
+/// Number of random inputs if no time is given.
 const ROUNDS: u64 = 1_000;
-/// Longest time for one input, many times what the largest needs.
+/// Maximum time for one input, many times the duration of the largest.
 const LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the examples of a file with one example per line in hexadecimal digits; lines with `#` are comments.
@@ -34,7 +34,7 @@ fn hex_lines(text: &str) -> Vec<Vec<u8>> {
     lines.map(digits).filter(|line| !line.is_empty()).map(bytes).collect()
 }
 
-/// Feeds a parser with the examples and with what chance makes of them.
+/// Feeds a parser with the examples and random mutations of them.
 fn fuzz(name: &str, examples: &[Vec<u8>], parse: impl Fn(&[u8])) {
     assert!(!examples.is_empty(), "{name} has no examples");
     let tried = |input: &[u8]| {

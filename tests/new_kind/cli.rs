@@ -8,7 +8,7 @@ use encoder_studio::cli::{Invocation, run as run_program};
 
 use super::desk::program;
 
-/// Arguments, one a line.
+/// Arguments, one per line.
 const ARGUMENTS: &str = "NEW_KIND_ARGUMENTS";
 
 /// Runs the program in a process that was started as below; without arguments the program requests the window.

@@ -46,7 +46,7 @@ fn the_kind_is_offered_and_connects_from_the_dialog() {
     assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
 }
 
-/// What is declared as secret is in no message, no name, no setting and no other file.
+/// A secret parameter appears in no message, name, setting or other file.
 #[test]
 fn a_secret_parameter_is_neither_shown_nor_kept() {
     let mut desk = Desk::connected("?serial=77&pin=4711");

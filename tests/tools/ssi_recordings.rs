@@ -50,7 +50,7 @@ fn bits_of(number: u64, width: u32) -> Vec<bool> {
     (0..width).rev().map(|at| number >> at & 1 == 1).collect()
 }
 
-/// Encodes in Gray: each bit combined with the next higher one, so that neighbours differ in one bit.
+/// Encodes a number in Gray code, in which adjacent numbers differ in one bit.
 fn gray(number: u64, width: u32) -> Vec<bool> {
     let bits = bits_of(number, width);
     let above = std::iter::once(&false).chain(&bits);
@@ -129,7 +129,7 @@ impl Recording {
     }
 }
 
-/// A code and how many positions there are.
+/// Returns a code and the number of positions.
 fn word(rng: &mut Rng) -> (Word, u64) {
     let widths = [9, 10, 11, 12, 13, 14, 16, 17, 18, 20, 24, 25, 26, 30];
     let whole = 1 << widths[rng.usize(..widths.len())];
@@ -170,8 +170,8 @@ fn behind(rng: &mut Rng) -> Behind {
     }
 }
 
-/// Returns steps of a shaft without the wrap at the end of the range: slow or fast, even or not, steady, swinging, or
-/// to and fro.
+/// Returns unwrapped shaft positions for various motions: slow or fast, even or uneven, steady, oscillating or
+/// reversing.
 fn shaft(rng: &mut Rng, count: usize, positions: u64) -> Vec<i128> {
     let most = positions as f64 / 3.0;
     let fastest = if rng.u8(..3) == 0 { most } else { most.min(40.0) };

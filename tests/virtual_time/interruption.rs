@@ -89,7 +89,7 @@ fn the_plan_is_the_shortest_possible() {
     assert_eq!(prepared.plan.write_cycles(), 12);
 }
 
-/// The end of a commit, with the memory before and after it.
+/// The result of a commit, with the memory before and after it.
 struct Ending<'a> {
     desk: &'a Desk,
     prepared: &'a Prepared,
@@ -154,7 +154,7 @@ fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fiel
     assert_eq!(backwards.memory()[..before.len()], before[..]);
 }
 
-/// Carries the restore out on a new copy of the scene; `disturb` is called when the plan is complete.
+/// Executes the restore on a new copy of the scene. `disturb` is called when the plan is complete.
 fn disturbed(
     scene: &(Desk, HiperfaceProfile),
     context: String,
@@ -289,8 +289,8 @@ fn a_cut_at_any_transaction_is_reported() {
     }
 }
 
-/// Returns the number of frames an encoder has received: the least number after which the fault "silent" has already
-/// occurred.
+/// Returns the number of frames that an encoder has received, which is the lowest number after which the fault "silent"
+/// has occurred.
 fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();

@@ -10,7 +10,7 @@ use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
-/// Carries a change out with every single frame's request, then reply, swallowed.
+/// Executes a change repeatedly, while each request and then each reply is lost in turn.
 fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl Fn(&mut Desk, &str)) {
     let mut frames = 0;
     for at in 0.. {

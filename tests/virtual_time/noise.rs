@@ -9,7 +9,7 @@ use crate::support::{Desk, backup, bytes, exchanges, xor};
 
 const NOISE: [&str; 5] = ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.02,garbage:0.02"];
 
-/// Returns three fields with varied content besides the name plate; then the line becomes noisy.
+/// Returns an encoder with three fields of varied content besides the name plate, on a noisy line.
 fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
     desk.remember_code(2, 0x66);

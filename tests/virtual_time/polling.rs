@@ -13,7 +13,7 @@ use crate::support::Desk;
 use crate::threads::{Bench, LONG, identify, in_real_time, in_virtual_time, until_end};
 
 pub(crate) const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
-/// An interval so long that no test gets a second sample.
+/// An interval longer than any test.
 pub(crate) const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
 
 /// Returns at least `count` samples.
@@ -28,7 +28,7 @@ pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSam
     samples
 }
 
-/// Checks that no further samples arrive after those in progress.
+/// Checks that no samples arrive after those in progress.
 pub(crate) fn nothing_comes(bench: &Bench) {
     let started = Instant::now();
     loop {

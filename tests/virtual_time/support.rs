@@ -150,7 +150,7 @@ impl ByteLink for TestLink {
     }
 }
 
-/// A virtual line with a session on it.
+/// A virtual line with a session.
 pub(crate) struct Desk {
     pub(crate) bus: Arc<Mutex<Bus>>,
     pub(crate) clock: Arc<VirtualClock>,
@@ -165,7 +165,7 @@ pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
 
-/// Returns a virtual line as `sim:?…` describes it.
+/// Creates a virtual line from the query of a `sim:` link.
 pub(crate) fn bus(query: &str) -> Bus {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
     let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
@@ -181,7 +181,7 @@ impl Desk {
         Self::at(bus(query), &VirtualClock::default(), station)
     }
 
-    /// Creates a desk with this line, not before the time of `clock`.
+    /// Creates a desk with the given line at the time of `clock` or later.
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());
@@ -209,7 +209,7 @@ impl Desk {
         Desk { bus, clock, tap, trace, folder, session }
     }
 
-    /// Returns the same line at the same time in a new session: a cable that was plugged in again.
+    /// Returns the same line at the same time in a new session, like a cable that is plugged in again.
     pub(crate) fn reconnected(&self) -> Desk {
         let mut desk =
             Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
@@ -217,7 +217,7 @@ impl Desk {
         desk
     }
 
-    /// Returns a copy of all this, line and time included, with nothing kept on disk.
+    /// Returns a copy, including the line and the time, without files on disk.
     pub(crate) fn copied(&self) -> Desk {
         let bus = self.bus.lock().unwrap().clone();
         Self::at(bus, &self.clock, self.session.station().clone())
@@ -307,7 +307,7 @@ pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
     ProfileDocument::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
 
-/// Returns the bytes that repeat themselves late and differ for different seeds.
+/// Returns pseudo-random bytes for a seed.
 pub(crate) fn bytes(seed: u8, count: usize) -> Vec<u8> {
     assert!(count <= MAX_TRANSFER);
     (0..count).map(|at| (at as u8).wrapping_mul(37).wrapping_add(seed.wrapping_mul(101)) ^ (at >> 3) as u8).collect()

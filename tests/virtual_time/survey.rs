@@ -127,7 +127,7 @@ fn a_silent_encoder_ends_the_survey() {
     assert!(desk.run(HiperfaceJob::Survey).is_err());
 }
 
-/// Codes that the logbook has of the virtual encoder, the newest reading first.
+/// Returns the status codes of the virtual encoder in the logbook, newest reading first.
 fn noted(desk: &Desk) -> Vec<String> {
     let path = Store::at_root(desk.folder.path()).logbook_path();
     let key = DeviceKey {

@@ -15,7 +15,7 @@ use crate::threads::{LONG, identify, in_virtual_time, until_end};
 
 const TEMPERATURE: WatchedQuantity = WatchedQuantity::Analogue(0x48);
 const SINE: WatchedQuantity = WatchedQuantity::Analogue(0x00);
-/// No encoder of these tests has it.
+/// A quantity that no encoder in these tests provides.
 const MISSING: WatchedQuantity = WatchedQuantity::Analogue(0x33);
 const ALWAYS: Duration = Duration::ZERO;
 

@@ -12,12 +12,12 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
     text.parse().unwrap()
 }
 
-/// Returns whether it is connected and read, and no job runs.
+/// Returns whether the device is connected, has been read, and is idle.
 pub(crate) fn is_read(studio: &Studio) -> bool {
     studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
 }
 
-/// Returns the BiSS tab with this link, read.
+/// Opens a link in the BiSS tab and waits until the encoder has been read.
 pub(crate) fn open(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
     connect(&mut desk, link);

@@ -38,7 +38,7 @@ fn plan(desk: &mut Desk, change: Change) {
     until_planned(desk);
 }
 
-/// Polls until the procedure asks for this.
+/// Polls until the procedure assigns the given task.
 #[track_caller]
 fn until_asked(desk: &mut Desk, task: OperatorTask, ready: bool) {
     desk.until("it is asked", |studio| {

@@ -30,7 +30,7 @@ impl Desk {
         self.assist(Assistant::Edit(Box::new(form)));
     }
 
-    /// Ticks and enters everything, for a motor of four pole pairs.
+    /// Confirms and enters everything for a motor with four pole pairs.
     fn prepare(&mut self) {
         self.edit(|form| {
             (form.disabled, form.uncoupled, form.released) = (true, true, true);

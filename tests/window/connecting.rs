@@ -88,7 +88,7 @@ fn a_search_asks_about_a_drive_before_its_first_byte() {
     desk.until_read();
 }
 
-/// An entry that cannot be used.
+/// An invalid entry.
 type Slip = fn(&mut LinkForm);
 
 #[test]

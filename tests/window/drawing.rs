@@ -14,9 +14,9 @@ use crate::screen::Screen;
 use crate::support::Outside;
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
-/// In seconds of the frames.
+/// Observed time in seconds.
 const WATCHED: f64 = 10.0;
-/// The least time from one picture to the next that is asked for at once, in seconds.
+/// Maximum delay in seconds of a repaint that counts as immediate.
 const AT_ONCE: f64 = 1.0 / 60.0;
 /// A cursor in a text entry is drawn and hidden twice per second at most.
 const BLINKS: usize = 2 * WATCHED as usize + 2;
@@ -68,7 +68,7 @@ fn edited() -> Screen {
     screen
 }
 
-/// Waits until all temporary changes have ended: notices, animations of opening, results of threads.
+/// Waits until all temporary changes have ended, such as notices, animations and results of threads.
 fn settle(screen: &mut Screen) {
     for _ in 0..2 {
         screen.until("nothing runs", |studio| !studio.is_working());

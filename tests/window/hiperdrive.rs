@@ -70,7 +70,7 @@ pub(crate) fn edit(desk: &mut Desk, edit: Edit) {
     act(desk, Hiperdrive::Edit(Box::new(edit)));
 }
 
-/// Requests that set something.
+/// Returns the requests that set a value.
 fn sets(desk: &Desk) -> usize {
     let lines = unit(desk).session.trace.lines();
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()

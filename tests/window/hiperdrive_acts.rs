@@ -13,18 +13,18 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
 
-/// Returns how the last act of a drive ended, with its number.
+/// Returns the number of the last action of a drive and how it ended.
 pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, ActionEnd)> {
     studio.hiperdrive().and_then(|own| own.moves.drive(drive)?.ended)
 }
 
-/// Returns whether an act of a drive has ended since then because it was no longer refreshed.
+/// Returns whether an action of a drive has ended since then because it was no longer refreshed.
 pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64, ActionEnd)>) -> bool {
     let end = last_end(studio, drive);
     end != since && matches!(end, Some((_, ActionEnd::Stale)))
 }
 
-/// Number of repetitions of a lapsed act.
+/// Number of repetitions of a lapsed action.
 pub(crate) const ATTEMPTS: usize = 20;
 
 /// Waits until a drive may move: its rules are read repeatedly on threads, and a press before that is rejected.
@@ -55,7 +55,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// Does the same for an act of the shown drive.
+/// Does the same for an action of the shown drive.
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
@@ -77,7 +77,7 @@ pub(crate) fn act_until(
     panic!("never: {what}: it has lapsed {ATTEMPTS} times");
 }
 
-/// Moves the drive that is shown far away, until it moves.
+/// Starts a long move of the shown drive, and waits until the drive moves.
 #[track_caller]
 pub(crate) fn set_off(desk: &mut Desk) {
     drive_until(
@@ -110,7 +110,7 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
     panic!("it has lapsed {ATTEMPTS} times");
 }
 
-/// Returns the warnings besides that of a lapsed motion.
+/// Returns the warnings other than that of a lapsed motion.
 pub(crate) fn warned(desk: &Desk) -> Vec<&'static str> {
     desk.notice_ids(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
 }

@@ -257,7 +257,7 @@ fn typed_values_are_kept_per_drive() {
     assert!(has_entry(&screen, "12345"));
 }
 
-/// Returns whether some entry has this in it.
+/// Returns whether any entry contains the text.
 fn has_entry(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }

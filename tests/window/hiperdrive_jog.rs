@@ -14,7 +14,7 @@ use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
 use crate::tabs::Tabs as _;
 
-/// Height of the opened lower panel, and of what stands above the page.
+/// Height of the open lower panel, and of everything above the page.
 const BELOW: f32 = 170.0;
 const ABOVE: f32 = 155.0;
 
@@ -46,7 +46,7 @@ fn preset<'s>(screen: &'s Screen, percent: &str) -> Node<'s> {
     screen.harness.query_all_by(move |node| node.label().as_ref() == Some(&label)).next().unwrap()
 }
 
-/// The number typed as the speed of a jog: the first of its page.
+/// Returns the number typed as the jog speed, which is the first on its page.
 fn typed_speed(screen: &Screen) -> Node<'_> {
     let label = screen.say("hd_effort.speed");
     let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::TextInput && node.label().as_ref() == Some(&label);
@@ -55,7 +55,7 @@ fn typed_speed(screen: &Screen) -> Node<'_> {
     entries.remove(0)
 }
 
-/// Pads, state and travel, as far as they reach.
+/// Returns the areas of the pads, the state and the travel.
 fn what_is_needed(screen: &Screen) -> Rect {
     let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.button(id).rect());
     let states = ["Moving", "Fault"].map(|name| screen.harness.get_by_role_and_label(Role::Button, name).rect());

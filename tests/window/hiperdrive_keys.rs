@@ -18,7 +18,7 @@ fn event(key: Key, pressed: bool) -> Event {
     Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
 }
 
-/// Draws a frame after these events.
+/// Draws a frame with the given events.
 fn picture(screen: &mut Screen, events: impl IntoIterator<Item = Event>) {
     events.into_iter().for_each(|event| screen.harness.event(event));
     screen.harness.step();
@@ -33,7 +33,7 @@ fn up(screen: &mut Screen, key: Key) {
     screen.harness.step();
 }
 
-/// Holds the key for longer than a key needs to repeat itself.
+/// Holds the key until it repeats.
 fn repeats(screen: &mut Screen, key: Key) {
     for _ in 0..8 {
         down(screen, key);

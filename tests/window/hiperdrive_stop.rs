@@ -72,7 +72,7 @@ fn places(screen: &Screen, id: &'static str) -> Vec<Pos2> {
     places
 }
 
-/// Returns STOP of the header.
+/// Returns the STOP button of the header.
 fn stop(screen: &Screen) -> Pos2 {
     places(screen, "hd_bar.stop")[0]
 }

@@ -80,7 +80,7 @@ impl Screen {
         self.studio().settings.language
     }
 
-    /// Draws as often as it takes until a click is answered.
+    /// Draws enough frames for a click to take effect.
     pub(crate) fn steps(&mut self) {
         for _ in 0..4 {
             self.harness.step();
@@ -101,14 +101,14 @@ impl Screen {
         }
     }
 
-    /// Runs an action that has no widget here.
+    /// Runs an action without a widget.
     pub(crate) fn act(&mut self, action: Action) {
         self.studio().mailbox().send(action);
         self.steps();
         self.only_master();
     }
 
-    /// Asks something of the encoder that is shown.
+    /// Sends a command to the shown encoder.
     pub(crate) fn ask(&mut self, action: Hiperface) {
         self.act(Action::device(self.encoder().session.id, action));
     }
@@ -140,7 +140,7 @@ impl Screen {
         self.buttons(id).next().is_some()
     }
 
-    /// Checks that no shown text is in the other language, is the name of a text, or has a place left open.
+    /// Checks that no visible text is in the other language, is a text ID, or has an unfilled argument.
     #[track_caller]
     pub(crate) fn check_language(&self) {
         let foreign = texts::foreign_to(self.language());

@@ -33,7 +33,7 @@ impl Desk {
         path
     }
 
-    /// Opens it as the window would, and waits.
+    /// Opens a capture like the window, and waits.
     #[track_caller]
     fn open_capture(&mut self, path: &std::path::Path) {
         self.act(Action::Open(path.to_owned()));
@@ -313,7 +313,7 @@ fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
     desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
 }
 
-/// Returns whether nothing is worse than good to know.
+/// Returns whether there is nothing worse than a notice.
 fn is_good(findings: &[DiagnosisFinding]) -> bool {
     findings.iter().all(|own| own.severity == encoder_studio::analysis::diagnosis::Severity::Notice)
 }

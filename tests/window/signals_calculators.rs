@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// Tall enough to draw a complete page.
+/// Height at which a complete page is drawn.
 const TALL: [f32; 2] = [1400.0, 1600.0];
 
 impl Screen {

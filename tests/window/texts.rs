@@ -42,7 +42,7 @@ static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| {
     rows.into_iter().flatten().collect()
 });
 
-/// Returns the text of that name, from any catalogue.
+/// Returns the text with an ID, from any catalogue.
 #[track_caller]
 pub(crate) fn text(id: &'static str) -> Text {
     let own = CATALOGUES.into_iter().find(|own| own.ids().any(|known| known == id));
@@ -53,7 +53,7 @@ fn places(template: &str) -> impl Iterator<Item = &str> {
     template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
 }
 
-/// Checks that the text is in the table, has an argument for each of its places, and is not empty in both languages.
+/// Checks that the text is in the catalogue, has all its arguments, and is not empty in either language.
 #[track_caller]
 pub(crate) fn check(text: &Text) {
     let row = TABLE.get(text.id()).unwrap_or_else(|| panic!("{} is not in the table", text.id()));
@@ -127,7 +127,7 @@ fn check_encoder(encoder: &Encoder) {
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 
-/// Returns whether the words are the name of a text, which is shown if the table has no such row.
+/// Returns whether the words are a text ID, which is displayed if the catalogue has no such text.
 pub(crate) fn is_name(words: &str) -> bool {
     let part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c == '_');
     words.split_once('.').is_some_and(|(area, name)| {
@@ -135,7 +135,7 @@ pub(crate) fn is_name(words: &str) -> bool {
     })
 }
 
-/// Returns texts of the other language only: texts without places that no row has in this one.
+/// Returns texts that occur only in the other language and have no arguments.
 pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
     let own = |row: &'static Row| if language == Language::English { &row.en } else { &row.de };
     let other = |row: &'static Row| if language == Language::English { &row.de } else { &row.en };

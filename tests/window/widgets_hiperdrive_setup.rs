@@ -17,7 +17,7 @@ use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
 
-/// Tall enough to draw a complete page.
+/// Height at which a complete page is drawn.
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {

@@ -1,4 +1,4 @@
-//! Encoding of the fields in a packet body. Integers are little-endian, and strings are preceded by their length.
+//! Encoding the fields in a packet body. Integers are little-endian, and strings are preceded by their length.
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;

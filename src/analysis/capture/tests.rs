@@ -1,4 +1,4 @@
-//! Tables as instruments write them, and tables that are none.
+//! Tables as written by instruments, and files that are not tables.
 
 use super::super::import::TableImport;
 use super::*;

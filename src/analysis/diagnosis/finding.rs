@@ -69,7 +69,7 @@ pub enum FindingKind {
         volts: f64,
         share: f64,
     },
-    /// The distance from the ellipse repeats `order` times per period. The cause is harmonics of the orders one below
+    /// The signal deviates from the ellipse `order` times per period. The cause is harmonics of the orders one below
     /// and one above.
     Harmonics {
         /// Repetitions per period, 3 to 8.

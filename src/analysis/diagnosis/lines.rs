@@ -126,7 +126,7 @@ pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> O
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
-/// Replaces each outlier by the preceding value. A spike would raise every line.
+/// Replaces each outlier with the preceding value. A spike would raise every line.
 fn replace_outliers(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);

@@ -1,4 +1,4 @@
-//! Calculated signals with one fault each, and good ones without any finding.
+//! Calculated signals with one fault each, and good signals without findings.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! Reasons to doubt the results of an analysis: gaps in the times, a reversal, few samples per period, disturbances in
-//! the samples of the ellipse, and columns that are not differences.
+//! Reasons why the results of an analysis may be wrong: gaps in the times, a reversal, few samples per period,
+//! disturbances in the samples of the ellipse, and columns that are not differences.
 
 use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
 use crate::analysis::ellipse::Ellipse;

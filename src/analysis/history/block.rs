@@ -121,8 +121,8 @@ impl<T: Number> SampleBlock<T> {
         self.values.len()
     }
 
-    /// Appends `values`, which must fit into the block, with their flags. Empty flags mean that no flag is set. A value
-    /// that is not a finite number is marked as bad.
+    /// Appends `values` with their flags. The values must fit into the block. Empty flags mean that no flag is set. A
+    /// value that is not a finite number is marked as bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
         self.values.extend_from_slice(values);

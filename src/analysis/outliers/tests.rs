@@ -1,4 +1,4 @@
-//! Captures with outliers, and captures that only seem to have some.
+//! Captures with outliers, and captures that only appear to have them.
 
 use std::f64::consts::TAU;
 

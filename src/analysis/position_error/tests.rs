@@ -1,4 +1,4 @@
-//! Added errors are found; other deviations of the signals are not errors.
+//! Added errors are found, and other deviations are not mistaken for errors.
 
 use super::*;
 use crate::analysis::ellipse::{FitError, SignalChannel};
@@ -21,8 +21,8 @@ struct Made {
     cosine: Vec<f64>,
 }
 
-/// Returns samples of a motion given as periods at a share of the time, and a disturbance added to the angle of the
-/// signals in radians.
+/// Returns samples of a motion, which gives the periods at a fraction of the time, with a disturbance of the angle in
+/// radians.
 fn made(ellipse: &Ellipse, count: usize, motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64) -> f64) -> Made {
     let time: Vec<f64> = (0..count).map(|at| at as f64 / count as f64).collect();
     let angle = |t: &f64| TAU * motion(*t);

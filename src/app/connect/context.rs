@@ -1,4 +1,4 @@
-//! Resources that a search may use in addition to its connection form.
+//! Resources of a search in addition to its connection form.
 
 use crossbeam_channel::Receiver;
 
@@ -9,7 +9,7 @@ use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
-/// Resources that a search may use in addition to its connection form.
+/// Resources of a search in addition to its connection form.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
     tab: Tab,
@@ -18,7 +18,7 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// The next actions of the dialog after the search has been called.
+/// Actions of the dialog that a search has requested.
 #[derive(Default)]
 pub(super) struct NextAction {
     pub(super) found: Option<LinkUrl>,

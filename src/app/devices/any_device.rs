@@ -80,7 +80,7 @@ impl AnyDevice {
         self.state().writes.as_ref()
     }
 
-    /// Returns the device as the logbook names it. Returns `None` before the device has been read.
+    /// Returns the key of the device in the logbook. Returns `None` before the device has been read.
     pub fn logbook_key(&self) -> Option<DeviceKey> {
         self.memory()?.logbook_key()
     }

@@ -34,7 +34,7 @@ pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec
     things.iter().take(MAX_LISTED_REMARKS).map(words).chain(rest).collect()
 }
 
-/// Describes what to do about an item that cannot be undone.
+/// Returns the instruction for an item that cannot be undone.
 pub fn redo_text(redo: &Redo) -> Text {
     match redo {
         Redo::Write(value) => Text::new("undo.write").with("value", value),

@@ -1,6 +1,6 @@
-//! Random sessions with a keyboard and a mouse, and the events that the system reports: keys that repeat, also as
-//! releases followed by presses and across a change of focus; releases that are not reported while another window has
-//! the keyboard focus; and artificial releases when the window loses it.
+//! Random sessions with a keyboard and a mouse, and the events that the system reports for them: key repeats, possibly
+//! as releases followed by presses and across a change of focus; missing releases while another window has the keyboard
+//! focus; and synthetic releases when the window loses it.
 
 use super::*;
 

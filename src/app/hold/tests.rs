@@ -1,4 +1,4 @@
-//! What starts a hold, and what ends it, frame by frame.
+//! Tests of the start and the end of a hold, frame by frame.
 
 use super::HoldEvent::{Hold, Press, Release, Stop};
 use super::PressKey::{Enter, Space};
@@ -9,7 +9,7 @@ const DOWN: HoldInput = HoldInput::Down { key: Space, plain: true };
 const UP: HoldInput = HoldInput::Up(Space);
 const POINTER: HoldInput = HoldInput::PointerDown { on: true };
 
-/// A button, a picture each fifth of a second.
+/// A button that is drawn five times a second.
 struct TestButton {
     state: HoldState,
     now: f64,
@@ -24,7 +24,7 @@ impl TestButton {
         TestButton { state: HoldState::default(), now: 0.0, apart: 0.2, scene: SCENE, pointer: false, follows: true }
     }
 
-    /// Creates a pad with the keyboard focus, after Space and Enter were seen up.
+    /// Creates a focused button, after Space and Enter have been released.
     fn armed() -> Self {
         let mut pad = TestButton::new();
         assert_eq!(pad.picture(&[]), None);
@@ -33,7 +33,7 @@ impl TestButton {
         pad
     }
 
-    /// A picture in which keys go up, and one that sees them up.
+    /// Draws a frame in which keys are released, and another one after it.
     fn release_keys(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
         let event = self.picture(inputs);
         assert_eq!(self.picture(&[]), None);

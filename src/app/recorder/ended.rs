@@ -1,11 +1,11 @@
-//! Lines that have ended, because later samples have another meaning or no longer arrive. They keep their samples and
+//! Lines that have ended, because later samples have different units or no longer arrive. They keep their samples and
 //! units, and are listed after the active lines.
 
 use super::{Recorder, Scale, Series, SeriesId};
 use crate::app::Text;
 
 impl Recorder {
-    /// Replaces a line by a new one, which has the same colour and, if possible, the same unit. The old line ends and
+    /// Replaces a line with a new one of the same colour and, if possible, the same unit. The old line ends and
     /// receives the given name.
     pub(in crate::app) fn continue_line(
         &mut self,

@@ -35,7 +35,7 @@ pub struct TableExport {
     until: Option<SampleTime>,
 }
 
-/// Number of a table, which is unique in the process.
+/// Number of an export, which is unique within the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) struct ExportNumber(u64);
 

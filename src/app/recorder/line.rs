@@ -19,12 +19,12 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Creates a unit that equals `factor` units of the samples.
+    /// Creates a unit that is `factor` times the unit of the samples.
     pub fn new(unit: &'static str, factor: f64, decimals: usize) -> Self {
         Scale { unit: Text::new(unit), factor, decimals, range: None }
     }
 
-    /// Displays values within a range, as the device sends them.
+    /// Displays values within a range, without unwrapping.
     #[must_use]
     pub fn within(self, range: i64) -> Self {
         Scale { range: Some(range.max(1)), ..self }
@@ -113,7 +113,7 @@ impl Series {
         self.scale().map_or(1.0, |scale| scale.factor)
     }
 
-    /// Returns the useful number of decimal places in the displayed unit.
+    /// Returns the number of decimal places for values in the displayed unit.
     pub fn decimal_places(&self) -> usize {
         self.scale().map_or(0, |scale| scale.decimals)
     }

@@ -1,4 +1,4 @@
-//! Recorders with samples of known values.
+//! Tests of recorders with known samples.
 
 use super::*;
 use crate::analysis::history::Flags;
@@ -29,7 +29,7 @@ fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f6
     recorder.append(group, &[at(time)], &parts).unwrap();
 }
 
-/// Adds one sample per millisecond, which counts as the time.
+/// Adds one sample per millisecond, whose value is its time.
 fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
     (from..to).for_each(|time| add(recorder, group, time, time, time as f64 / 1000.0, Flags::NONE));
 }

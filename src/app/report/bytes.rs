@@ -42,7 +42,7 @@ pub fn byte_table(
     table
 }
 
-/// Returns the first byte and how often it is repeated at the beginning.
+/// Returns the first byte and the number of its repetitions at the beginning.
 fn leading_run(bytes: &[u8]) -> (u8, usize) {
     let first = bytes.first().copied().unwrap_or_default();
     (first, bytes.iter().take_while(|byte| **byte == first).count())

@@ -4,13 +4,13 @@ use crate::app::{Language, Text, format_decimal, plain_decimals};
 use crate::report::{CellStyle, Fact, Section, Table};
 use crate::store::{DeviceKey, Store};
 
-/// Values of a device with their meaning.
+/// Values of a device with their descriptions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportContent {
     /// Name and serial number of the device.
     pub title: String,
-    /// The device as the logbook names it, or `None` if the profile is of no particular device. Whether it is virtual is
-    /// not known from a profile.
+    /// Key of the device in the logbook, or `None` if the profile does not belong to a particular device. Whether it is
+    /// virtual is not known from a profile.
     pub key: Option<DeviceKey>,
     pub sections: Vec<Section>,
 }
@@ -49,7 +49,7 @@ impl<'a> ReportContext<'a> {
         format_decimal(value, decimals, self.language)
     }
 
-    /// Formats a number with the decimals that it has.
+    /// Formats a number with as many decimals as it needs.
     pub fn plain_number(&self, value: f64) -> String {
         self.number(value, plain_decimals(value))
     }
@@ -60,5 +60,5 @@ impl<'a> ReportContext<'a> {
     }
 }
 
-/// Stands for a value that there is not.
+/// Placeholder for a missing value.
 pub(super) const NONE: &str = "–";

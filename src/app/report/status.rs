@@ -1,4 +1,4 @@
-//! What a device reported when it was read for a report.
+//! The status that a device reported when it was read for a report.
 
 use super::ReportContext;
 use crate::app::Text;
@@ -16,8 +16,8 @@ pub struct StatusLine {
     pub advice: Vec<Text>,
 }
 
-/// Values that were read from a device for a report, and what it reports. The status is `None` for a kind of device that
-/// reports none.
+/// Values that were read from a device for a report, and the reported status. The status is `None` for a kind of device
+/// that reports none.
 #[derive(Clone, Debug)]
 pub struct DeviceReading {
     pub body: Body,

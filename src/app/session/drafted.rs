@@ -66,7 +66,7 @@ pub trait HasDraft: HasSession {
         }
     }
 
-    /// Starts a task that looks for a draft with earlier edits.
+    /// Starts a task that loads a draft with earlier edits.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
             self.session_mut().drafting.load(key, services);
@@ -105,7 +105,7 @@ pub trait HasDraft: HasSession {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Leaves the edits of the previous device on disk, because another device or none is opened.
+    /// Leaves the edits of the previous device on disk, because that device is no longer open.
     fn release_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.current_edits());
         self.session_mut().drafting.leave_on_disk(key, edits, services);

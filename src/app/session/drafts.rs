@@ -261,7 +261,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         !self.busy
     }
 
-    /// Leaves the edits of the previous device on disk, because another device or none is opened.
+    /// Leaves the edits of the previous device on disk, because that device is no longer open.
     pub(in crate::app) fn leave_on_disk(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key

@@ -19,7 +19,7 @@ pub trait Kind: Device + Sized {
     /// Edits that survive a crash.
     type Edits: DraftEdits;
 
-    /// Handle of a session that stays outside its thread.
+    /// Handle of a session that remains outside the session's thread.
     type SessionHandle: Send;
 
     /// Review of a write: [`Review`](crate::app::review::Review) for a kind of device with a memory.
@@ -28,7 +28,7 @@ pub trait Kind: Device + Sized {
     /// Whether live values may start automatically on a line that has no other master.
     const STARTS_LIVE: bool = true;
 
-    /// Returns the handle that stays with the window when the session moves to its thread.
+    /// Returns the handle that the window keeps when the session moves to its thread.
     fn session_handle(session: &Session<Self>) -> Self::SessionHandle;
 
     /// Opens a link to a device of this kind.

@@ -1,4 +1,4 @@
-//! Saving of a profile to a file. The user is asked before changes made by other programs are overwritten, and comments
+//! Saving a profile to a file. The user is asked before changes made by other programs are overwritten, and comments
 //! between the entries are preserved.
 
 use std::path::{Path, PathBuf};

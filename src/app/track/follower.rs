@@ -1,4 +1,4 @@
-//! Tracking of positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
+//! Tracking positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
 //! cannot have made an unnoticed turn.
 
 use super::PositionScales;

@@ -1,4 +1,4 @@
-//! Positions of a stream: many at once, and none are joined that do not belong together.
+//! Tests of streamed positions: they arrive in batches, and lines break at gaps.
 
 use super::*;
 use crate::app::recorder::{Scale, Series};
@@ -124,7 +124,7 @@ fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     }
 }
 
-/// Returns positions once per second: this number, from a second on.
+/// Returns `count` positions, one per second from a start time.
 fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|second| PositionSample {

@@ -1,4 +1,4 @@
-//! The settings of the virtual adapter with all that hangs on it.
+//! Tests of the settings of the virtual adapter with all attachable devices.
 
 use crate::buses::bridge::sim::{Adapter, all_setting_names};
 use crate::kinds::attachable_kinds;

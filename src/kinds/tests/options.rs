@@ -26,7 +26,7 @@ fn commands_and_options_are_as_recorded() {
     }
 }
 
-/// The arguments of a command in their order, and its options, which may be given in any order.
+/// The positional arguments and the options of a command.
 #[derive(Debug, Default, PartialEq)]
 struct Taken<'t> {
     arguments: Vec<&'t str>,

@@ -15,7 +15,7 @@ fn ready_made() -> Vec<(&'static str, String)> {
     found
 }
 
-/// Returns a commented profile of this kind, as a user writes it.
+/// Returns a commented profile of this kind, as written by a user.
 fn commented_profile(kind: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/commented");
     std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()
@@ -68,7 +68,7 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
     }
 }
 
-/// Returns a text with other blanks between its words: those of `picks` in turn. Comments are numbered.
+/// Returns a text whose whitespace is replaced with the entries of `picks` in turn. Comments are numbered.
 fn with_varied_whitespace(text: &str, picks: &[usize]) -> (String, usize) {
     const WAYS: usize = 9;
     let (mut out, mut comments, mut at, mut pick) = (String::new(), 0, 0, picks.iter().cycle());

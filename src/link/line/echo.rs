@@ -1,4 +1,4 @@
-//! Echoes: some adapters return the bytes that the host sends.
+//! Echo handling for adapters that return the bytes sent by the host.
 
 use crate::parameter::Keywords;
 
@@ -31,7 +31,7 @@ impl Echo {
         }
     }
 
-    /// Stores whether an echo was received, unless this is already known.
+    /// Stores whether the adapter echoes, unless this is already known.
     pub(crate) fn store_heard(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };

@@ -1,4 +1,5 @@
-//! Pages as lists of marks, and their painting into a PDF document. Lengths are in points from the top left corner.
+//! Pages as lists of graphic elements, and their output to a PDF document. Lengths are in points from the top left
+//! corner.
 
 use krilla::color::rgb;
 use krilla::geom::{PathBuilder, Point, Rect, Size, Transform};
@@ -16,7 +17,7 @@ pub(super) const TEXT: Colour = [0x1a, 0x1e, 0x22];
 pub(super) const MUTED: Colour = [0x5c, 0x67, 0x70];
 pub(super) const LINE: Colour = [0xd5, 0xda, 0xdf];
 
-/// Something that is painted on a page.
+/// A graphic element of a page.
 #[derive(Clone, Debug)]
 pub(super) enum PageMark {
     /// A text, placed by the left end of its baseline.

@@ -1,4 +1,4 @@
-//! Layout of a table: widths of the columns, rows that are not divided between pages, and a heading on each page.
+//! Layout of a table: column widths, rows that are never split between pages, and a heading on each page.
 
 use super::canvas::{Colour, LINE, MUTED, TEXT};
 use super::flow::{Flow, MARGIN, Style, WIDTH};
@@ -8,9 +8,9 @@ use crate::report::{CellStyle, Mark, Row, Table};
 const HEADING: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 /// Distance between two columns.
 const GAP: f32 = 9.0;
-/// Distance between the text of a row and its lines.
+/// Distance between the text of a row and its rules.
 const PADDING: f32 = 2.4;
-/// Width below which text is not broken, as a number of digits.
+/// Minimum width in digits at which text is broken into lines.
 const LEAST_DIGITS: &str = "0000000";
 const GOOD: Colour = [0x0b, 0x7a, 0x52];
 const WARNING: Colour = [0xa9, 0x4b, 0x06];
@@ -31,7 +31,7 @@ impl<'a> TableLayout<'a> {
         TableLayout { table, widths, heading_lines }
     }
 
-    /// Returns the height of the heading with the first row, which are kept together.
+    /// Returns the combined height of the heading and the first row, which are kept together.
     pub(super) fn lead_height(&self, flow: &Flow<'_>) -> f32 {
         let first = self.table.rows.first().map_or(0.0, |row| row_height(&self.row_lines(flow, row)));
         self.heading_height() + first
@@ -80,7 +80,7 @@ impl<'a> TableLayout<'a> {
         let (top, height) = (flow.y, self.heading_height());
         let mut x = MARGIN;
         for ((lines, column), width) in self.heading_lines.iter().zip(&self.table.columns).zip(&self.widths) {
-            // Headings stand on the line below them.
+            // Headings are aligned with the rule below them.
             let above = height - PADDING - lines.len() as f32 * HEADING.line_height();
             for (line, number) in lines.iter().zip(0_u8..) {
                 let y = top + above + f32::from(number) * HEADING.line_height();

@@ -1,4 +1,4 @@
-//! Parsing of entries in the Signals tab. The error messages name the valid values.
+//! Parsing entries in the Signals tab. The error messages name the valid values.
 
 use crate::app::Text;
 use crate::app::number::{MAX_PERIODS, parse_integer};

@@ -1,5 +1,5 @@
-//! A live source, which is the virtual encoder or an adapter, with its settings and newest samples. The samples come
-//! from `worker::stream` and are measured a few times per second. Drawing never waits for them.
+//! A live source (the virtual encoder or an adapter) with its settings and newest samples. The samples come from
+//! `worker::stream` and are measured a few times per second. Drawing never waits for them.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Reading of a capture in a task, with progress and cancellation, and the example captures.
+//! Reading a capture in a task, with progress and cancellation, and the example captures.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -27,7 +27,7 @@ pub enum TimeAxisError {
     TooFar,
 }
 
-/// Greatest time in seconds that fits the range of nanoseconds.
+/// Maximum time in seconds that can be represented in nanoseconds.
 const FARTHEST_S: f64 = 9.2e9;
 
 /// Maximum number of samples kept of a running source: five seconds at 100 kHz.
@@ -104,7 +104,7 @@ impl Scope {
         self.append(&times, &sine, &cosine, wires.as_ref())
     }
 
-    /// Separates the following samples from the previous ones by a gap.
+    /// Marks a gap between the previous and the following samples.
     pub(super) fn mark_gap(&mut self) {
         self.recorder.break_before_next(self.group);
     }

@@ -41,7 +41,7 @@ pub struct Form {
     pub jitter_ms: String,
 }
 
-/// Form in which the analogue position is typed.
+/// Form in which the analogue position is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseInput {
     /// Fraction of a period, 0 to 1.

@@ -1,4 +1,4 @@
-//! Rows of numbers: name, value, value of the compared capture, limit, and a mark for the verdict.
+//! Rows of quantities: name, value, value of the compared capture, limit, and verdict.
 
 use egui::{RichText, Ui, WidgetInfo};
 

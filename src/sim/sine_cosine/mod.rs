@@ -175,7 +175,7 @@ impl PhaseAccumulator {
     }
 }
 
-/// Settings in a form that speeds up the calculations.
+/// Settings preprocessed for fast calculations.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
@@ -246,7 +246,7 @@ fn modulo(number: i128, whole: u64) -> u64 {
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 
-/// Returns two independent, normally distributed numbers that depend only on `seed` and `place` (Box and Muller 1958).
+/// Returns two independent, normally distributed numbers that depend only on `seed` and `index` (Box and Muller 1958).
 fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
     let first = splitmix64(seed ^ splitmix64(place));
     let second = splitmix64(first ^ seed);

@@ -1,4 +1,4 @@
-//! Voltages against the reference's own tables and against arithmetic done in Python.
+//! Tests of the voltages against the tables of the reference and calculations in Python.
 
 use super::*;
 

@@ -1,5 +1,5 @@
-//! Damaged files of the logbook. Such a file is kept under another name, and a new one is begun that knows of it: the
-//! write cycles in the damaged file are no longer counted.
+//! Damaged files of the logbook. Such a file is renamed, and the new file that replaces it records this: the write
+//! cycles in the damaged file are no longer counted.
 
 use std::ffi::OsString;
 use std::fs;
@@ -15,13 +15,13 @@ use super::error::LogbookErrorKind;
 use super::schema;
 use crate::store::file_lock::wait_for;
 
-/// Endings of the files that belong to a database.
+/// Suffixes of the files that belong to a database.
 const ENDINGS: [&str; 2] = ["-wal", "-shm"];
-/// Ending of the new file, until it takes the place of the damaged one.
+/// Suffix of the new file until it replaces the damaged one.
 const NEW: &str = "-new";
 
-/// Keeps a damaged file under another name and begins a new one. Returns the other name, or `None` if the file is not
-/// damaged, because another program has begun a new one meanwhile.
+/// Renames a damaged file and creates a new one. Returns the other name, or `None` if the file is not damaged, because
+/// another program has begun a new one meanwhile.
 pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBuf>, LogbookErrorKind> {
     let _lock = wait_for(path).map_err(LogbookErrorKind::Folder)?;
     if !is_damaged(path) {
@@ -55,14 +55,14 @@ fn begin_new(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookE
     Ok(())
 }
 
-/// Returns the last damaged file whose entries this logbook lacks.
+/// Returns the last damaged file, whose entries are missing in this logbook.
 pub(super) fn last_damaged(database: &Connection) -> rusqlite::Result<Option<PathBuf>> {
     let sql = "SELECT kept FROM damage ORDER BY rowid DESC LIMIT 1";
     let kept = database.query_row(sql, [], |row| row.get::<_, String>(0)).optional()?;
     Ok(kept.map(PathBuf::from))
 }
 
-/// Returns whether an error means that the file itself is damaged, not only a value in it.
+/// Returns whether an error means that the file itself is damaged, and not just a value in it.
 pub(super) fn is_damage(error: &rusqlite::Error) -> bool {
     let code = error.sqlite_error_code();
     matches!(code, Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt))

@@ -48,7 +48,7 @@ impl fmt::Display for AssetName {
     }
 }
 
-/// Returns whether a character controls the terminal or the direction of the text, or separates lines.
+/// Returns whether a character is a control character, a line separator or a text direction mark.
 fn is_control(c: char) -> bool {
     c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }

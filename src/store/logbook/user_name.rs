@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-/// Form in which the entries of this process name the user.
+/// Form of the user's name in the entries of this process.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UserName {
     /// The user name of the system.
@@ -15,11 +15,11 @@ pub enum UserName {
     Off,
 }
 
-/// The choice for all entries of this process, which belong to one user. The value is 0 until the settings are read.
+/// The form for all entries of this process, which belong to one user. The value is 0 until the settings are read.
 static CHOICE: AtomicU8 = AtomicU8::new(0);
 
 impl UserName {
-    /// Applies the choice to all further entries of this process.
+    /// Applies the form to all further entries of this process.
     pub fn apply(self) {
         CHOICE.store(self as u8, Ordering::Relaxed);
     }

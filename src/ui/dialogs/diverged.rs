@@ -1,4 +1,4 @@
-//! A profile whose file another program has changed: both versions side by side, and the choice between them.
+//! The dialog for a profile whose file another program has changed, which shows both versions side by side.
 
 use egui::{RichText, ScrollArea, Ui};
 

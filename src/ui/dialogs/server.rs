@@ -12,7 +12,7 @@ const WIDTH: f32 = 560.0;
 /// Height in points of the lines reserved for the result of a test.
 const OUTCOME_HEIGHT: f32 = 60.0;
 
-/// What was typed into the form. It is dropped when the form is closed.
+/// Text typed into the form. It is dropped when the form is closed.
 #[derive(Default)]
 pub(in crate::ui) struct ServerView {
     typed: Option<Typed>,

@@ -1,4 +1,4 @@
-//! The position in large digits, and the plot of its recording.
+//! The panel with the position in large digits and the plot of its recording.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Small static curves and bars: the position error over a period, its harmonics, a spectrum. Drawn by egui_plot, in
-//! the window's theme.
+//! Small static charts with curves or bars: the position error over a period, its harmonics, a spectrum. Drawn by
+//! egui_plot, in the window's theme.
 //!
 //! * **Size**: the available width, the given height.
 //! * **Keyboard**: none; Tab skips it.

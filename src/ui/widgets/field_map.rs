@@ -1,4 +1,4 @@
-//! A memory as a strip of blocks: its fields, each a run of them, and the free space.
+//! A map of a memory as a strip of blocks, which shows the data fields and the free space.
 //!
 //! * **Size**: the available width; the blocks are as large as fits two lines, and wrap.
 //! * **Keyboard**: Tab and the left and right arrows go from field to field, Home and End to the ends; Enter or Space

@@ -1,4 +1,4 @@
-//! A frame as transmitted: one cell per bit, in the order of transmission, its fields named below.
+//! A frame with one cell per bit in the order of transmission, and the names of its fields below.
 //!
 //! * **Size**: the available width; the cells are as large as possible with the frame on as few lines as possible. A field
 //!   is moved to the next line as a whole, and is split only if it is longer than a line.

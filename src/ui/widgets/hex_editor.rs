@@ -1,4 +1,4 @@
-//! Bytes to view and to overwrite: sixteen per line, as hex and as text.
+//! An editor for bytes, sixteen per line, as hex and as text.
 //!
 //! * **Size**: the width of its columns, the height of its lines, at most [`HexModel::lines`] of them before it scrolls;
 //!   below it one line with the cursor position, or why something was not done.

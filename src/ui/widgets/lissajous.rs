@@ -1,4 +1,4 @@
-//! Sine over cosine: the figure of the samples, with the ring in which the amplitude vector should stay.
+//! The Lissajous figure of sine over cosine, with the ring that should contain the amplitude vector.
 //!
 //! * **Size**: a square of the given width.
 //! * **Keyboard**: none; Tab skips the figure.

@@ -1,4 +1,4 @@
-//! The widgets driven as a user would: by their accessible labels, with keys and pointer.
+//! Tests that operate the widgets like a user, through accessible labels, keys and pointer.
 
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -52,7 +52,7 @@ pub(crate) fn press<State>(harness: &mut Harness<'_, State>, keys: &[(Modifiers,
     }
 }
 
-/// Puts the keyboard on a widget.
+/// Moves the keyboard focus to a widget.
 pub(crate) fn focus<State>(harness: &mut Harness<'_, State>, label: &str) {
     harness.get_by_label(label).focus();
     harness.run();

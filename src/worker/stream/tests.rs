@@ -1,4 +1,4 @@
-//! Tests of streams on their threads: neither side waits for the other, and losses are counted.
+//! Tests of streams on threads: neither side waits for the other, and losses are counted.
 
 use std::sync::atomic::AtomicUsize;
 use std::time::Instant;
@@ -8,10 +8,10 @@ use crate::link::{RealClock, VirtualClock};
 use crate::sim::sine_cosine::{Quantity, Settings};
 use crate::units::Moment;
 
-/// Longer than anything here takes.
+/// Time limit longer than any test.
 const HANGS: Duration = Duration::from_secs(20);
 
-/// A producer that counts as fast as it can, a millisecond per batch on its clock; then nothing, or an error.
+/// A producer that counts as fast as possible, with a millisecond per batch on its clock, until it stalls or fails.
 struct Numbers {
     sizes: VecDeque<usize>,
     next: u64,
@@ -56,7 +56,7 @@ fn wait_until(what: impl Fn() -> bool) {
     }
 }
 
-/// Checks that every number is either present or counted as lost, at the right batch.
+/// Checks that every number is either present or counted as lost at the correct batch.
 fn check(batches: &[Batch<Vec<u64>>], from: u64) -> u64 {
     batches.iter().fold(from, |next, batch| {
         assert_eq!(batch.first, next + batch.lost, "{batch:?}");

@@ -15,7 +15,7 @@ use super::{FAST, Host, JOG};
 /// A turn, and 1° rounded up.
 const TURN: i32 = 65_536;
 const DEGREE: i32 = 183;
-/// Number of packets in transit while the first report of the defect is.
+/// Number of packets in transit at the same time as the first report of the defect.
 const UNDER_WAY: usize = 2;
 
 fn third() -> DriveNumber {
@@ -51,7 +51,7 @@ impl Hub {
         self.host.motion.snapshot().drives.iter().find(|own| own.number == third()).unwrap().phase
     }
 
-    /// Waits for the end of an act, and returns how it ended.
+    /// Waits for the end of an action, and returns how it ended.
     #[track_caller]
     fn until_over(&self, act: u64) -> ActionEnd {
         let until = Instant::now() + Duration::from_secs(20);

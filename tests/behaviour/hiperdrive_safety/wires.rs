@@ -32,7 +32,7 @@ struct Shared {
     end: AtomicBool,
 }
 
-/// Garbage that is sent in both directions.
+/// Garbage sent in both directions.
 pub(super) struct Flood {
     end: Arc<AtomicBool>,
     sent: Arc<AtomicU64>,
@@ -93,7 +93,7 @@ impl Wires {
         self.shared.cut[way as usize].store(false, Ordering::SeqCst);
     }
 
-    /// Sends garbage to both ports, until it is ended.
+    /// Sends garbage to both ports until it is stopped.
     pub(super) fn flood(&self) -> Flood {
         let (end, sent) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
         let ports = [self.shared.target, self.shared.host.load(Ordering::SeqCst)];
@@ -118,7 +118,7 @@ impl Wires {
 }
 
 impl Flood {
-    /// Ends it and returns the number of packets.
+    /// Stops sending and returns the number of packets.
     pub(super) fn end(self) -> u64 {
         self.end.store(true, Ordering::SeqCst);
         self.thread.join().unwrap();

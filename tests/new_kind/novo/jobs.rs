@@ -18,7 +18,7 @@ use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of
 use super::sim::Virtual;
 use super::write::NovoWrite;
 
-/// Write cycles that it lasts.
+/// Number of write cycles of its memory.
 pub(crate) const LIFE: u64 = 10_000;
 const TRIES: u16 = 3;
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -26,7 +26,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// The encoder with its connection.
 pub(crate) struct Novo(pub(crate) Box<dyn ByteLink>);
 
-/// Time and position.
+/// Time and position of a sample.
 pub(crate) type Sample = (Moment, u16);
 
 /// A change that the user wants to write.
@@ -148,7 +148,7 @@ impl Device for Novo {
     type DeviceMessage = Infallible;
     type Sample = Sample;
     type Watch = Infallible;
-    /// The item that is written.
+    /// The item being written.
     type JobStep = usize;
 
     fn run(&mut self, context: &mut SessionContext, job: Job, tell: Told<'_>) -> Result<Output, JobError> {

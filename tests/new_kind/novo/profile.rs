@@ -40,7 +40,7 @@ impl Profile for NovoProfile {
     }
 }
 
-/// An item becomes another value.
+/// An item changes to another value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Op {
     pub(crate) item: usize,

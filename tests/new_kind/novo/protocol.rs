@@ -13,7 +13,7 @@ pub(crate) const FIRST: u8 = 0x10;
 pub(crate) const TURN: u16 = 4096;
 /// The stored values: each a word, at consecutive addresses.
 pub(crate) const ITEMS: [&str; 4] = ["zero", "filter", "least", "greatest"];
-/// Bytes of a reply.
+/// Length of a reply in bytes.
 pub(crate) const REPLY: usize = 3;
 
 /// The stored values, in the order of [`ITEMS`].

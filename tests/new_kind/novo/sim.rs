@@ -21,7 +21,7 @@ parameters! {
     }
 }
 
-/// A Novo encoder whose shaft turns evenly. Its values are lost when it is dropped.
+/// A virtual Novo encoder with a steadily turning shaft. Its values are lost when it is dropped.
 pub(crate) struct Virtual {
     settings: Settings,
     values: Values,
@@ -33,7 +33,7 @@ impl Virtual {
     /// The settings whose values are neither shown nor kept.
     pub(crate) const SECRETS: &'static [&'static str] = Settings::SECRETS;
 
-    /// As the query of a link.
+    /// Parses the query of a link.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let settings = setting::read(VirtualDevice::EncoderOf("Novo"), pairs)?;
         Ok(Virtual { settings, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] })

@@ -66,7 +66,7 @@ fn mounting() -> Change {
     Change::Guided { run, motor: MotorSource::Other }
 }
 
-/// The end of a disturbed commit.
+/// The result of a disturbed commit.
 enum Ended {
     /// Complete.
     Done,
@@ -76,7 +76,7 @@ enum Ended {
     Interrupted(Box<InterruptedWrite>),
 }
 
-/// Carries the change out on a copy of the bench; `disturb` is called when the plan is complete.
+/// Executes the change on a copy of the bench. `disturb` is called when the plan is complete.
 fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
     let mut bench = original.copied();
     disturb(&mut bench);

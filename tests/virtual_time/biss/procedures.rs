@@ -21,7 +21,8 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Checks that the reported steps are those listed before, in their order; the return is reported if there is one.
+/// Checks that the reported steps match the previously listed ones in order, including the return to operation if there
+/// is one.
 #[track_caller]
 fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     let prepared = bench.prepare(change).unwrap();

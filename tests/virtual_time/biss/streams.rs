@@ -60,7 +60,7 @@ impl Stand {
         }
     }
 
-    /// Returns all frames streamed within this time.
+    /// Returns all frames streamed within the given time.
     fn runs(&mut self, time: Duration) -> Vec<ConsecutiveFrames> {
         let end = self.clock.now() + time;
         let mut runs = Vec::new();
@@ -70,7 +70,7 @@ impl Stand {
         runs
     }
 
-    /// Returns the bytes that the adapter sends within a second without a request.
+    /// Returns the number of bytes that the adapter sends within a second without a request.
     fn unsolicited_byte_count(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {

@@ -24,12 +24,12 @@ use encoder_studio::worker::{Event, JobId, Progress, Session};
 use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// The configuration pin of an encoder, with the host's side of it.
+/// The configuration pin of an encoder with its host.
 pub(crate) type Pin = Rig<UbicomPort>;
-/// An encoder at an adapter, with the host's side.
+/// An encoder at an adapter with its host.
 pub(crate) type Bus = Rig<Adapter>;
 
-/// A virtual device with the host's side of its line.
+/// A virtual device with the host side of its line.
 pub(crate) struct Rig<D> {
     pub(crate) device: Arc<Mutex<D>>,
     pub(crate) clock: Arc<VirtualClock>,
@@ -51,14 +51,14 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
 }
 
 impl Pin {
-    /// Creates an encoder as `sim:?…` describes it; its kind is known.
+    /// Creates a known encoder from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         Self::with(UbicomPort::new(&Config::from_pairs(&pairs(query)).unwrap()), Transport::ConfigPin)
     }
 }
 
 impl Bus {
-    /// Creates an encoder as `sim:?bridge=on&…` describes it; its kind is known.
+    /// Creates a known encoder behind an adapter from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         Self::with(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap(), Transport::Adapter)
     }
@@ -109,7 +109,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         self.clock.now().since_start()
     }
 
-    /// Returns the data of the line, as hexadecimal text.
+    /// Returns the data on the line in hexadecimal.
     pub(crate) fn shown(&self, direction: Direction) -> Vec<String> {
         let entries = self.entries.lock().unwrap();
         entries.iter().filter(|entry| entry.direction == direction).map(|entry| entry.bytes.to_string()).collect()
@@ -132,7 +132,7 @@ impl Handle {
     }
 }
 
-/// A virtual encoder with a session to it.
+/// A virtual encoder with a session.
 pub(crate) struct Bench {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) session: Session<Biss>,
@@ -155,7 +155,7 @@ impl Bench {
         Self::made(way, query, store, folder)
     }
 
-    /// Creates it with these folders.
+    /// Creates a bench with the given store.
     pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
@@ -204,18 +204,18 @@ impl Bench {
         Bench { clock, session, tap, end, folder }
     }
 
-    /// Returns the same device at the same time in a new session: a cable that was plugged in again.
+    /// Returns the same device at the same time in a new session, like a cable that is plugged in again.
     pub(crate) fn reconnected(&self) -> Bench {
         let (store, folder) = (Store::at_root(self.folder.path()), self.folder.clone());
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
-    /// Creates one at an adapter that switches the encoder's supply, at first off.
+    /// Creates a bench with an adapter that can switch the encoder's supply, which is initially off.
     pub(crate) fn supplied(after: SupplyAfterSession) -> Self {
         Self::supplied_at("", after)
     }
 
-    /// Creates the same with further settings of the adapter.
+    /// Creates the same bench with additional settings of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), attachable_kinds()).unwrap();
@@ -314,12 +314,12 @@ impl Bench {
         Handle { end: self.end.clone(), clock: self.clock.clone() }
     }
 
-    /// Waits until this time after the beginning.
+    /// Waits until the given time since the start.
     pub(crate) fn clock_to(&self, elapsed: Duration) {
         self.clock.sleep_until(Moment::from_elapsed(elapsed));
     }
 
-    /// Runs a job, and shows the reported operations of a plan.
+    /// Runs a job, and returns the reported operations of a plan.
     pub(crate) fn run_watched(
         &mut self,
         job: BissJob,
@@ -362,7 +362,7 @@ impl Bench {
         self.encoder(|encoder, now| encoder.read(now, address))
     }
 
-    /// Returns the number of writes of the encoder's flash.
+    /// Returns the number of writes to the encoder's flash.
     pub(crate) fn flash_cycles(&self) -> u32 {
         self.encoder(|encoder, _| encoder.flash().write_cycles())
     }

@@ -13,7 +13,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use super::support::{Bus, Rig, Transport};
 use crate::support::MARGIN;
 
-/// A single-turn encoder of 14 bits with its adapter; it answers at once.
+/// A 14-bit singleturn encoder with its adapter, which replies immediately.
 struct Stranger {
     layout: Layout,
     /// Steps from one frame to the next.

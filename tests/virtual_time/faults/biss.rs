@@ -15,7 +15,7 @@ use crate::biss::hands::{
 };
 use crate::biss::support::{Bench, Handle, Transport};
 
-/// What is stored in the encoder: OEM data that are not 0, preset, filter, and whether it is calibrated.
+/// The stored values of the encoder: OEM data other than 0, preset, filter, and whether it is calibrated.
 type State = (Vec<(usize, u8)>, PresetValue, PositionFilter, bool);
 
 fn state(encoder: &Handle) -> State {
@@ -26,7 +26,7 @@ fn state(encoder: &Handle) -> State {
     })
 }
 
-/// A change, planned for an encoder, with the states that it passes through.
+/// A planned change of an encoder with its intermediate states.
 struct Case {
     name: String,
     change: fn() -> Change,

@@ -36,7 +36,7 @@ fn state(stand: &Stand) -> State {
     WRITTEN.iter().map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap()).collect()
 }
 
-/// Returns a session whose link is still intact, and the schedule of its faults.
+/// Returns a session over a link that is intact so far, and the schedule of its faults.
 fn session() -> (Stand, Arc<Mutex<Schedule>>) {
     let (target, clock) = device();
     let schedule = Arc::<Mutex<Schedule>>::default();

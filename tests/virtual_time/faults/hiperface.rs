@@ -23,7 +23,7 @@ use fastrand::Rng;
 use super::{End, FaultyLink, Schedule, any_faults, assert_one_of, campaign};
 use crate::support::{Desk, bytes, folder, restore_of};
 
-/// What is stored in an encoder, and its position.
+/// The stored values and the position of an encoder.
 #[derive(Clone, PartialEq)]
 struct State {
     memory: Memory,
@@ -58,7 +58,7 @@ impl State {
     }
 }
 
-/// A change, planned for an encoder, with the states that it passes through.
+/// A planned change of an encoder with its intermediate states.
 struct Case {
     name: &'static str,
     bus: Bus,
@@ -196,7 +196,7 @@ fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     Case { name, bus, clock: desk.clock.clone(), station, change, prepared, requests, course }
 }
 
-/// Saves a profile of the encoder; what is saved is what it contains.
+/// Saves a profile of the encoder, and checks that it matches the encoder.
 fn save(case: &Case, truth: &HiperfaceProfile, rng: &mut Rng) -> End {
     let faults = any_faults(rng, 60, Duration::from_millis(20), false);
     let context = format!("save with {faults:?}");

@@ -22,7 +22,7 @@ use crate::support::folder;
 
 const QUERY: &str = "steps=3600&revolutions=1&serial=77&cams=demo&program=2&position=100";
 
-/// What is stored in the encoder, and what it works with.
+/// The stored and the active values of the encoder.
 type State = (Memory, Memory, StartupMode);
 
 struct Rig {
@@ -41,7 +41,7 @@ impl Rig {
         Rig { gateway, clock, schedule, folder, session }
     }
 
-    /// Opens a new session over an intact link, as another run of the program.
+    /// Opens a new session over an intact link, as in another run of the program.
     fn reconnect(&mut self) {
         self.schedule = Arc::default();
         self.session = session(&self.gateway, &self.clock, &self.schedule, &self.folder);
@@ -90,7 +90,7 @@ fn session(
     Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft_motor()))
 }
 
-/// A change, with the states that it passes through and the number of its requests.
+/// A change with its intermediate states and the number of its requests.
 struct Case {
     name: &'static str,
     change: Change,

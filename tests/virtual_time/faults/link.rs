@@ -41,7 +41,7 @@ pub(crate) enum Fault {
     PowerLoss,
 }
 
-/// The faults of a link, by the number of the request (0 is the first), and what has passed.
+/// The faults of a link by request number, counted from 0, and the number of requests so far.
 #[derive(Default)]
 pub(crate) struct Schedule {
     pub(crate) faults: BTreeMap<usize, Fault>,
@@ -58,7 +58,7 @@ impl Schedule {
         Schedule { faults, ..Schedule::default() }
     }
 
-    /// Returns no faults, with a function to be called before each request.
+    /// Returns a schedule without faults that calls a function before each request.
     pub(crate) fn observed(on_request: impl FnMut() + Send + 'static) -> Self {
         Schedule { on_request: Some(Box::new(on_request)), ..Schedule::default() }
     }
@@ -92,7 +92,7 @@ impl FaultyLink {
         self.arriving.extend(bytes.iter().map(|byte| (at, *byte)));
     }
 
-    /// Passes one byte of the reply on.
+    /// Passes on one byte of the reply.
     fn pass(&mut self, now: Moment, mut byte: u8) {
         let place = self.reply.len();
         self.reply.push(byte);

@@ -20,7 +20,7 @@ use fastrand::Rng;
 
 pub(crate) use self::link::{Fault, FaultyLink, Schedule};
 
-/// Runs of all kinds together if no number is given.
+/// Total number of runs of all kinds if no number is given.
 const RUNS: u64 = 4_000;
 
 /// The end of a run.
@@ -106,7 +106,7 @@ fn any_fault(rng: &mut Rng, usual: Duration, is_stream: bool) -> Fault {
     }
 }
 
-/// Asserts that the state is one of those that an undisturbed run passes through.
+/// Asserts that the state occurs in an undisturbed run.
 pub(crate) fn assert_one_of<S: PartialEq + Debug>(state: &S, course: &[S], context: &str) {
     if !course.contains(state) {
         panic!("{context}: {state:?} is not a state of the plan: {course:?}");

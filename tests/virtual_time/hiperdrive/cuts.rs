@@ -12,7 +12,7 @@ use encoder_studio::link::CancelToken;
 use super::support::{Stand, drive, image};
 use crate::support::Tap;
 
-/// Longest time until a command gives up on a device.
+/// Maximum time until a command gives up on a device.
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// A fault of the connection at a request.
@@ -29,7 +29,7 @@ fn write() -> Change {
     Change::Write(image(&[(24, 7), (166, 200), (186, 30)]))
 }
 
-/// Requests of a write that nothing happens to.
+/// Returns the requests of an undisturbed write.
 fn requests() -> usize {
     let mut stand = Stand::new("");
     let prepared = stand.prepare(write()).unwrap();
@@ -104,7 +104,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
     }
 }
 
-/// Carries a change out with a cancellation at each of its requests in turn; `look` receives each end.
+/// Executes a change with a cancellation at each of its requests in turn, and passes each result to `look`.
 fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &InterruptedWrite)) {
     for at in 0.. {
         let mut stand = Stand::new("");

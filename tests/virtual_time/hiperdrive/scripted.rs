@@ -12,7 +12,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::{drive, number};
 
-/// The answer to a request.
+/// The reaction to a request.
 enum Act {
     /// A CIP reply in a frame with the request's context.
     Reply(&'static str),

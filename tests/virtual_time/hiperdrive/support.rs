@@ -20,7 +20,7 @@ use encoder_studio::worker::Session;
 use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// A virtual device with a session on it.
+/// A virtual device with a session.
 pub(crate) struct Stand {
     pub(crate) target: Target,
     pub(crate) clock: Arc<VirtualClock>,
@@ -43,7 +43,7 @@ pub(crate) fn image(values: &[(u16, i64)]) -> Box<Image> {
 }
 
 impl Stand {
-    /// Creates a device as `sim:?…` describes it.
+    /// Creates a device from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         let pairs = query.split('&').filter_map(|item| item.split_once('='));
         let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
@@ -111,7 +111,7 @@ impl Stand {
         }
     }
 
-    /// Plans a change and carries it out.
+    /// Plans and executes a change.
     pub(crate) fn change(&mut self, change: Change) -> Result<Committed, JobError> {
         let prepared = self.prepare(change)?;
         self.commit(prepared)
@@ -125,7 +125,7 @@ impl Stand {
         std::fs::create_dir_all(path).unwrap();
     }
 
-    /// Returns a parameter as the device has it.
+    /// Returns the value of a parameter in the device.
     pub(crate) fn value(&self, own: u16) -> i64 {
         let now = self.clock.now();
         match self.target.with_station(|station| station.read(now, number(own))).unwrap() {
@@ -134,7 +134,7 @@ impl Stand {
         }
     }
 
-    /// Returns the requests to objects, in their order.
+    /// Returns the requests to objects in order.
     pub(crate) fn requests(&self) -> Vec<Request> {
         let tap = self.tap();
         let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());

@@ -60,14 +60,14 @@ impl Bench {
         }
     }
 
-    /// Makes a request of the user; returns the number of the act.
+    /// Makes a request of the user and returns the number of the action.
     pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
         self.intent = MotionIntent { drive: DriveNumber::FIRST, request: wish, number, refreshed: self.now };
         number
     }
 
-    /// Runs one interval; checks and returns the sent set-point.
+    /// Runs one interval, and checks and returns the setpoint that is sent.
     pub(super) fn cycle(&mut self) -> Setpoint {
         if !self.absent {
             self.intent.refreshed = self.now;
@@ -104,7 +104,7 @@ impl Bench {
         });
     }
 
-    /// Runs until the last act has ended; returns how.
+    /// Runs until the last action has ended, and returns how it ended.
     pub(super) fn until_over(&mut self) -> ActionEnd {
         for _ in 0..6000 {
             self.cycle();
@@ -117,7 +117,7 @@ impl Bench {
         panic!("it never ends: {:?} {:?}", self.man.phase(), self.actual());
     }
 
-    /// Returns the real state of the drive.
+    /// Returns the actual state of the drive.
     pub(super) fn actual(&mut self) -> ActualValues {
         self.station.image(self.now).drives[0]
     }
@@ -161,7 +161,7 @@ impl Bench {
         let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
     }
 
-    /// Opens the connection again, without an act of the user.
+    /// Reopens the connection without an action of the user.
     pub(super) fn reconnect(&mut self) {
         self.station.close(self.now);
         self.station.open(self.now, TIMEOUT);

@@ -150,7 +150,7 @@ fn a_drive_without_reports_is_stopped() {
     assert!(bench.man.has_exhausted_stop_levels() && !bench.moves());
 }
 
-/// A drive at rest that turns all the same loses operation, then everything.
+/// A drive that turns although it should be at rest is disabled, then switched off.
 #[test]
 fn an_uncommanded_motion_is_stopped() {
     let mut bench = Bench::new();
@@ -189,7 +189,7 @@ fn a_new_connection_moves_nothing() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Reports that come late do not make a stop a start.
+    /// Late reports never turn a stop into a start.
     #[test]
     fn late_reports_start_nothing(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
         let mut bench = Bench::new();

@@ -12,7 +12,7 @@ pub(super) struct Model {
     limits: (i32, i32),
 }
 
-/// An act that may move the drive.
+/// An action that may move the drive.
 struct Live {
     number: u64,
     wish: MotionRequest,
@@ -37,9 +37,9 @@ enum Commands {
 }
 
 const ENABLED: u16 = 0x0409;
-/// Time that an act remains valid without a refresh.
+/// Time for which an action remains valid without a refresh.
 const FRESH: Duration = Duration::from_millis(250);
-/// Steps of a degree, rounded up.
+/// Steps per degree, rounded up.
 const DEGREE: i64 = 183;
 
 fn commands(word: u16, acknowledged: bool, job: bool) -> Commands {
@@ -60,7 +60,7 @@ impl Model {
         Model { live: None, limits }
     }
 
-    /// Records an act of the user.
+    /// Records an action of the user.
     pub(super) fn act(&mut self, number: u64, wish: MotionRequest, now: Moment) {
         let is_job = |live: &Live| matches!(live.wish, MotionRequest::Move { .. } | MotionRequest::Step { .. });
         match wish {
@@ -78,7 +78,7 @@ impl Model {
         }
     }
 
-    /// Records a refresh of the act.
+    /// Records a refresh of the action.
     pub(super) fn refresh(&mut self, now: Moment) {
         if let Some(live) = &mut self.live {
             live.said = now;

@@ -14,7 +14,7 @@ use super::support::{Stand, program};
 use crate::support::Tap;
 
 const QUERY: &str = "steps=3600&revolutions=1&serial=5&cams=demo&program=2";
-/// Longest time until a command gives up on a gateway.
+/// Maximum time until a command gives up on a gateway.
 const LIMIT: Duration = Duration::from_secs(12);
 
 /// A fault of the connection at a request.
@@ -26,7 +26,7 @@ const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
 const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
 const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
 
-/// Requests of a job that nothing happens to.
+/// Returns the requests of an undisturbed job.
 fn requests(job: impl Fn(&mut Stand) -> InterbusJob) -> usize {
     let mut stand = Stand::new(QUERY);
     let job = job(&mut stand);

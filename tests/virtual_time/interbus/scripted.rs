@@ -152,7 +152,7 @@ pub(crate) fn identity() -> Identity {
     }
 }
 
-/// Carries operations out with a script; returns the result, each step, and all written words.
+/// Executes operations with a script. Returns the result, each step, and all written words.
 pub(crate) fn carry_out(
     script: Script,
     ops: Vec<Op>,

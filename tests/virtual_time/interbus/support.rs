@@ -16,7 +16,7 @@ use encoder_studio::worker::{Event, JobId, Session};
 
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// A virtual gateway with a session on it.
+/// A virtual gateway with a session.
 pub(crate) struct Stand {
     pub(crate) gateway: Gateway,
     pub(crate) clock: Arc<VirtualClock>,
@@ -37,7 +37,7 @@ pub(crate) fn station(query: &str) -> Station {
 }
 
 impl Stand {
-    /// Creates an encoder as `sim:?…` describes it.
+    /// Creates an encoder from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         Stand::with(gateway(query), station(""))
     }
@@ -65,7 +65,7 @@ impl Stand {
         self.session = Session::for_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
     }
 
-    /// Stores that the logbook has counted of encoder 77.
+    /// Returns the number of stores of encoder 77 in the logbook.
     pub(crate) fn counted(&self) -> u64 {
         let logbook = Logbook::open(&Store::at_root(self.folder.path()).logbook_path()).unwrap();
         let device = DeviceKey {
@@ -85,7 +85,7 @@ impl Stand {
         self.session.run_inline(job)
     }
 
-    /// Runs a job; returns its result, and each step of the handshake.
+    /// Runs a job, and returns its result and each step of the handshake.
     pub(crate) fn follow(&mut self, job: InterbusJob) -> (Result<InterbusOutput, JobError>, Vec<Handshake>) {
         let mut steps = Vec::new();
         let ended = self.session.run(JobId::default(), job, &mut |event| {
@@ -125,7 +125,7 @@ impl Stand {
         }
     }
 
-    /// Returns the OUT words that were written, once if repeated.
+    /// Returns the written OUT words without repetitions.
     pub(crate) fn sent(&self) -> Vec<u32> {
         let entries = self.trace.lock().unwrap();
         let sent = entries.iter().filter(|entry| entry.direction == Direction::Sent);

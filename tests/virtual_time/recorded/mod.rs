@@ -19,7 +19,7 @@ use encoder_studio::worker::{Device, Session};
 
 use crate::support::Tap;
 
-/// A prepared write, and the means to disturb it.
+/// A prepared write with the handles for disturbing it.
 struct Ready {
     tap: Arc<Mutex<Tap>>,
     cancel: CancelToken,

@@ -28,7 +28,7 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
-    /// Creates one from the settings of a link to the adapter and of the virtual adapter.
+    /// Creates a session from the settings of the link and of the virtual adapter.
     pub(crate) fn new(link: &str, query: &str) -> Self {
         let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap()));
         Self::before(link, adapter)
@@ -61,7 +61,7 @@ impl Stand {
         self.session.take_sample().unwrap()
     }
 
-    /// Returns all samples within this time.
+    /// Returns all samples within the given time.
     pub(crate) fn samples(&mut self, time: Duration) -> Vec<Words> {
         let end = self.clock.now() + time;
         let mut samples = Vec::new();
@@ -71,7 +71,7 @@ impl Stand {
         samples
     }
 
-    /// Returns the bytes that the adapter sends within a second without a request.
+    /// Returns the number of bytes that the adapter sends within a second without a request.
     pub(crate) fn unsolicited_byte_count(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {

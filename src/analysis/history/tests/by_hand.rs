@@ -1,4 +1,4 @@
-//! Cases small enough to be written down.
+//! Cases that are small enough to be worked out by hand.
 
 use super::super::{BLOCK, BatchError, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Value};
 use crate::analysis::SampleTime;

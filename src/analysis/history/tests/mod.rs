@@ -1,4 +1,4 @@
-//! The history as a whole: by hand, against a full scan of the same samples, and over days.
+//! Tests of the complete history: worked examples, comparisons with a full scan, and recordings over days.
 
 mod by_hand;
 mod days;

@@ -1,11 +1,11 @@
-//! The naive history: everything in plain vectors, and every query answered from each sample.
+//! A naive history that keeps its samples in plain vectors and answers each query with a full scan.
 
 use std::ops::Range;
 
 use super::super::{BLOCK, Flags, Grid, Pixel, ReducedSamples, Value};
 use crate::analysis::SampleTime;
 
-/// One column with its times, and what is still stored of it.
+/// One column with its times, and the range that is still stored.
 #[derive(Default)]
 pub(super) struct Model {
     pub(super) times: Vec<i64>,
@@ -14,7 +14,7 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Adds a sample as `History` would store it: NaN is bad, bad breaks, and so does a pause.
+    /// Adds a sample as `History` would store it. NaN is a bad sample, and the line breaks at a bad sample or a pause.
     pub(super) fn push(&mut self, time: i64, value: Value, mut flags: Flags, broken: bool, pause: i64) {
         if !value.to_f64().is_finite() {
             flags |= Flags::BAD;

@@ -1,4 +1,4 @@
-//! For any appended, evicted and queried samples: the result is that of a full scan.
+//! Property tests that compare every result with a full scan.
 
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ enum Shape {
     Bad,
 }
 
-/// Samples that come together.
+/// Samples that are appended together.
 #[derive(Clone, Debug)]
 struct Run {
     seed: u64,
@@ -140,7 +140,7 @@ fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
     }
 }
 
-/// Checks that the extremes contain the true ones and are hardly further out; everything else must be equal.
+/// Checks that the extremes enclose the true ones with little slack, and that everything else is equal.
 fn check(found: &[Pixel], wanted: &[Pixel], around: impl Fn(&Pixel) -> f64) -> Result<(), TestCaseError> {
     prop_assert_eq!(found.len(), wanted.len());
     for (found, wanted) in found.iter().zip(wanted) {

@@ -1,4 +1,4 @@
-//! Opening of an adapter that streams. A `bridge:` link refers to a real one and a `sim:` link to a virtual one.
+//! Opening an adapter that streams. A `bridge:` link refers to a real one and a `sim:` link to a virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;

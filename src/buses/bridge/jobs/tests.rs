@@ -1,4 +1,4 @@
-//! Streams of the virtual adapter and of a scripted one, in virtual time: every loss is reported.
+//! Tests of streams from the virtual adapter and a scripted one in virtual time, in which every loss must be reported.
 
 use std::sync::Mutex;
 
@@ -38,7 +38,7 @@ pub(crate) fn virtual_adapter(query: &str) -> Adapter {
     Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), attachable_kinds()).unwrap()
 }
 
-/// Position frames as they come.
+/// Position frames as received.
 pub(crate) struct RawFrames;
 
 impl StreamFormat for RawFrames {
@@ -70,7 +70,7 @@ impl<S: StreamFormat> Bench<S> {
         batches
     }
 
-    /// Returns the error with which it ends, within a few seconds.
+    /// Returns the error that ends the stream within a few seconds.
     fn error(&mut self) -> BridgeError {
         let end = self.clock.now() + Duration::from_secs(20);
         while self.clock.now() < end {
@@ -94,8 +94,7 @@ impl<S: StreamFormat> Bench<S> {
     }
 }
 
-/// Checks that every number is either present or counted as lost before the next batch; returns how many there are of
-/// both.
+/// Checks that every number is either present or counted as lost before the next batch. Returns both counts.
 pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
     let (mut next, mut there, mut lost) = (0, 0, 0);
     for batch in batches {
@@ -386,7 +385,7 @@ fn a_stream_that_ends_or_restarts_by_itself_is_reported() {
     assert_eq!(other.take(Duration::from_millis(100)).len(), 1, "what another stream has left is let go");
 }
 
-/// Connection that is unplugged after this many portions.
+/// Connection that is unplugged after a number of chunks.
 struct UnpluggingLink(SimLink, u32);
 
 impl ByteLink for UnpluggingLink {

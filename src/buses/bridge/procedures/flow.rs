@@ -133,7 +133,7 @@ impl SampleStream {
         self.period_ns
     }
 
-    /// Returns the next samples, or `None` if no samples have arrived by `until`.
+    /// Returns the next samples, or `None` if none have arrived by `until`.
     ///
     /// # Errors
     /// Returns [`AdapterError::Mute`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has ended,

@@ -29,7 +29,7 @@ impl SkewCorrection {
         self.before.clear();
     }
 
-    /// Replaces each cosine by its value at the time of the sine.
+    /// Replaces each cosine with its value at the time of the sine.
     pub(super) fn apply(&mut self, samples: &mut [(i16, i16)]) {
         let start = self.before.len();
         let cosines: Vec<f64> =
@@ -66,7 +66,7 @@ mod tests {
         (0..count).map(|sample| (value(at(sample, 0.0).sin()), value(at(sample, 2e-6).cos()))).collect()
     }
 
-    /// Largest error of the angle in degrees, corrected in portions of the given lengths.
+    /// Largest error of the angle in degrees after a correction in chunks of the given lengths.
     fn largest_error(hz: f64, portions: &[usize]) -> f64 {
         let mut samples = sampled(hz, portions.iter().sum());
         let mut correction = SkewCorrection::new(2_000, 10_000).unwrap();

@@ -1,4 +1,4 @@
-//! Error messages of an adapter for any bus behind it.
+//! Error messages of an adapter for any bus.
 
 use crate::app::Text;
 use crate::buses::bridge::procedures::AdapterError;

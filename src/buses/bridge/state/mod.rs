@@ -1,4 +1,4 @@
-//! Messages of an adapter for any bus behind it.
+//! Messages of an adapter for any bus.
 
 mod error;
 mod texts;

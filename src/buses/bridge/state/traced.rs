@@ -1,4 +1,4 @@
-//! Descriptions of the packets to and from an adapter, for any bus behind it.
+//! Descriptions of the packets to and from an adapter for any bus.
 
 use crate::app::explain::literal_text;
 use crate::app::{FrameExplanation, Text, TraceFault};

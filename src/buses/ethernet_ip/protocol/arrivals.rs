@@ -1,6 +1,6 @@
-//! Filtering of cyclic packets. Duplicates are dropped, and so are packets that a newer one has overtaken.
+//! Filtering cyclic packets. Duplicates are dropped, and so are packets that a newer one has overtaken.
 
-/// A tracker for the packets received on one connection.
+/// Tracks the packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PacketTracker {
     newest: Option<u32>,

@@ -1,4 +1,4 @@
-//! Fields of a connection request. See reference 7 (bit layout by ODVA, `P`).
+//! Fields of the requests that open a connection. See reference 7 (bit layout by ODVA, `P`).
 
 use std::time::Duration;
 
@@ -124,7 +124,7 @@ impl NetworkParameters {
         self.0 & SIZE
     }
 
-    /// Returns whether less data than the connection size may be sent.
+    /// Returns whether packets may be shorter than the connection size.
     pub const fn is_variable(self) -> bool {
         self.0 & VARIABLE != 0
     }

@@ -49,7 +49,7 @@ pub struct SocketAddress {
     pub family: u16,
     /// Port number.
     pub port: u16,
-    /// IPv4 address. 0.0.0.0 stands for the sender of the frame.
+    /// IPv4 address. 0.0.0.0 means the sender of the frame.
     pub address: Ipv4Addr,
 }
 

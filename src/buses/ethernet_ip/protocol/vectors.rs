@@ -1,5 +1,5 @@
-//! The packets of the reference, in both directions; and others, composed by hand from the tables of fields. Expected
-//! values never come from the code under test.
+//! Tests with the packets of the reference in both directions, and with packets composed by hand from the field tables.
+//! Expected values never come from the code under test.
 
 use core::net::Ipv4Addr;
 use std::time::Duration;

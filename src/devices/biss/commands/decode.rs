@@ -84,7 +84,7 @@ fn require_even_digit_count(word: &str) -> Result<()> {
     Err(Failure::Usage(format!("{word:?} {why}")))
 }
 
-/// Returns whether an argument begins with 0x, and the remaining digits.
+/// Removes a leading 0x. Returns whether it was present, and the digits.
 fn strip_hex_prefix(word: &str) -> (bool, &str) {
     match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
         Some(digits) => (true, digits),

@@ -1,4 +1,4 @@
-//! Profile commands for BiSS encoders: `save`, `restore`, and reading the encoder for comparison.
+//! The `save` and `restore` commands for BiSS encoders. Other commands read the encoder here to compare it.
 
 use serde_json::json;
 
@@ -56,7 +56,7 @@ impl ProfileCommands for BissCommands {
         })
     }
 
-    /// Reads the encoder for a comparison. Returns an error if its registers may show values that were never saved.
+    /// Reads the encoder for comparison. Returns an error if its registers may show values that were never saved.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(read_saved_profile(common, BissJob::SaveToCompare)?))
     }

@@ -1,4 +1,4 @@
-//! Running jobs on a BiSS encoder, with their messages.
+//! Running jobs on a BiSS encoder and printing their messages.
 
 use super::BissCommands;
 use crate::app::TypeMap;

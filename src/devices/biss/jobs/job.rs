@@ -45,7 +45,7 @@ pub enum BissJob {
     ReadArea(Area),
     /// Reads everything that can be restored, at standstill. Values that were never saved in the encoder are marked.
     Save,
-    /// Reads the encoder for a comparison. The job fails if some values may never have been saved.
+    /// Reads the encoder for comparison. The job fails if some values may never have been saved.
     SaveToCompare,
     /// Prepares a plan without writing.
     Prepare(Change),
@@ -84,7 +84,7 @@ pub enum ChangeKind {
     Guided,
     /// Guided procedures that include a calibration. The calibration table is not part of any backup.
     Calibration,
-    /// The Wiegand test alone, which stores only its result.
+    /// Only the Wiegand test, which stores its result.
     WiegandTest,
     Filter,
     /// Storing a preset value, setting the position to it, or both.
@@ -151,7 +151,7 @@ pub struct Commit {
     pub attendance: OperatorPresence,
 }
 
-/// Whether an operator is at the motor while a plan is executed.
+/// Whether an operator is present at the motor while a plan is executed.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
     Attended(OperatorChannel),

@@ -184,7 +184,7 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
     BissStepResult::new(CheckStep::DataSheet, findings)
 }
 
-/// Offsets of the limits in the encoder bank of the data sheet.
+/// Offsets of the limits within the encoder bank of the data sheet.
 mod offset {
     pub(super) const COLDEST: u8 = 0x30;
     pub(super) const HOTTEST: u8 = 0x32;

@@ -1,5 +1,5 @@
-//! Errors and warnings for positions that do not include them. Over the configuration pin, they are read from separate
-//! registers. See reference UBICOM 4.
+//! Errors and warnings for transports whose positions do not include them. Over the configuration pin, they are read
+//! from separate registers. See reference UBICOM 4.
 
 use std::time::Duration;
 

@@ -31,7 +31,7 @@ pub struct ConsecutiveFrames {
     pub period_ns: i64,
     /// Number of frames lost before the first frame in the list.
     pub lost: u64,
-    /// The frames, of which there is at least one.
+    /// The frames, at least one.
     pub frames: Vec<Frame>,
     pub layout: Arc<Layout>,
     /// Whether the multiturn width is known.

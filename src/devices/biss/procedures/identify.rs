@@ -51,7 +51,7 @@ pub enum FrameSource {
 }
 
 impl FrameSource {
-    /// Returns whether the source reveals the multiturn width.
+    /// Returns whether the multiturn width is known from this source.
     pub const fn is_known(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
@@ -203,7 +203,7 @@ fn read_type_identity(master: &mut Master<'_>, registers: &mut Registers) -> Res
     })
 }
 
-/// Returns a description of the same manufacturer and profile for another device.
+/// Returns a description of another device with the same manufacturer and profile.
 fn closest_mismatch(types: &Descriptions, kind: &Kind) -> Option<IdentityMismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types

@@ -1,5 +1,5 @@
-//! Host side of the line. Requests are repeated, written values are read back, and values are read twice if necessary.
-//! Single exchanges are implemented in [`ubicom`] and [`bus`].
+//! Host side of the serial line. Requests are repeated, written values are read back, and values are read twice if
+//! necessary. Single exchanges are implemented in [`ubicom`] and [`bus`].
 //!
 //! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
@@ -23,8 +23,8 @@ use crate::link::Ctx;
 use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
-/// Number of missing replies after which a register is considered missing, provided that another register replies. A
-/// disturbed line may lose a single reply.
+/// Number of missing replies after which a register is considered nonexistent, provided that another register replies.
+/// A disturbed line may lose a single reply.
 const MAX_MISSING_REPLIES: u32 = 3;
 
 /// Host side of the line to a BiSS encoder, over either transport.
@@ -33,7 +33,7 @@ pub struct Master<'a> {
     station: &'a mut Station,
 }
 
-/// The reason why an exchange yielded no reply.
+/// The reason why an exchange produced no reply.
 enum ExchangeError {
     /// No reply arrived, except possibly the echo.
     Silence {
@@ -328,8 +328,8 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether only the given register does not reply. For comparison, another register is read repeatedly. The
-    /// check is skipped if the encoder may be silent for a long time.
+    /// Returns whether the given register is the only one that does not reply. For comparison, another register is read
+    /// repeatedly. The check is skipped if the encoder may be silent for a long time.
     fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);

@@ -1,5 +1,5 @@
-//! Memory of the encoder: banks, data areas, and everything that can be restored. Data areas are not accessed while the
-//! shaft turns. See manual 6.5.
+//! Reading the memory of the encoder: banks, data areas, and everything that can be restored. Data areas are not
+//! accessed while the shaft turns. See manual 6.5.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ const MIN_MULTITURN_BITS: u8 = 7;
 /// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`: not documented).
 const REST_JITTER_DIVISOR: u64 = 8192;
 
-/// Treatment of values that were entered in a device mode but never saved. The encoder shows them as if they were
+/// Handling of values that were entered in a device mode but never saved. The encoder shows them as if they were
 /// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedValues {

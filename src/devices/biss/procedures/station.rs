@@ -21,7 +21,7 @@ use crate::parameter::{
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
-/// Words for the byte order of register numbers. `None` means that the order is detected.
+/// Keywords for the byte order of register numbers. `None` means that the order is detected.
 pub const ORDERS: Keywords<Option<ByteOrder>> =
     Keywords(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
@@ -253,7 +253,7 @@ impl Station {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that a write succeeded. For a command register, reading back
+    /// Returns whether a write can be verified by reading the register back. For a command register, reading back
     /// proves nothing, because the register may still hold the same value from an earlier command.
     pub(super) fn is_readback_conclusive(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {

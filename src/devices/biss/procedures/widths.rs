@@ -1,4 +1,4 @@
-//! Finds the frame layout of an encoder with unknown widths while its shaft turns.
+//! Detection of the frame layout of an encoder with unknown widths while its shaft turns.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ const MAX_SINGLETURN_BITS: u8 = 32;
 /// cannot be observed. Therefore, up to 32 bits of the position are taken as the singleturn.
 ///
 /// # Errors
-/// Returns [`Error::WidthsUnknown`] if no length fits or the shaft stands still, or another error if the exchange
+/// Returns [`Error::WidthsUnknown`] if no length fits or the shaft is at standstill, or another error if the exchange
 /// fails.
 pub(super) fn find_frame_layout(master: &mut Master<'_>) -> Result<Layout, Error> {
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;

@@ -1,4 +1,4 @@
-//! Writing of a plan to an encoder. The values on which the plan is based are read again first. Each operation is then
+//! Writing a plan to an encoder. The values on which the plan is based are read again first. Each operation is then
 //! performed, if required with an operator at the motor, and its result is read back. The encoder is returned to
 //! operation after each operation.
 
@@ -250,7 +250,7 @@ pub fn read_state(
     Ok(DeviceState { identity: identity.profile(), filter, preset, areas, banks: read })
 }
 
-/// Reads a bank, which requires that the shaft stands still. The bank is read twice if the line has damaged any data.
+/// Reads a bank, which requires the shaft to be at standstill. The bank is read twice if the line has damaged any data.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

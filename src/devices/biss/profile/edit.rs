@@ -1,5 +1,5 @@
-//! Planning of single changes and guided procedures. Each is checked against the rules of the encoder before anything
-//! is sent.
+//! Planning single changes and guided procedures. Each is checked against the rules of the encoder before anything is
+//! sent.
 
 use std::collections::{BTreeMap, BTreeSet};
 

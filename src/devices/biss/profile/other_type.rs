@@ -1,6 +1,6 @@
-//! Checks whether an encoder is of the same type as the encoder of a profile. The type consists of profile ID,
-//! manufacturer, device ID and the position widths. The widths matter because a preset is a number of steps, which is a
-//! different angle with other widths.
+//! Comparison of the type of an encoder with that of a profile. The type consists of profile ID, manufacturer, device
+//! ID and the position widths. The widths matter because a preset is a number of steps, which is a different angle with
+//! other widths.
 
 use std::fmt;
 
@@ -42,7 +42,7 @@ impl Width {
         Width { multiturn: identity.multiturn_bits, singleturn: identity.singleturn_bits }
     }
 
-    /// Returns whether a width is known on both sides and differs.
+    /// Returns whether the two widths are known to be different.
     fn differs_from(self, other: Self) -> bool {
         let parts = [(self.multiturn, other.multiturn), (self.singleturn, other.singleturn)];
         parts.into_iter().any(|(one, other)| one.zip(other).is_some_and(|(one, other)| one != other))

@@ -160,8 +160,8 @@ impl Op {
         }
     }
 
-    /// Returns the number of items that a comparison counts for the operation. This is the number of changed registers
-    /// in an area, and otherwise one.
+    /// Returns the number of items that the operation changes, counted as in a comparison. This is the number of
+    /// changed registers in an area, and otherwise one.
     pub fn compared_items(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

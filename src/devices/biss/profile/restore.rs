@@ -1,5 +1,5 @@
-//! Planning of a restore. A plan contains only differences and needs as few persistent writes as possible. Values that
-//! are only valid for another encoder on its motor are omitted. A preset value is stored, but the position is not set.
+//! Planning a restore. A plan contains only differences and needs as few persistent writes as possible. Values that are
+//! only valid for another encoder on its motor are omitted. A preset value is stored, but the position is not set.
 
 pub use crate::profile::RestoreOptions;
 

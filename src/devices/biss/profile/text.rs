@@ -1,4 +1,4 @@
-//! The text format of a BiSS profile, which people can read and edit. Each error names the entry that caused it.
+//! The text format of a BiSS profile, which users can read and edit. Each error names the entry that caused it.
 
 use super::{
     Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,

@@ -1,4 +1,5 @@
-//! Undoing a write to an encoder: its single registers, and what the backup cannot write back.
+//! Undoing a write to an encoder: splitting it into registers, and instructions for items that the backup cannot
+//! restore.
 
 use super::{BissProfile, RegisterRange};
 use crate::profile::{ChangedItem, Redo, single_bytes};
@@ -31,7 +32,7 @@ pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
 }
 
 impl BissProfile {
-    /// Returns what to do about an item that this backup does not contain.
+    /// Returns the instruction for an item that this backup does not contain.
     pub(super) fn redo_item(&self, item: &ChangedItem) -> Option<Redo> {
         let range = match logged_item(item) {
             LoggedItem::Setting => return None,

@@ -61,7 +61,7 @@ impl Crc {
     }
 
     /// Creates a checksum algorithm from the notation of the electronic data sheet, or returns `None` for 0, which
-    /// means no checksum. The notation omits the lowest term, so that 21h stands for 43h.
+    /// means no checksum. The notation omits the lowest term, so that 21h means 43h.
     ///
     /// # Errors
     /// Returns an error from [`new`](Self::new) if the parameters are invalid.

@@ -1,6 +1,6 @@
-//! The electronic data sheet of the standard encoder profile BP3. Bank 2 is common to all BiSS devices, and bank 3 is
-//! specific to encoders. Numbers are stored high byte first, and the last byte of each bank is the sum of the others.
-//! Bytes that the manual's tables do not name are preserved. See appendix 9.1.4 and 9.1.5 of the manual.
+//! The electronic data sheet of the standard encoder profile BP3: bank 2, common to all BiSS devices, and bank 3 for
+//! encoders. Numbers are stored high byte first, and the last byte of each bank is the sum of the others. Bytes that
+//! the manual's tables do not name are preserved. See appendix 9.1.4 and 9.1.5 of the manual.
 
 use super::crc::{Crc, CrcError};
 use super::single_cycle::{Layout, LayoutError};
@@ -177,7 +177,7 @@ pub enum EdsError {
 }
 
 impl EdsBank {
-    /// Returns the number of this bank in a kit encoder.
+    /// Returns the bank number in a kit encoder.
     pub const fn kit_number(self) -> u8 {
         match self {
             EdsBank::Common => 0x02,

@@ -36,7 +36,7 @@ struct CalibrationRun {
     outcome: CalibrationStatus,
 }
 
-/// The effect of a finished calibration run on the calibration table.
+/// The effect of a completed calibration run on the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunOutcome {
     No,
@@ -91,7 +91,7 @@ impl Calibration {
         }
     }
 
-    /// Starts a run that is due, and ends a run whose time is over.
+    /// Starts a run that is due, and ends a run whose time has elapsed.
     pub(super) fn update(&mut self, now: Moment) -> RunOutcome {
         if self.run.is_some_and(|run| run.begins <= now) {
             self.status = CalibrationStatus::Running;

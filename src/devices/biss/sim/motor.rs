@@ -1,9 +1,9 @@
-//! The motor of the shaft, as seen by the encoder.
+//! The motor of the shaft, from the perspective of the encoder.
 
 use crate::sim::Motor;
 
-/// A motor as seen by its encoder. Cloning creates an independent motor, because a copied encoder must not share the
-/// motor of the original.
+/// A motor from the perspective of its encoder. Cloning creates an independent motor, because a copied encoder must not
+/// share the motor of the original.
 #[derive(Debug)]
 pub(super) struct Drive {
     motor: Motor,

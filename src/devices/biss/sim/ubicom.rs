@@ -136,7 +136,7 @@ impl UbicomPort {
         }
     }
 
-    /// Sends bytes on the line and returns the time at which the last one has been transmitted.
+    /// Sends bytes on the line and returns the time at which the last byte is complete.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.duration_of_bits(character_bits(format)), bytes);

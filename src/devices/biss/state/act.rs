@@ -1,4 +1,5 @@
-//! The user's actions on an encoder. Edits take effect immediately. Everything else becomes a session job or a task.
+//! Handling the user's actions on an encoder. Edits take effect immediately. Everything else becomes a session job or a
+//! task.
 
 use std::time::Duration;
 

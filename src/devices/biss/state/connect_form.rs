@@ -30,7 +30,7 @@ pub enum BissLinkKind {
 }
 
 /// Values of the connection form. Values for other kinds of connection are kept, but are not included in the link. An
-/// empty field stands for the default.
+/// empty field means the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
     pub kind: BissLinkKind,

@@ -1,4 +1,4 @@
-//! Recording of a BiSS encoder during polling: its positions and the watched registers.
+//! Recording a BiSS encoder during polling: its positions and the watched registers.
 
 use std::time::Duration;
 

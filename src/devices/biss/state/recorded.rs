@@ -1,4 +1,4 @@
-//! The recorded format of drafts in users' files. The draft must be readable, and must be the same after it is written
+//! Tests of the draft format in users' files. The draft must be readable, and must be the same after it is written
 //! back.
 
 use crate::app::recorded::assert_recorded;

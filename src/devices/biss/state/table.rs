@@ -55,7 +55,7 @@ impl Table {
         &self.groups
     }
 
-    /// Returns the index of a bank's group. `None` stands for the direct registers.
+    /// Returns the index of a bank's group. `None` means the direct registers.
     pub fn position(&self, bank: Option<u8>) -> Option<usize> {
         self.groups.iter().position(|group| group.bank == bank)
     }

@@ -1,4 +1,4 @@
-//! Formatting of BiSS encoder data and jobs as text.
+//! Formatting BiSS encoder data and jobs as text.
 
 use std::sync::LazyLock;
 

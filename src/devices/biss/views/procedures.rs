@@ -1,5 +1,5 @@
-//! The page for guided procedures: the task and the motor first, then step by step the current task, the progress and
-//! the result. Filter and preset are on the same page.
+//! The page for guided procedures: the selection and the motor, then the current task, the progress and the result of
+//! each step. Filter and preset are on the same page.
 
 use egui::{RichText, Ui};
 
@@ -177,7 +177,7 @@ fn indent_like_checkbox(ui: &mut Ui) {
     ui.add_space(ui.spacing().icon_width + ui.spacing().icon_spacing);
 }
 
-/// Returns the requested procedures, or the reason why they cannot be reviewed yet.
+/// Returns the selected procedures, or the reason why they cannot be reviewed yet.
 fn requested_procedures(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {

@@ -136,7 +136,7 @@ HIPERDRIVE parameters (below 100: device, from 101: drive 1, from 201: drive 2, 
     text
 }
 
-/// Parses a parameter given by the user; `of` selects the drive.
+/// Parses a parameter given by the user.
 fn parse_item(text: &str, of: &DriveOption) -> Result<Item> {
     let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::parse_number(text)) {
         (Some(drive), Some(number)) => Item::new(number, Some(drive)),

@@ -33,7 +33,7 @@ use crate::units::Moment;
 
 /// Interval for refreshing a motion request.
 const REFRESH: Duration = Duration::from_millis(20);
-/// Maximum time for the stop sequence and for switching off.
+/// Time limit for the stop sequence and for switching off.
 const STOP_TIMEOUT: Duration = Duration::from_secs(3);
 
 enum MotionOutcome {

@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Positio
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
 
-/// Prints the position. The scale is read once, and afterwards only parameters 105 to 107 are read.
+/// Reads and prints the position. The scale is read once, and afterwards only parameters 105 to 107 are read.
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);

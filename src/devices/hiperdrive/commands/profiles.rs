@@ -1,4 +1,4 @@
-//! Commands for profiles of an adapter or a hub: `save`, `restore`, and reading the device for a comparison.
+//! The `save` and `restore` commands for an adapter or a hub. Other commands read the device here to compare it.
 
 use serde_json::json;
 
@@ -56,7 +56,7 @@ impl ProfileCommands for HiperdriveCommands {
         })
     }
 
-    /// Reads the complete device for a comparison.
+    /// Reads the complete device for comparison.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(read_profile(common)?))
     }

@@ -23,7 +23,7 @@ pub(super) fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Res
 }
 
 impl ServableDevice for Target {
-    /// Accepts another connection, since a target can serve several originators at once.
+    /// Accepts another connection, because a target can serve several originators at once.
     fn clone_for_peer(&self, peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         Some(Box::new(self.connect_from(peer)))
     }

@@ -183,8 +183,8 @@ impl Hiperdrive {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
-    /// Closes a lost cyclic connection at the target as well, and reports the loss once. A loss of explicit messaging
-    /// is treated in the same way, because motion is not allowed without access to the parameters.
+    /// Closes a lost cyclic connection at the target, and reports the loss once. A loss of explicit messaging is
+    /// treated in the same way, because motion is not allowed without access to the parameters.
     pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check_connection().is_err() {
             self.control.stop_after_session_loss();

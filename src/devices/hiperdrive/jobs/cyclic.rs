@@ -96,7 +96,7 @@ impl Cyclic {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
-    /// Stops the drives, switches them off and ends the thread; the connection itself must still be closed. Returns the
+    /// Stops the drives, switches them off and ends the thread. The caller must still close the connection. Returns the
     /// reason if the connection was lost.
     pub fn close(self) -> Option<ConnectionLoss> {
         self.commands.end.store(true, Ordering::SeqCst);
@@ -127,12 +127,12 @@ impl CyclicRunner {
         CyclicRunner { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
-    /// Requests that the drives stop and the connection end; [`run_once`](Self::run_once) carries this out.
+    /// Requests that the drives stop and the connection end. [`run_once`](Self::run_once) executes the request.
     pub fn request_end(&self) {
         self.commands.end.store(true, Ordering::SeqCst);
     }
 
-    /// Receives until the next packet is due, then sends that packet. Returns `false` once the connection has ended.
+    /// Receives packets until the next packet is due, then sends it. Returns `false` once the connection has ended.
     pub fn run_once(&mut self) -> bool {
         let due = self.drives.poll_at();
         let mut late = 0;

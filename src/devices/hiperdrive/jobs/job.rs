@@ -112,7 +112,7 @@ pub struct Prepared {
     pub mounting_left: Vec<Item>,
     /// Type differences between the profile and the device or its drives.
     pub other_types: Vec<TypeMismatch>,
-    /// Parameters that depend on the mounting and come from another device's profile. They must be set up again after
+    /// Parameters from the profile of another device that depend on the mounting. They must be set up again after
     /// writing.
     pub mounting_written: Vec<Item>,
 }

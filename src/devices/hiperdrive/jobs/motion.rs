@@ -153,7 +153,7 @@ impl Motion {
         self.with_limits(drive, |own| *own = limits);
     }
 
-    /// Changes the limits of a drive atomically, so that no reader sees a partial change and no user confirms one.
+    /// Changes the limits of a drive atomically, so that a partial change is never read or confirmed.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
     }
@@ -222,7 +222,7 @@ impl Motion {
         number
     }
 
-    /// Passes the current request to the closure that builds the next packet.
+    /// Calls the closure that builds the next packet with the current request.
     pub(super) fn with_motion_intent<T>(
         &self,
         make: impl FnOnce(&MotionIntent, &dyn Fn(DriveNumber) -> Permit) -> T,

@@ -24,7 +24,7 @@ pub(super) struct RulesRefresh {
     rests: Option<Moment>,
 }
 
-/// Returns the groups whose slot has begun since their last reading, the one read longest ago first.
+/// Returns the groups whose slot has begun since their last reading, least recently read first.
 fn due_groups(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     let is_due = |(group, at): &(usize, Moment)| turns_begun(*group, now, turn) > turns_begun(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();

@@ -171,7 +171,7 @@ mod tests {
         assert!(!watch.is_silent(at(1001)));
     }
 
-    /// A line that yields only the bytes put into it.
+    /// A line that delivers only the bytes put into it.
     #[derive(Default)]
     struct Line(Vec<u8>);
 

@@ -78,17 +78,17 @@ struct Motion {
     kind: MotionKind,
 }
 
-/// Time for a drive to stop at one level of the stop sequence before the next level is tried.
+/// Time allowed for a drive to stop at one level of the stop sequence before the next level is tried.
 pub const LEVEL_TIME: Duration = Duration::from_millis(200);
-/// Time for a drive to obey a control word on the way to another state.
+/// Time allowed for a drive to obey a control word during a change of state.
 const STEP: Duration = Duration::from_secs(2);
-/// Time for a drive to begin a motion.
+/// Time allowed for a drive to begin a motion.
 const START: Duration = Duration::from_secs(1);
 /// Time without a report after which no drive may move, more than three times the longest interval.
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 /// Maximum delay of a report between a hub and its drives (`U`: not documented).
 pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);
-/// Time for which positions must have arrived before they are taken as those of the drive. A hub first queries all its
+/// Time for which positions must have been arriving before they are considered valid. A hub first queries all its
 /// drives (`U`: not documented).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
 /// Time at standstill after which a drive is considered to have missed its target.
@@ -303,8 +303,7 @@ impl DeadMan {
         Ok(())
     }
 
-    /// Replaces a control word that could start a motion while no action with a motion is running. This is the last
-    /// safeguard.
+    /// Suppresses a control word that could start a motion while no motion is requested. This is the last safeguard.
     fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.is_moving();
         if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::holding(actual) }

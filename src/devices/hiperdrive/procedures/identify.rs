@@ -1,4 +1,4 @@
-//! Reading of the identity, the status, and everything else that can be read. Nothing is set. See reference 4.
+//! Reading the identity, the status, and everything else that can be read. Nothing is set. See reference 4.
 
 use std::collections::BTreeMap;
 
@@ -320,7 +320,7 @@ pub(super) fn device_parameter(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
-/// Converts a parameter number of drive 1 to the corresponding number of another drive.
+/// Converts a parameter number for drive 1 to the number for another drive.
 pub(super) fn drive_parameter(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::for_drive(base, drive).ok_or(Error::NoNumber(base))
 }

@@ -1,4 +1,4 @@
-//! Reading of the values that are saved or needed for planning.
+//! Reading the values that are saved or needed for planning.
 
 use super::identify::{IdentifyProgress, drive_parameter, identify};
 use super::{DriveIdentity, Error, Identity, Master};

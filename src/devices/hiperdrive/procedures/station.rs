@@ -41,8 +41,7 @@ pub struct Station {
     pub(super) line: LineState,
     pub(super) session: Option<u32>,
     pub(super) next: u64,
-    /// The most recent unanswered requests, each with its number, its time of sending, and whether its operation takes
-    /// the device a long time.
+    /// The most recent unanswered requests: number, send time, and whether the operation takes the device a long time.
     open: VecDeque<(u64, Moment, bool)>,
     /// Reply times, including late replies. Operations that take the device a long time are excluded.
     pub(super) replies: ReplyTimes,

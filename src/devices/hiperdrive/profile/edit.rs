@@ -1,4 +1,4 @@
-//! Planning of changes. Each change is checked against the rules of the device before anything is sent. A single save
+//! Planning changes. Each change is checked against the rules of the device before anything is sent. A single save
 //! follows the changes.
 
 use std::cmp::Reverse;
@@ -131,7 +131,7 @@ impl Write {
         Op::Write { number: self.number, old: Some(self.old), new: self.new }
     }
 
-    /// Returns the sort key of a write. The lowest key is written first.
+    /// Returns the key by which writes are sorted. The lowest key is written first.
     fn sort_key(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
         let base = self.number.drive1_number();
         let turn = match (base, self.new) {

@@ -1,5 +1,5 @@
-//! Planning of a restore. Only differences are written, with a single save at the end. The reference of a drive is
-//! never written, since it is valid for one machine only.
+//! Planning a restore. Only differences are written, with a single save at the end. The reference of a drive is never
+//! written, since it is valid for one machine only.
 
 pub use crate::profile::RestoreOptions;
 

@@ -1,4 +1,5 @@
-//! Undoing a write to a device: its single parameters, and what the backup cannot write back.
+//! Undoing a write to a device: splitting it into parameters, and instructions for items that the backup cannot
+//! restore.
 
 use super::{HiperdriveProfile, Item};
 use crate::devices::hiperdrive::protocol::ParameterNumber;
@@ -10,7 +11,7 @@ pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
     if item.item == ParameterNumber::SAVE.to_string() { Vec::new() } else { vec![item.clone()] }
 }
 
-/// Returns what to do about an item that is never restored.
+/// Returns the instruction for an item that is never restored.
 pub(super) fn redo(item: &ChangedItem) -> Option<Redo> {
     match item.item.parse::<Item>() {
         Ok(item) if item.0.drive1_number() == REFERENCE => Some(Redo::SetPosition),

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 };
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
-/// A consequence of a plan that the user should know.
+/// A side effect of a plan about which the user is warned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// The scale changes, so the same limits mean different positions in turns (reference 3, *Scaling moves soft

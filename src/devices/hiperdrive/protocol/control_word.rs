@@ -52,7 +52,7 @@ pub enum RunEnd {
     Endless,
 }
 
-/// Motion started by a control word.
+/// Motion that a control word starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MotionStart {
     /// A positioning job to the target.
@@ -73,7 +73,7 @@ pub struct ReservedBitsError {
     pub word: u16,
 }
 
-/// Mask of the reserved bits 1, 2, 11, 13, 14 and 15. Unlike here, PROFIdrive requires bits 1 and 2 to be set
+/// Mask of the reserved bits 1, 2, 11, 13, 14 and 15. PROFIdrive, by contrast, requires bits 1 and 2 to be set
 /// (reference 8.2).
 const RESERVED: u16 = 0xE806;
 

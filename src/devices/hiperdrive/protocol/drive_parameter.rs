@@ -1,5 +1,5 @@
-//! Numbers of the parameters that the code refers to by name. Most of them belong to drive 1. The service parameter,
-//! which saves and resets, belongs to the device.
+//! Parameter numbers used in the code, by name. Most of them belong to drive 1. The service parameter, which saves and
+//! resets, belongs to the device.
 
 use std::ops::RangeInclusive;
 
@@ -41,7 +41,7 @@ pub const SPEED_NUMERATOR: u16 = 162;
 pub const SPEED_DENOMINATOR: u16 = 164;
 /// Maximum speed.
 pub const MAXIMUM_SPEED: u16 = 166;
-/// Valid maximum speeds, in tenths of rpm.
+/// Permitted maximum speeds, in tenths of rpm.
 pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
 /// Waiting time before hand operation, which is never saved.
 pub const HAND_DRIVE_WAIT: u16 = 182;

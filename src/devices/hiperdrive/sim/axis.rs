@@ -51,7 +51,7 @@ pub(super) enum AxisSetpoint {
 }
 
 impl AxisSetpoint {
-    /// Returns the setpoint that a drive with the given defect actually follows at this position.
+    /// Returns the setpoint that a drive with the given defect follows at this position.
     pub(super) fn with_defect(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
         let turned = |speed: f64| if defect == Some(DriveDefect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -131,7 +131,7 @@ impl Axis {
     }
 }
 
-/// Returns the obstacle beyond which a position lies. The flag specifies whether it is the upper obstacle.
+/// Returns the obstacle between the spindle and a position, if there is one. The flag is set for the upper obstacle.
 fn blocking_obstacle(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))

@@ -58,9 +58,9 @@ parameters! {
         /// Whether parameter strings are preceded by their length (`U`: not documented).
         pub(super) counted_texts: bool = false, "text" => Keywords(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Injected faults. `drop` is the fraction of replies, and of packets in both directions, that are lost. `flip`
-        /// and `garbage` are the fractions of replies and returned packets with an inverted bit or replaced by random
-        /// bytes. `silent-after` counts frames and packets.
+        /// Tests of injected faults. `drop` is the fraction of replies, and of packets in both directions, that are
+        /// lost. `flip` and `garbage` are the fractions of replies and returned packets with an inverted bit or
+        /// replaced by random bytes. `silent-after` counts frames and packets.
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
@@ -226,7 +226,7 @@ mod tests {
         assert_eq!(value(260), Some(Value::Number(1_048_576_000)));
     }
 
-    /// Moves the first drive as far as possible towards a target. Returns its last status and newest error.
+    /// Moves the first drive towards a target until it stops. Returns its last status and newest error.
     fn move_to_target(query: &str) -> (u16, Option<ErrorCode>) {
         let mut station = Station::from_config(&read(query).unwrap());
         let mut now = Moment::START;

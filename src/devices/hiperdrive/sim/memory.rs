@@ -47,7 +47,7 @@ impl Memory {
         self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
     }
 
-    /// Stores the first half of the values, as if the supply were lost during the save.
+    /// Stores the first half of the values, as if the supply failed during the save.
     pub(super) fn save_partially(&mut self) {
         let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
         let half = saved.len() / 2;

@@ -51,7 +51,7 @@ pub struct Station {
     hindered: ActiveWriteFault,
 }
 
-/// Identity data that are not part of a [`StationConfig`].
+/// Identity data in addition to a [`StationConfig`].
 #[derive(Clone, Debug)]
 struct StationIdentity {
     name: String,
@@ -59,7 +59,7 @@ struct StationIdentity {
     supply_tenths: u16,
 }
 
-/// State of the saves, which can be interrupted by a loss of supply.
+/// State of saving, which a loss of supply can interrupt.
 #[derive(Clone, Copy, Debug, Default)]
 struct Store {
     count: u32,
@@ -374,8 +374,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Executes timed events when they are due, and not only at the next access. Examples are a loss of supply during a
-    /// save and a time-out of the master.
+    /// Executes all events that are due, at their own times. Examples are a loss of supply during a save and a time-out
+    /// of the master.
     fn advance_to(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

@@ -1,5 +1,5 @@
-//! Actions of the user on a device and its drives. Edits and motion take effect immediately. Everything else is a job
-//! of the session or a task.
+//! Handling the user's actions on a device and its drives. Edits and motion take effect immediately. Everything else is
+//! a job of the session or a task.
 
 use std::time::Duration;
 

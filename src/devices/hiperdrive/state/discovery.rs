@@ -1,4 +1,4 @@
-//! Discovery in the network: a broadcast request, with replies within a second while the window keeps running.
+//! Discovery in the network: a broadcast request whose replies are collected for a second, without blocking the window.
 
 use std::fmt;
 use std::net::Ipv4Addr;
@@ -60,7 +60,7 @@ impl Discovery {
     }
 }
 
-/// A substitute for the discovery broadcast in tests.
+/// A stand-in for the discovery broadcast in tests.
 #[derive(Clone)]
 pub struct DiscoveryStub(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 

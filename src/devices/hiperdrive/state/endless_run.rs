@@ -7,8 +7,8 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
 impl HiperdriveDevice {
-    /// Returns the parameters due to which a drive does not meet the condition of an endless run, one text for each.
-    /// The list is empty if the condition is met, or if limits and scaling are not known.
+    /// Returns one text for each parameter that prevents an endless run of a drive. The list is empty if the condition
+    /// is met, or if limits and scaling are not known.
     pub fn endless_run_obstacles(&self, drive: DriveNumber) -> Vec<Text> {
         let Some(rules) = self.drive_limits(drive).map(|own| own.rules()) else { return Vec::new() };
         let Some(((numerator, denominator), (lower, upper))) = rules.scale.zip(rules.limits) else {

@@ -173,7 +173,7 @@ impl SessionEvents for HiperdriveDevice {
         self.decoder.explain(frame)
     }
 
-    /// Processes the session events since the last call, and refreshes the actions that the window must keep alive.
+    /// Processes the session events since the last call, and refreshes the actions that depend on the window.
     fn process_events(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.set_remote(services.is_remote());

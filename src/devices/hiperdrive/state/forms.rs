@@ -1,4 +1,4 @@
-//! Parsing of numbers entered for a drive into values or edits.
+//! Parsing numbers entered for a drive into values or edits.
 
 use super::rows::Row;
 use super::ruler::{PositionRangeError, PositionUnit};

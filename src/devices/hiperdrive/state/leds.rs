@@ -39,7 +39,7 @@ pub struct LedMeaning {
 }
 
 impl Default for Leds {
-    /// Creates the LEDs of a device without errors.
+    /// Creates LED states of a device without errors.
     fn default() -> Self {
         Leds {
             hub: true,
@@ -151,7 +151,7 @@ fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// Severity, and text IDs of meaning and remedy. The English texts are those of the protocol tables.
+/// Severity, and the text IDs of meaning and remedy. The English texts are those of the protocol tables.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLedState) -> Row {
@@ -209,7 +209,8 @@ mod tests {
     use crate::app::Language;
     use crate::devices::hiperdrive::protocol::{BUS_LEDS, PORT_LEDS};
 
-    /// Checks that a sentence in the window is the phrase of the table with a capital letter and a full stop.
+    /// Checks that a sentence in the window equals the phrase in the table, apart from the capital letter and the full
+    /// stop.
     #[track_caller]
     fn same(said: &Text, phrase: &str) {
         let words = said.to_string_in(Language::English);

@@ -1,6 +1,6 @@
-//! Motion of the drives as requested in the window: the held button, the running action, and the outcome of the last
-//! one. Only the dead-man control behind [`Motion`] decides what is sent to a drive. This module refreshes its requests
-//! and ends them immediately when required.
+//! Motion of the drives as requested in the window: the held button, the running action, and the outcome of the
+//! previous one. Only the dead-man control behind [`Motion`] decides what is sent to a drive. This module refreshes its
+//! requests and ends them immediately when required.
 //!
 //! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. If
 //! the window hangs, nothing is refreshed, and the drives stop 250 ms later.
@@ -119,8 +119,8 @@ impl DriveMotion {
         }
     }
 
-    /// Fetches the state of the drives and refreshes the actions that frames keep alive. This function must be called
-    /// in every frame.
+    /// Fetches the state of the drives and refreshes the actions that need a refresh with every frame. This function
+    /// must be called in every frame.
     pub(super) fn send_heartbeat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
@@ -242,8 +242,8 @@ impl DriveMotion {
         self.freed == way || self.used == way && self.is_held()
     }
 
-    /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the action, or `None`
-    /// while the session is not open.
+    /// Starts a move, a step or a change of state, which every frame refreshes. Returns the number of the action, or
+    /// `None` while the session is not open.
     pub(super) fn request_motion(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         let number = self.submit_request(drive, request, kind)?;
@@ -374,7 +374,7 @@ impl DriveMotion {
         }
     }
 
-    /// Returns whether data have been arriving for long enough to be valid. The first packets of a connection contain
+    /// Returns whether data have been received for long enough to be valid. The first packets of a connection contain
     /// no valid positions.
     pub fn is_data_valid(&self) -> bool {
         let link = &self.view.link;

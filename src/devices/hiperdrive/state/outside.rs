@@ -1,6 +1,5 @@
-//! Position of a drive that is outside its limits: how far outside it is, which direction leads back in, and which
-//! leads further out. The user can enable the outward direction for one press, because a wrong reference may leave no
-//! other way back.
+//! Position of a drive outside its limits: the distance to the limit, and the directions that lead back in and further
+//! out. The user can enable the outward direction for one press, because a wrong reference may leave no other way back.
 
 use super::unit::HiperdriveDevice;
 use crate::app::services::Services;
@@ -74,7 +73,8 @@ impl HiperdriveDevice {
         self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 
-    /// Returns the change that assigns a position in scaled steps to the current location of a drive and saves it.
+    /// Returns the change that assigns a position in scaled steps to the current location of a drive, including the
+    /// save.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive would not accept a position outside the limits.

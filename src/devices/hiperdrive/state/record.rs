@@ -1,4 +1,4 @@
-//! Recording of the selected drive: position, measured speed and target.
+//! Recording the selected drive: position, measured speed and target.
 
 use crate::devices::hiperdrive::state::TEXTS;
 

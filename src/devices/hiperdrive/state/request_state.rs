@@ -1,5 +1,4 @@
-//! Requests that a drive accepts at present, the reasons why it does not accept others, and the state of the last
-//! request.
+//! Requests that a drive currently accepts, the reasons why it rejects others, and the state of the last request.
 
 use super::action::MotorCommand;
 use super::ruler::PositionUnit;
@@ -73,7 +72,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Sets whether the window is operated over a remote desktop, which ends motion that lasts until it is stopped.
+    /// Sets whether the window is operated over a remote desktop. If it is, jogs and runs end.
     pub(super) fn set_remote(&mut self, is_remote: bool) {
         self.is_remote = is_remote;
         if is_remote {
@@ -81,7 +80,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Checks whether a drive may make a motion that lasts until the user stops it, which is a jog or a run.
+    /// Checks whether a drive may start a motion that lasts until the user stops it, which is a jog or a run.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive may not be moved in this way.
@@ -138,7 +137,7 @@ impl HiperdriveDevice {
         permit.check_request(request, asks_target).and(here).map_err(|refusal| words::refusal_text(refusal, place))
     }
 
-    /// Checks that a request may end the current motion. A stop and a jog of the same drive may. Other requests may
+    /// Checks whether a request may end the current motion. A stop and a jog of the same drive may. Other requests may
     /// neither end the motion of another drive nor replace a step or a move before its end.
     fn check_may_end_motion(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.moving_drive() {
@@ -264,7 +263,7 @@ impl HiperdriveDevice {
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::cyclic_loss_text(Some(lost)))
     }
 
-    /// Returns the speed for a percentage, based on parameter 166.
+    /// Formats the speed for a percentage, based on parameter 166.
     pub fn speed_text(&self, percent: Percent) -> Option<Text> {
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", self.speed_rpm(percent)?, 1))
     }
@@ -298,7 +297,7 @@ impl HiperdriveDevice {
         })
     }
 
-    /// Returns the torque that the drive applies for a percentage, rounded up to the next 25 %.
+    /// Formats the torque that the drive applies for a percentage, rounded up to the next 25 %.
     pub fn torque_text(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
         (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))

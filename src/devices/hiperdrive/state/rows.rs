@@ -1,4 +1,4 @@
-//! Parameters as table rows: value, allowed range, factory setting and edit of each.
+//! Parameters as table rows, each with its value, allowed range, factory setting and edit.
 
 use super::ruler::PositionUnit;
 use super::staged::is_editable;

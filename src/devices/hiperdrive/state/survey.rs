@@ -1,5 +1,4 @@
-//! The reading of a device: it is adopted, updated with data from the drives, and used to detect changes by other
-//! masters.
+//! Readings of a device, which are updated with data from the drives and used to detect changes by other masters.
 
 use super::staged::is_editable;
 use super::unit::HiperdriveDevice;
@@ -90,7 +89,7 @@ impl HiperdriveDevice {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Returns the reason why the known parameters of a drive are not sufficient to move it, or `None` if they are
+    /// Returns the reason why the known parameters of a drive are insufficient to move it, or `None` if they are
     /// sufficient.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {

@@ -74,7 +74,7 @@ impl FrameDecoder {
         self.requests.push_front((frame, request));
     }
 
-    /// Returns the latest request that the frame answers, and forgets it.
+    /// Removes and returns the latest request that the frame answers.
     fn take_request(&mut self, reply: &Frame) -> Option<Request> {
         let index = self.requests.iter().position(|(request, _)| reply.is_reply_to(request))?;
         self.requests.remove(index).map(|(_, request)| request)
@@ -180,7 +180,7 @@ mod tests {
         explained.meaning.iter().map(|text| text.to_string_in(Language::English)).collect()
     }
 
-    /// A frame with this context around a message (reference 7 and 9).
+    /// Returns a frame with the given context around a message (reference 7 and 9).
     fn around(context: u8, message: &str) -> String {
         let length = parse_hex(message).unwrap().len();
         format!(

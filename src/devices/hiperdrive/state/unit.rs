@@ -109,7 +109,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Adopts the values of a profile, which is the source of the session.
+    /// Adopts the values of the profile that is the source of the session.
     pub(super) fn adopt_profile(&mut self, profile: &HiperdriveProfile) {
         self.staged = StagedEdits::for_profile(profile.image.clone());
         let drives = profile.identity.drives.iter();

@@ -1,4 +1,4 @@
-//! Values that were written to a device and not saved yet, each with the previous value of its parameter. A device does
+//! Values that have been written to a device but not saved, each with the saved value of its parameter. A device does
 //! not reveal its saved values, and an interrupted set-up may date from the previous day.
 
 use std::collections::BTreeMap;

@@ -11,7 +11,7 @@ use crate::ui::controls::{button_with_reason, message_label, name, paragraph, st
 use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 use crate::ui::{Theme, icons};
 
-/// Size of the STOP button, wide enough for a flat hand.
+/// Size of the STOP button, which can be hit with a flat hand.
 const STOP_BUTTON_SIZE: egui::Vec2 = vec2(112.0, 44.0);
 
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {

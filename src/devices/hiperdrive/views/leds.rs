@@ -71,7 +71,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.add_space(theme.space.inside);
 }
 
-/// Draws an LED. A click shows its next possible state.
+/// Draws an LED. A click selects its next possible state.
 fn led_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     let shown = theme.format_text(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON_SIZE));

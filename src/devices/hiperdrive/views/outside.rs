@@ -1,4 +1,4 @@
-//! Warning about a drive outside its limits. It shows the blocked directions, the way back in, and what to do if the
+//! Warnings about a drive outside its limits. It shows the blocked directions, the way back in, and what to do if the
 //! reference is wrong.
 
 use egui::{RichText, Ui};
@@ -26,8 +26,8 @@ pub(crate) fn warning_badge(theme: &Theme, unit: &HiperdriveDevice) -> Option<Ri
     Some(RichText::new(words).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// Draws a card that shows how the drive is outside its limits, what is blocked, and what can be done. Draws nothing if
-/// the drive is inside its limits or at the end of its range.
+/// Draws a card that shows on which side the drive is outside its limits, which motion is blocked, and what to do.
+/// Draws nothing if the drive is inside its limits or at the end of its range.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -120,7 +120,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, typ
     }
 }
 
-/// Describes how to return a drive that is outside its limits.
+/// Returns instructions for returning a drive inside its limits.
 fn return_instructions(outside: OutsideLimits) -> Text {
     TEXTS.text(match outside {
         OutsideLimits::At(LimitSide::Above) => "hd_travel.back_down",

@@ -1,4 +1,4 @@
-//! Profile commands for HIPERFACE encoders: `save`, `restore` and the reading for a comparison.
+//! The `save` and `restore` commands for HIPERFACE encoders. Other commands read the encoder here to compare it.
 
 use std::collections::BTreeMap;
 

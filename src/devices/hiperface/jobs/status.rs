@@ -1,5 +1,5 @@
-//! Logging of status codes before they are displayed. 50h removes a code from the encoder, so a code that is read but
-//! not stored would be lost.
+//! Logging status codes before they are displayed. 50h removes a code from the encoder, so a code that is read but not
+//! stored would be lost.
 
 use std::time::Duration;
 

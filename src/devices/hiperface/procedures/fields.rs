@@ -1,4 +1,4 @@
-//! Reading of data fields (4Ch, 4Ah). If the line damages a long transfer, it is split in half.
+//! Reading data fields (4Ch, 4Ah). If the line damages a long transfer, it is split in half.
 
 use super::error::ReplyDamage;
 use super::identify::read_type_label;
@@ -76,7 +76,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(separate_value_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Returns an error as the inner error if the encoder still replies to another request.
+/// Returns an error as the inner `Err` if the encoder still replies to another request.
 ///
 /// # Errors
 /// Returns an error if the encoder no longer replies or the user cancels.
@@ -164,8 +164,9 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// Reads one byte together with a neighbouring byte. A transfer of a single byte is avoided because its reply can equal
-/// the request, including the access code. The echo of an adapter could then be mistaken for the reply.
+/// Reads one byte by means of a transfer that includes a neighbouring byte. A transfer of a single byte is avoided
+/// because its reply can equal the request, including the access code. The echo of an adapter could then be mistaken
+/// for the reply.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

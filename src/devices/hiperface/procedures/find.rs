@@ -13,7 +13,7 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{Answer, BAUDS, BROADCAST, DeviceAddress, Reply, Request, Timing, TypeLabel};
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// Duration of listening for a running machine before the search.
+/// Time for which the search listens for a running machine.
 pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -107,7 +107,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Runs the search, or returns the number of bytes received from another device if there were any.
+    /// Runs the search. If another device sends, returns the number of bytes received from it instead.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
         // A device server has a fixed format, so the encoder would be found once for each format tried.
         let formats = if master.can_set_format() { formats_by_likelihood() } else { vec![master.station().format] };
@@ -153,7 +153,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns the formats, most likely first: 9600 with each parity, then the other baud rates.
+/// Returns the formats in order of likelihood: 9600 with each parity, then the other baud rates.
 fn formats_by_likelihood() -> Vec<CharacterFormat> {
     let rest = BAUDS.into_iter().rev().filter(|baud| *baud != Baud::B9600);
     std::iter::once(Baud::B9600)
@@ -162,7 +162,8 @@ fn formats_by_likelihood() -> Vec<CharacterFormat> {
         .collect()
 }
 
-/// Sends a request with factory settings every tenth of a second, until an encoder that was just switched on replies.
+/// Sends a request with factory settings every tenth of a second, until an encoder that has just been switched on
+/// replies.
 fn search_in_default_window(
     master: &mut Master<'_>,
     patience: Duration,

@@ -1,4 +1,4 @@
-//! Host side of the line. It repeats requests, reads changes back, and collects announced status codes. Single
+//! Host side of the serial line. It repeats requests, reads changes back, and collects announced status codes. Single
 //! exchanges are implemented in [`exchange`].
 //!
 //! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its

@@ -11,7 +11,7 @@ use crate::units::CharacterFormat;
 /// Time to wait after the restart before the first request. It ends within the window from 100 to 900 ms, in which the
 /// encoder listens with factory settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
-/// Reserve added to the manual's times for the stored settings, because clocks differ.
+/// Margin added to the manual's times for the stored settings, because clocks differ.
 const TIME_RESERVE: Duration = Duration::from_millis(100);
 
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue. The

@@ -1,5 +1,6 @@
-//! Reading of the shaft at rest, for commutation and synchronising. It has the highest accuracy, because it uses both
-//! channels of an encoder: the absolute position, and sine and cosine if there are analogue channels for them.
+//! High-accuracy reading of the shaft at rest, for commutation and synchronisation. It has the highest accuracy,
+//! because it uses both channels of an encoder: the absolute position, and sine and cosine if there are analogue
+//! channels for them.
 
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;

@@ -45,7 +45,7 @@ parameters! {
 
 /// Supply voltages of HIPERFACE encoders in millivolts. See manual, technical data: 7 to 12 V.
 const SUPPLY_RANGE: std::ops::RangeInclusive<u16> = 7_000..=12_000;
-/// Time from power-on until the encoder replies with its own settings. Until 900 ms it may reply with the default
+/// Time from power-on until the encoder replies with its stored settings. Until 900 ms it may reply with the default
 /// settings (manual, figure 38).
 const POWER_UP: Duration = Duration::from_secs(1);
 

@@ -1,4 +1,4 @@
-//! Reading of all values that the pages of an encoder display, in one job.
+//! Reading all values that the pages of an encoder display, in one job.
 
 use super::fields::separate_value_error;
 use super::{
@@ -45,7 +45,7 @@ pub fn read_all_values(
     Ok(survey)
 }
 
-/// Treatment of data fields that cannot be read.
+/// Handling of data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadPolicy {
     AsFarAsPossible,

@@ -337,7 +337,7 @@ fn mismatch_error(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.plan_item(), expected, got: ReadBackValue::Value(got) }
 }
 
-/// Checks that no encoder replies at an address, since two encoders at one address can never be separated again.
+/// Checks that no encoder replies at an address, because two encoders at one address can no longer be told apart.
 ///
 /// # Errors
 /// Returns [`Error::AddressTaken`] if anything is received, or another error if the connection fails or the job is

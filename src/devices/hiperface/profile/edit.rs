@@ -1,4 +1,4 @@
-//! Planning of single changes, each of which is checked against the rules of the encoder before anything is sent.
+//! Planning single changes, each of which is checked against the rules of the encoder before anything is sent.
 
 use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, SingleValue};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};

@@ -14,7 +14,7 @@ pub struct HiperfaceProfile {
     pub identity: ProfileIdentity,
     /// Address and interface settings. They are recorded, but neither compared nor restored.
     pub interface: Interface,
-    /// Values that change by themselves. They are recorded, but neither compared nor restored.
+    /// Values that change without being written. They are recorded, but neither compared nor restored.
     pub recorded: RecordedValues,
     /// Mounting values. They are written to another encoder only if the user agrees.
     pub mounting: Vec<MountingMark>,
@@ -60,7 +60,7 @@ pub struct Interface {
     pub unknown: UnknownValues,
 }
 
-/// Values that change by themselves.
+/// Values that change without being written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedValues {
     /// Position in steps.

@@ -1,4 +1,4 @@
-//! Planning of a restore. Only differences are written, in as few writes as possible, and without values that belong to
+//! Planning a restore. Only differences are written, in as few writes as possible, and without values that belong to
 //! the mounting of another encoder.
 
 mod device;

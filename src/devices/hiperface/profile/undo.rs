@@ -1,4 +1,4 @@
-//! Undoing a write to an encoder: its single bytes, and what the backup cannot write back.
+//! Undoing a write to an encoder: splitting it into bytes, and instructions for items that the backup cannot restore.
 
 use super::{HiperfaceProfile, Item};
 use crate::devices::hiperface::protocol::DataFieldStatus;
@@ -23,7 +23,7 @@ pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
 }
 
 impl HiperfaceProfile {
-    /// Returns what to do about an item that this backup cannot write back.
+    /// Returns the instruction for an item that this backup cannot restore.
     pub(super) fn redo_item(&self, item: &ChangedItem) -> Option<Redo> {
         // The content of a field that was only created is unknown, and it may have been used since.
         let is_known = |field: u8| self.created.iter().any(|own| own.number == field);

@@ -1,4 +1,5 @@
-//! The golden vectors of `tests/vectors/hiperface.txt` against frames, requests and replies; damage; and noise.
+//! Tests of frames, requests and replies against the golden vectors of `tests/vectors/hiperface.txt`, and with damage
+//! and noise.
 //!
 //! [`table`] has the vectors as entered values.
 
@@ -13,7 +14,7 @@ mod table;
 
 const FILE: &str = include_str!("../../../../tests/vectors/hiperface.txt");
 
-/// The kind of a line, from its first character.
+/// The kind of a line, given by its first character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Request,
@@ -35,7 +36,7 @@ struct Line {
     request: Option<Vec<u8>>,
 }
 
-/// Returns the bytes of a text; `0*30` means thirty zero bytes.
+/// Returns the bytes of a text, in which `0*30` means thirty zero bytes.
 fn bytes(text: &str) -> Vec<u8> {
     text.split(' ')
         .flat_map(|word| match word.strip_prefix("0*") {
@@ -86,14 +87,14 @@ fn lines_of_kind(kind: Kind) -> impl Iterator<Item = Line> {
 }
 
 impl Line {
-    /// The request above the line and the address it was sent to.
+    /// Returns the request above the line and its address.
     fn requested_frame(&self) -> (Request, u8) {
         let bytes = self.request.as_deref().unwrap();
         (Request::parse(&Frame::parse(bytes).unwrap()).unwrap(), bytes[0])
     }
 }
 
-/// Returns whether the XOR of a frame is zero, by a separate loop independent of the function under test.
+/// Returns whether the XOR of a frame is zero, independently of the function under test.
 fn has_zero_xor(bytes: &[u8]) -> bool {
     let mut sum = 0;
     for byte in bytes {
@@ -252,7 +253,7 @@ fn file_and_table_have_the_same_requests_and_replies() {
     assert_eq!(table.difference(&file).collect::<Vec<_>>(), Vec::<&String>::new(), "only in the table");
 }
 
-/// Returns noise; half of it is made a valid frame so that it reaches the parsers after the checksum.
+/// Returns noise, half of it as valid frames that pass the checksum.
 fn noise_bytes() -> impl Strategy<Value = Vec<u8>> {
     let payload = proptest::collection::vec(any::<u8>(), 0..160);
     let command = prop_oneof![any::<u8>(), (0..COMMANDS.len()).prop_map(|at| COMMANDS[at].command.byte())];

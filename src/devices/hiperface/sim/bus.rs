@@ -170,7 +170,7 @@ impl Bus {
     }
 }
 
-/// Returns the byte that a receiver produces for an unreadable character. It is never an address, so it cannot begin a
+/// Returns the byte that a receiver outputs for an unreadable character. It is never an address, so it cannot begin a
 /// frame.
 fn garbage_byte(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)

@@ -211,7 +211,7 @@ impl EncoderElectronics {
         }
     }
 
-    /// Writes only the first half of the bytes of 4Bh, as during a power failure.
+    /// Writes only the first half of the bytes of 4Bh, as after a power failure.
     ///
     /// # Errors
     /// Returns the same errors as a complete store.
@@ -258,7 +258,7 @@ impl EncoderElectronics {
     }
 }
 
-/// Returns the memory as the motor manufacturer delivers it: field 0 contains the name plate, and the rest is free.
+/// Returns the memory as delivered by the motor manufacturer: field 0 contains the name plate, and the rest is free.
 fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {

@@ -1,6 +1,6 @@
-//! A virtual encoder on the line: when it listens, how long it processes a request, when it replies, and with which
-//! settings. See the manual, "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of
-//! commands are in [`electronics`](super::electronics). Only the [`Bus`](super::Bus) knows about other senders.
+//! A virtual encoder on the line, with its power-up windows, processing times and line settings. See the manual,
+//! "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of commands are in
+//! [`electronics`](super::electronics). Only the [`Bus`](super::Bus) knows about other senders.
 //!
 //! ```text
 //! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER

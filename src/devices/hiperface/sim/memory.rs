@@ -68,7 +68,7 @@ impl Memory {
         self.fields.get(usize::from(field)).copied().ok_or(StatusCode::NO_SUCH_FIELD)
     }
 
-    /// Returns all bytes of a field regardless of its access code, or `None` if the field does not exist.
+    /// Returns all bytes of a field without checking its access code, or `None` if the field does not exist.
     pub fn field_bytes(&self, field: u8) -> Option<&[u8]> {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_deref();

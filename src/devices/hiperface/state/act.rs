@@ -1,5 +1,5 @@
-//! Actions of the user on an encoder. Edits take effect immediately. All other actions start a job of the session or a
-//! task.
+//! Handling the user's actions on an encoder. Edits take effect immediately. All other actions start a job of the
+//! session or a task.
 
 use std::time::Duration;
 
@@ -79,7 +79,7 @@ impl Encoder {
         self.identity.as_ref().map(|identity| identity.label.settings)
     }
 
-    /// Starts a job that changes the line settings of the encoder.
+    /// Submits a job that changes the line settings of the encoder.
     fn submit_settings_job(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
             self.settings_then = then;

@@ -135,7 +135,7 @@ impl FormModel for LinkForm {
 }
 
 impl LinkForm {
-    /// Returns the available virtual encoders, starting with the default.
+    /// Returns the names of the virtual encoders, starting with the default.
     pub fn model_names() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }

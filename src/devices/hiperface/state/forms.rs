@@ -1,4 +1,4 @@
-//! Parsing of typed codes, addresses and channels. The error messages name the valid values.
+//! Parsing typed codes, addresses and channels. The error messages name the valid values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{

@@ -191,7 +191,7 @@ mod tests {
     use super::*;
     use PositionUnit::{Degrees, Millimetres, Steps, TurnsAndDegrees};
 
-    /// 128 periods of 32 steps are 4096 steps a turn; 4096 turns are 16,777,216 steps.
+    /// 128 periods of 32 steps are 4096 steps per turn, and 4096 turns are 16,777,216 steps.
     const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
     /// A period of 1.6 mm has 32 steps of 0.05 mm.
     const LINEAR: Geometry = Geometry::Linear { period_nm: 1_600_000, periods: 1000 };

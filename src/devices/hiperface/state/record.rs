@@ -1,4 +1,4 @@
-//! Recording of a polled HIPERFACE encoder: positions in the units of its geometry, analogue values and the counter.
+//! Recording a polled HIPERFACE encoder: positions in the units of its geometry, analogue values and the counter.
 
 use crate::devices::hiperface::state::TEXTS;
 

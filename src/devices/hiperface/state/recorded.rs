@@ -1,4 +1,4 @@
-//! Checks that stored drafts can be read, and are the same after they are written back.
+//! Tests of the draft format in users' files.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperface::jobs::Hiperface;

@@ -1,4 +1,4 @@
-//! Reading of the position while the shaft is at rest, for the commutation assistant or on request.
+//! Reading the position while the shaft is at rest, for the commutation assistant or on request.
 
 use super::{Encoder, HiperfaceAction};
 use crate::app::services::Services;

@@ -67,7 +67,7 @@ pub(super) fn check_change(staged: &StagedEdits, change: &Change) -> ActionPermi
     }
 }
 
-/// Checks that the plan keeps every byte that has an unwritten edit.
+/// Checks that the plan preserves every byte with an unwritten edit.
 pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> ActionPermission {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {

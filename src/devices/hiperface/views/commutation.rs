@@ -1,4 +1,4 @@
-//! The page of the commutation assistant: preparation, readings, results, and both ways to store the result.
+//! The page of the commutation assistant: preparation, readings, results, and the two ways to store the result.
 
 mod result;
 
@@ -221,7 +221,7 @@ fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
     });
 }
 
-/// Draws a message in a space of constant height, so that the layout does not move when the message appears or
+/// Draws a message in a space of constant height, so that the layout does not shift when the message appears or
 /// disappears.
 pub(super) fn fixed_height_message_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
     let room = egui::vec2(ui.available_width(), MESSAGE_LINES * theme.sizes.body * 1.4);

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{
     WindowShift,
 };
 
-/// Information about a word that its digits do not contain.
+/// Information about a word in addition to its digits.
 pub(super) struct WordContext {
     pub(super) mode: Option<EncoderMode>,
     pub(super) read_out: Option<ReadOutNumber>,

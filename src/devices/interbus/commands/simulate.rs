@@ -24,7 +24,7 @@ pub(super) fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Res
 }
 
 impl ServableDevice for Gateway {
-    /// Returns a further connection to the gateway, which can serve several masters at once.
+    /// Returns another connection to the gateway, which can serve several masters at once.
     fn clone_for_peer(&self, _peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         Some(Box::new(self.new_connection()))
     }

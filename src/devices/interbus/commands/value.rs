@@ -1,4 +1,4 @@
-//! Parsing of item values.
+//! Parsing item values.
 
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::{Failure, Result};

@@ -46,7 +46,7 @@ pub struct Gateway<'a> {
     written: Option<u32>,
 }
 
-/// State of the gateway that outlasts a job.
+/// State of the gateway that outlives a job.
 struct State<'a> {
     line: &'a mut LineState,
     next: &'a mut u16,

@@ -1,4 +1,4 @@
-//! Reading of the identity, the settings and all other values of an encoder (reference 3 and 5).
+//! Reading the identity, the settings and all other values of an encoder (reference 3 and 5).
 
 use super::error::ImplausibleValue;
 use super::{Error, Master, WordReading};
@@ -23,7 +23,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Returns the gear that the steps and turns form. Older encoders report one step less than the total, according to
+    /// Returns the gear with these steps and turns. Older encoders report one step less than the total, according to
     /// their flags. The manual does not explain this any further (`U`).
     ///
     /// # Errors

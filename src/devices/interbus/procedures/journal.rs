@@ -1,4 +1,4 @@
-//! Facts that outlast a job: the mode from which an encoder was switched, and the store cycles that the switch may have
+//! Facts that outlive a job: the original mode of an encoder, and the store cycles that a switch of the mode may have
 //! used.
 
 use crate::devices::interbus::protocol::StartupMode;

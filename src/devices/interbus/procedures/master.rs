@@ -295,7 +295,7 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// Returns the IN word with exchanged halves, if this is the only explanation for the word as received.
+    /// Returns the IN word with swapped halves, if this is the only explanation for the word as received.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.

@@ -98,7 +98,7 @@ impl WordReading {
     }
 }
 
-/// Returns the word with exchanged halves, if this is a valid position and the word as received has stray bits.
+/// Returns the word with swapped halves, if this is a valid position and the word as received has stray bits.
 pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -106,8 +106,8 @@ pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// Returns the word with exchanged halves if only this is a valid position. Unlike [`swapped_position_word`], it also examines
-/// words that are not positions, except error words without data.
+/// Returns the word with swapped halves if only this is a valid position. Unlike [`swapped_position_word`], it also
+/// examines words that are not positions, except error words without data.
 pub(super) fn swapped_word_if_unexplained(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swapped_position_word(word),

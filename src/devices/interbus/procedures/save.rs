@@ -1,4 +1,4 @@
-//! Reading of values that are saved, displayed as an item, or required for a plan.
+//! Reading values that are saved, displayed as an item, or required for a plan.
 
 use super::identify::{direction_from_read_out, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;

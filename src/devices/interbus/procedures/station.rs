@@ -1,4 +1,4 @@
-//! State of a gateway and its encoder that outlasts a job.
+//! State of a gateway and its encoder that outlives a job.
 
 use std::fmt;
 use std::time::Duration;

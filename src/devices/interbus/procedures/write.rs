@@ -30,7 +30,7 @@ pub enum EndState {
     Unknown(LeftState),
 }
 
-/// Time for which the shaft must stand still before a preset.
+/// Time for which the shaft must be at standstill before a preset.
 const STANDSTILL_TIME: Duration = Duration::from_millis(300);
 /// Interval between two readings of the position at standstill.
 const READING_INTERVAL: Duration = Duration::from_millis(20);
@@ -231,8 +231,8 @@ fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     master.trigger_preset(|position| shortest_distance(position, value, gear) <= 1)
 }
 
-/// Checks that the shaft stands still by reading its position for a short time. The encoder keeps sending the position
-/// afterwards.
+/// Checks that the shaft is at standstill by reading its position for a short time. The encoder keeps sending the
+/// position afterwards.
 ///
 /// # Errors
 /// Returns [`Error::Moving`] if the shaft moves, [`Error::NotRunning`] if there is no position, or another error if the
@@ -258,14 +258,14 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns whether two positions may belong to a shaft at standstill. They may differ by one step or, if a turn has
-/// many steps, by a thousandth of a turn.
+/// Returns whether two positions are so close that the shaft may be at standstill. They may differ by one step or, if a
+/// turn has many steps, by a thousandth of a turn.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.total_steps() / gear.turns() / 1000).max(1));
     shortest_distance(position, other, gear) <= most
 }
 
-/// Returns the shorter distance between two positions on the measuring range, in steps.
+/// Returns the shorter distance between two positions within the measuring range, in steps.
 fn shortest_distance(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
     gear.map_or(apart, |gear| apart.min(gear.total_steps().saturating_sub(apart)))

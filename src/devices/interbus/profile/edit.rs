@@ -1,5 +1,5 @@
-//! Planning of changes. Each change is checked against the rules of the encoder before anything is sent. A plan uses
-//! one store cycle for all parameters and one for each changed program.
+//! Planning changes. Each change is checked against the rules of the encoder before anything is sent. A plan uses one
+//! store cycle for all parameters and one for each changed program.
 
 use super::{
     Base, CamChange, Edge, Image, InterbusPlan, Item, Op, ParameterChange, Parameters, PlanError, ProgramChange,

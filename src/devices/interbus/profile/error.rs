@@ -3,8 +3,8 @@
 use super::{Edge, Item};
 use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 
-/// A profile and an encoder of different types, according to their flags. Either only one of them counts turns, or only
-/// one reports its steps minus one, which gives the same number a different meaning. See manual 10.2.
+/// The types of a profile and an encoder, which differ according to their flags. Either only one of them counts turns,
+/// or only one reports its steps minus one, which gives the same number a different meaning. See manual 10.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is for a {} encoder, but this encoder is {}", profile.type_name(), device.type_name())]
 pub struct TypeMismatch {

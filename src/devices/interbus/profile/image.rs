@@ -73,7 +73,7 @@ impl fmt::Display for Direction {
     }
 }
 
-/// The text is not a keyword of a direction.
+/// Error for a text that is not the keyword of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the direction must be cw (3) or ccw (4)")]
 pub struct DirectionError;
@@ -103,7 +103,7 @@ impl Parameters {
         }
     }
 
-    /// Returns the gear that the steps and turns form.
+    /// Returns the gear with these steps and turns.
     ///
     /// # Errors
     /// Returns a [`GearError`] if the steps or turns are out of range.

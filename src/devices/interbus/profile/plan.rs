@@ -1,4 +1,4 @@
-//! Operations that change an encoder, and the values on which they are based.
+//! Operations that change an encoder, and the values on which the operations are based.
 
 use std::fmt;
 

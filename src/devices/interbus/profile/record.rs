@@ -18,7 +18,7 @@ pub struct InterbusProfile {
     pub names: CamNames,
     /// Values that depend on the mounting. They are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
-    /// Values that change without a write or cannot be written. They are neither compared nor restored.
+    /// Values that change without being written, or that cannot be written. They are neither compared nor restored.
     pub recorded: RecordedValues,
     /// Entries that this version does not recognise. They are preserved when the profile is saved.
     pub unknown: UnknownEntries,
@@ -35,7 +35,7 @@ pub struct ProfileIdentity {
     pub unknown: UnknownValues,
 }
 
-/// Values that change without a write or cannot be written.
+/// Values that change without being written, or that cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedValues {
     /// Software version, read-out 7.

@@ -1,4 +1,4 @@
-//! Planning of a restore. Only differences are written, in as few store cycles as possible. Values that depend on the
+//! Planning a restore. Only differences are written, in as few store cycles as possible. Values that depend on the
 //! mounting of another encoder are omitted. A preset is stored but never executed.
 
 pub use crate::profile::RestoreOptions;

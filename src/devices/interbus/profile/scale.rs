@@ -30,7 +30,7 @@ pub struct RoundedPosition {
     pub off: f64,
 }
 
-/// The requested position is outside the measuring range.
+/// Error for a position outside the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{value} is outside the range {least} to {most}")]
 pub struct OutsideRangeError {
@@ -42,7 +42,7 @@ pub struct OutsideRangeError {
     pub most: f64,
 }
 
-/// The number of steps per unit is not valid.
+/// Error for an invalid number of steps per unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the number of steps per unit must be greater than 0")]
 pub struct ScaleError;

@@ -1,4 +1,4 @@
-//! Cams and programs, and the outputs that they have at a position (reference 5).
+//! Cams, programs and their outputs at a position (reference 5).
 
 use super::value::Value;
 

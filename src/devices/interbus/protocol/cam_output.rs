@@ -1,4 +1,4 @@
-//! IN word of a running cam program, which contains eight outputs and a window of the position (reference 5).
+//! IN word of a running cam program: eight outputs and a window of the position (reference 5).
 
 use super::value::Value;
 
@@ -13,7 +13,7 @@ pub struct CamOutput {
     pub stray: u8,
 }
 
-/// The word contains no cam outputs because bit 31 is set.
+/// Error for a word without cam outputs, in which bit 31 is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {

@@ -1,4 +1,4 @@
-//! Cam programs that are compiled for many evaluations.
+//! Cam programs compiled for fast evaluation.
 
 use super::cam::{Program, ProgramNumber};
 use super::value::Value;

@@ -1,4 +1,4 @@
-//! The gear, which is a number of steps over a number of turns (reference 3).
+//! The gear: a number of steps over a number of turns (reference 3).
 
 use super::value::Value;
 

@@ -47,7 +47,7 @@ enum Limit {
     WithinRange,
 }
 
-/// The value of a parameter is outside its limits.
+/// Error for a parameter value outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {value} is outside the range {low} to {high}", parameter.name())]
 pub struct OutOfRange {

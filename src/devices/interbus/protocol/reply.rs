@@ -98,7 +98,7 @@ impl Reply {
         Reply::parse(command.emit() | ECHO)
     }
 
-    /// Returns the command that this reply echoes, or `None` if no parameter or cam can be set in this mode.
+    /// Returns the command that this reply echoes, or `None` if nothing can be set in this mode.
     pub fn echoed_command(self, mode: EncoderMode) -> Option<Command> {
         let sets = |command: &Command| {
             use Command::{Activate, CamStart, CamStop, Cams, Set, Shift};

@@ -1,5 +1,5 @@
-//! The words of the reference, in both directions, and the contradictions of the manual. Property tests for all other
-//! words.
+//! Tests of the words in the reference in both directions, and of contradictions in the manual. Property tests for all
+//! other words.
 
 use proptest::prelude::*;
 
@@ -341,7 +341,7 @@ fn cams_are_on_between_their_edges() {
     assert_eq!([0x14, 0x15, 0x213, 0x214].map(|at| program.outputs(value(at))), [0, 8, 8, 0]);
 }
 
-/// Returns any cams, many of them short, at the ends of the range or across them.
+/// Generates cams, many of them short, at the ends of the range or across them.
 fn arbitrary_programs() -> impl Strategy<Value = [Program; 8]> {
     let edge = prop_oneof![0_u32..40, 0x1FF_FFD0_u32..=0x1FF_FFFF, 0..=0x1FF_FFFF_u32];
     let cam = (edge.clone(), edge).prop_map(|(start, stop)| Cam { start: value(start), stop: value(stop) });

@@ -1,4 +1,4 @@
-//! Actions of the user on an encoder. Edits take effect immediately, and all other actions are jobs or tasks.
+//! Handling the user's actions on an encoder. Edits take effect immediately, and all other actions are jobs or tasks.
 
 use super::action::InterbusAction;
 use super::encoder::Encoder;
@@ -74,7 +74,7 @@ impl Encoder {
         self.session.save_read_values(device, Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Reads the next unread part of a virtual encoder. Returns `false` if there is none.
+    /// Reads the next unread part of a virtual encoder. Returns `false` if everything has been read.
     pub(super) fn read_next_unread_part(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

@@ -1,4 +1,4 @@
-//! Actions of the user on an INTERBUS encoder.
+//! The user's actions on an INTERBUS encoder.
 
 use std::path::PathBuf;
 

@@ -140,7 +140,7 @@ impl Encoder {
         url.query.read("order", &WordOrder::KEYWORDS).ok().flatten().unwrap_or_default()
     }
 
-    /// Returns whether the machine stands still according to the user. A virtual encoder has no machine and therefore
+    /// Returns whether the user has confirmed that the machine is at standstill. A virtual encoder has no machine and
     /// needs no confirmation.
     pub fn is_stopped(&self) -> bool {
         self.stopped || self.session.is_virtual()

@@ -20,7 +20,7 @@ use crate::worker::{OpenError, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
-    /// Polling is initially off, since a control system may be reading the same word.
+    /// Polling is initially off, because a control system may be reading the same word.
     const STARTS_LIVE: bool = false;
     type Edits = Edits;
     type SessionHandle = Option<Motor>;

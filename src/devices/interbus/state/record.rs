@@ -1,4 +1,4 @@
-//! Recording of the positions, the speed and the cam outputs while the IN word is polled.
+//! Recording the positions, the speed and the cam outputs while the IN word is polled.
 
 use crate::devices::interbus::state::TEXTS;
 

@@ -19,7 +19,7 @@ pub(crate) enum Ssi {
     Export(SsiExportArgs),
 }
 
-/// The entries of a profile, documented for those who write one by hand.
+/// Help text about the entries of a handwritten profile.
 const PROFILE: &str = "\
 Entries of the frame in a profile (omitted entries have their default values):
   clocks: 27                       number of bits in a burst, 1 to 64
@@ -108,7 +108,7 @@ pub(crate) struct SsiExportArgs {
     pub(crate) file: Option<PathBuf>,
 }
 
-/// The layout, where a command can do without.
+/// An optional layout.
 #[derive(Args)]
 pub(super) struct LayoutOption {
     #[arg(long, value_name = "FILE|SPEC")]

@@ -1,4 +1,4 @@
-//! The command `ssi find`, which lists the layouts that fit recorded frames, with the best first, and states what would
+//! The command `ssi find`, which lists the layouts that fit recorded frames, best first, and the motion that would
 //! distinguish them.
 
 use serde_json::{Value as Json, json};

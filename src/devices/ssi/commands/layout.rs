@@ -92,7 +92,7 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Selecte
     Ok(SelectedLayout { title, profile, layout, times })
 }
 
-/// Prints the differences between the frame of a profile and the frames of its family.
+/// Prints the differences between the frame of a profile and the frame of its family.
 fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_for_frame(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {

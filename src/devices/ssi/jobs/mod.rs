@@ -105,10 +105,10 @@ impl Device for Ssi {
     type Job = SsiJob;
     type Output = SsiOutput;
     type Error = JobError;
-    /// No values exist, because SSI encoders send nothing but words.
+    /// No values exist, because SSI encoders only send words.
     type DeviceMessage = Infallible;
     type Sample = Words;
-    /// No values exist, because SSI encoders send nothing but words.
+    /// No values exist, because SSI encoders only send words.
     type Watch = Infallible;
     type JobStep = JobStep;
 

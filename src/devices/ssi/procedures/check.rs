@@ -10,8 +10,7 @@ use crate::devices::ssi::protocol::{BitMeaning, Flags, FrameFinding as Said, Lay
 pub use crate::analysis::check::Verdict;
 
 pub const WORD_COUNT: u64 = 50;
-/// Maximum distance of a position from the first one at standstill, in steps. A shaft at standstill can jitter by one
-/// or two steps.
+/// Maximum jitter of the position at standstill, in steps. One or two steps are normal.
 const MAX_JITTER_STEPS: u64 = 4;
 
 pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
@@ -164,7 +163,7 @@ fn check_supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
-/// Evaluates the change of position from word to word. Distances are measured in the shorter direction.
+/// Evaluates the changes of position from word to word. Distances are measured in the shorter direction.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.position_code().last_position()) + 1;
     let apart = |one: u64, other: u64| {

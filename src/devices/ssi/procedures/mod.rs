@@ -1,5 +1,5 @@
-//! Reading of words from an SSI encoder behind an adapter with the bridge protocol, one by one or as a stream. The
-//! encoder has no memory and no commands. The layout (`protocol/ssi`) defines the meaning of the words.
+//! Reading words from an SSI encoder behind an adapter with the bridge protocol, one by one or as a stream. The encoder
+//! has no memory and no commands. The layout (`protocol/ssi`) defines the meaning of the words.
 
 pub mod check;
 mod error;

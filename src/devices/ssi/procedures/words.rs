@@ -20,8 +20,8 @@ pub struct Words {
     pub lost: u64,
     /// Number of bits per word, 1 to 64.
     pub clocks: u8,
-    /// Received words, of which there is at least one. Each is right-justified, so the bit received first is the
-    /// highest of `clocks` bits.
+    /// Received words, at least one. Each is right-justified, so the bit received first is the highest of `clocks`
+    /// bits.
     pub words: Vec<u64>,
     /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,

@@ -1,4 +1,4 @@
-//! Extraction of frames from a logic analyser recording of both lines.
+//! Extraction of frames from a logic analyser recording of clock and data.
 //!
 //! The clock idles high. The encoder outputs a bit at each rising edge, and the host samples the bit at the next
 //! falling edge. The last bit remains on the line for half a period. Bursts are separated by pauses. See SICK SSI

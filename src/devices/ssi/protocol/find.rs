@@ -39,9 +39,9 @@ const WEIGHT_BITS: f64 = 8.0;
 /// Maximum difference between the weight of a class member and that of the most probable member. Less probable members
 /// are omitted.
 const MAX_EXTRA_WEIGHT: f64 = 8.0;
-/// Minimum number of frames per thousand for which two readings must have the same motion to be considered the same.
+/// Minimum number of frames per thousand in which two readings must agree to be considered the same.
 const SAME_PERMILLE: usize = 995;
-/// Maximum information in bits, for all frames, by which a reading may exceed the best reading. Readings with more
+/// Maximum information in bits over all frames by which a reading may exceed the best one. Readings with more
 /// information are not searched for families.
 const NEAR_BITS: f64 = 300.0;
 
@@ -170,7 +170,7 @@ pub enum OpenQuestion {
     TypeLabel,
 }
 
-/// An interpretation of the frames, with all layouts that result in this interpretation.
+/// An interpretation of the frames, with all layouts that yield it.
 struct Group {
     read: FrameNumbers,
     members: Vec<LayoutCandidate>,
@@ -238,7 +238,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::merge_classes(&words, groups))
 }
 
-/// Returns whether two readings yield the same motion. The motion may be reversed, or have steps of half the size.
+/// Returns whether two readings result in the same motion. The motion may be reversed, or have steps of half the size.
 fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =

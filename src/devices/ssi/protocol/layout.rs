@@ -57,7 +57,7 @@ pub struct FrameReading {
     pub flags: Flags,
 }
 
-/// Properties of a frame other than its position: error bits, patterns and inconsistencies.
+/// Flags of a frame in addition to its position: error bits, patterns and inconsistencies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Flags(pub(super) u32);
 
@@ -244,7 +244,7 @@ impl Layout {
         }
     }
 
-    /// Applies `what` to the bits of a word that are Gray coded as a whole.
+    /// Applies `what` to the Gray-coded bits of a word.
     fn apply_to_gray_bits(&self, word: u64, what: impl Fn(u64) -> u64) -> u64 {
         let (bits, behind) = self.gray;
         what(word >> behind & low_bits_mask(bits)) << behind | word & !(low_bits_mask(bits) << behind)

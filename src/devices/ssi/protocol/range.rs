@@ -203,8 +203,7 @@ impl Range {
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
-    /// Returns the position counted from the zero point of the shaft. All positions are equally wide in both
-    /// directions.
+    /// Returns the position relative to the zero point of the shaft. All positions are equally wide in both directions.
     fn count_from_zero(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last_position().unwrap_or(0);

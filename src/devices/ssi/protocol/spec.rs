@@ -1,5 +1,5 @@
-//! Layouts written as one word, `KEY,name=value,…`. This module contains the parts common to families and arbitrary
-//! frames.
+//! Layout specifications written as one word, `KEY,name=value,…`. This module contains the parts common to families and
+//! arbitrary frames.
 
 use crate::expected::AllowedValues;
 

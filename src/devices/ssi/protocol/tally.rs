@@ -29,7 +29,7 @@ pub struct CountedFinding {
 }
 
 impl FindingCounts {
-    /// Counts the findings of a frame, and returns those that the previous frame did not have.
+    /// Counts the findings of a frame, and returns those that are new since the previous frame.
     ///
     /// `layout` must be the layout of all frames since the last [`reset`](Self::reset).
     pub fn count_findings(&mut self, layout: &Layout, reading: FrameReading, at: SampleTime) -> Vec<FrameFinding> {
@@ -77,7 +77,7 @@ impl FindingCounts {
         &self.noted
     }
 
-    /// Ends all current findings because names in the layout have changed. They are counted again with the next frame.
+    /// Ends all current findings, because names in the layout have changed. They are counted again with the next frame.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
@@ -89,8 +89,8 @@ impl FindingCounts {
     }
 }
 
-/// Returns whether a finding concerns a single transfer. Such a finding is counted again if the next frame has the same
-/// finding.
+/// Returns whether a finding concerns only a single transfer. Such a finding is counted again if the next frame has the
+/// same finding.
 fn is_single_transfer_finding(finding: &FrameFinding) -> bool {
     matches!(
         finding,

@@ -61,7 +61,7 @@ pub struct SynchronousTimes {
     pub most_hz: Option<u32>,
 }
 
-/// The moment at which a position is taken in synchronous mode.
+/// The moment at which the position is sampled in synchronous mode.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SamplingMoment {

@@ -1,4 +1,4 @@
-//! The virtual SSI encoder behind an adapter as seen by a host, and its settings.
+//! Tests of the virtual SSI encoder and its settings from the perspective of a host.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
 use crate::sim::ConfigError;
 use crate::sim::setting::query_pairs;
 
-/// Creates a host with the encoder on the shaft of a test.
+/// Creates a host with the encoder on a test shaft.
 fn host_with_dial(query: &str) -> Host {
     Host::to(query, &[&AttachableEncoder::DEFAULT_ADAPTER, &Dial::SETTINGS])
 }

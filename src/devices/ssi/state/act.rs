@@ -1,5 +1,5 @@
-//! Actions of the user on an encoder or a layout. A change of the layout takes effect immediately. Everything else is a
-//! job of the session or a task.
+//! Handling the user's actions on an encoder or a layout. A change of the layout takes effect immediately. Everything
+//! else is a job of the session or a task.
 
 use std::path::PathBuf;
 

@@ -299,7 +299,7 @@ impl PendingEdits for LayoutDesigner {
     }
 }
 
-/// Returns the reading settings with the parameters of the link for which `counts` is true.
+/// Returns the reading settings, overridden by the link parameters for which `counts` is true.
 fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
     let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
     let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());

@@ -1,4 +1,4 @@
-//! Handling of events from the line: identity of the adapter, words, and loss of the connection.
+//! Handling events from the line: identity of the adapter, words, and loss of the connection.
 
 use std::convert::Infallible;
 

@@ -1,4 +1,4 @@
-//! Recording of an SSI encoder: the received words, their positions as lines over time, and the findings about them. If
+//! Recording an SSI encoder: the received words, their positions as lines over time, and the findings about them. If
 //! the layout changes, the same words are decoded again.
 
 use std::collections::VecDeque;

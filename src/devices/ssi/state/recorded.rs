@@ -1,4 +1,4 @@
-//! Drafts in users' files, which must be readable and must be the same after they are written back.
+//! Tests of the draft format in users' files.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::ssi::jobs::Ssi;

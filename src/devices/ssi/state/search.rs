@@ -1,4 +1,4 @@
-//! Search for the layout of recorded frames, which were either read last or come from a file.
+//! Search for the layout of recorded frames, from the encoder or a file.
 
 mod capture;
 #[cfg(test)]

@@ -235,7 +235,7 @@ pub fn bits_follow_position(layout: &Layout) -> bool {
     !moving::bits_after_position(layout).is_empty()
 }
 
-/// Returns whether the frame has patterns that are given as bits. They depend on the length of the frame.
+/// Returns whether the frame has patterns of explicit bits, which depend on the length of the frame.
 fn has_bit_patterns(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }

@@ -187,8 +187,8 @@ impl BurstDiagram {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// Returns texts about a moment: its time, and the current clock with its content or the reason why the lines are
-    /// idle.
+    /// Returns texts about a moment: its time, and either the current clock with its content or the reason why the
+    /// lines are idle.
     pub fn texts_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {

@@ -1,4 +1,4 @@
-//! Drawing of the rows of a form: a number, a choice, a switch or a name. The state defines their meaning.
+//! Drawing the rows of a form: a number, a choice, a switch or a name. The state defines their meaning.
 
 use std::collections::BTreeMap;
 

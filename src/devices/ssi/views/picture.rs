@@ -1,4 +1,4 @@
-//! Drawing of an exported picture. The exported file contains the same shapes.
+//! Drawing an exported picture. The exported file contains the same shapes.
 
 use egui::accesskit::Role;
 use egui::{

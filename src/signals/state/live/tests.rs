@@ -1,4 +1,4 @@
-//! Late results, aborted tasks and changed settings: tested on the state itself, where a window could not force them.
+//! Tests of late results, aborted tasks and changed settings, which cannot be forced in a window.
 
 use std::time::{Duration, Instant};
 
@@ -38,7 +38,7 @@ fn measurement(judge: DiagnosisSettings) -> Measurement {
     Measurement::from_capture(Origin::Virtual, Arc::new(capture), judge)
 }
 
-/// Takes in tasks until the condition is true.
+/// Processes task results until the condition is true.
 #[track_caller]
 fn until(signals: &mut Signals, services: &mut Services, condition: impl Fn(&Signals) -> bool) {
     let began = Instant::now();

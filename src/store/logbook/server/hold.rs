@@ -1,5 +1,5 @@
-//! Devices that are connected to a bench at this moment. Benches that hold the same device are told of each other. This
-//! is a warning, not a lock.
+//! Devices that are currently connected to a bench. Benches that hold the same device are told of each other. This is a
+//! warning, not a lock.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use super::LogbookServer;
 use super::client::Client;
 use super::error::ServerErrorKind;
 
-/// Time after which a bench that does not renew its hold counts as gone.
+/// Time after which a hold expires if the bench does not renew it.
 const VALID: Duration = Duration::from_secs(30);
 
-/// A device that another program holds, on another bench or on this one.
+/// Another program that is connected to the same device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OtherHolder {
     pub device: DeviceKey,
@@ -27,8 +27,8 @@ pub struct DeviceHold {
 }
 
 impl LogbookServer {
-    /// Announces with the next transfers that a device is connected to this program. Virtual devices and devices without
-    /// a serial number cannot be told apart, so they are not announced.
+    /// Announces with the following transfers that a device is connected to this program. Virtual devices and devices
+    /// without a serial number cannot be told apart, so they are not announced.
     pub fn hold(&self, device: &DeviceKey) -> Option<DeviceHold> {
         if device.is_virtual || device.serial_number.is_empty() {
             return None;

@@ -1,4 +1,4 @@
-//! Painting of a field map.
+//! Painting a field map.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, Ui, Vec2};
 

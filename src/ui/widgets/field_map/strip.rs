@@ -20,8 +20,8 @@ impl Strip {
     /// Possible block widths in grid steps, largest first.
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
-    /// Creates a strip with the largest blocks of which `count` fit on two lines. If even the smallest blocks do not
-    /// fit, the strip has more lines.
+    /// Creates a strip with the largest blocks for which `count` blocks fit on two lines. If even the smallest blocks
+    /// do not fit, the strip has more lines.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);

@@ -1,4 +1,4 @@
-//! Painting of a hex editor.
+//! Painting a hex editor.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2};
 

@@ -47,7 +47,7 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// Returns the bytes to display as numbers: the selection, or all bytes from the cursor on if only one byte is
+    /// Returns the bytes to display as numbers: the selection, or all bytes from the cursor onward if only one byte is
     /// selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();

@@ -1,4 +1,4 @@
-//! Painting of a register table.
+//! Painting a register table.
 
 use egui::{
     Align2, Color32, FontId, Pos2, Rangef, Rect, Response, Sense, Stroke, TextStyle, TextWrapMode, Ui, Vec2, pos2,

@@ -1,4 +1,4 @@
-//! The field map with keys and pointer.
+//! Tests of the field map with keys and pointer.
 
 use egui::{Key, Vec2};
 use egui_kittest::Harness;

@@ -1,4 +1,4 @@
-//! A frame by its accessible values.
+//! Tests of the frame strip with accessible values.
 
 use egui_kittest::kittest::Queryable;
 

@@ -1,4 +1,4 @@
-//! The hex editor with keys, pointer and clipboard.
+//! Tests of the hex editor with keys, pointer and clipboard.
 
 use egui::{Event, Key, Modifiers, Pos2};
 use egui_kittest::Harness;

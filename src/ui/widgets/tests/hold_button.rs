@@ -41,7 +41,7 @@ fn key(pressed: bool, repeat: bool) -> Event {
     Event::Key { key: Key::Space, physical_key: None, pressed, repeat, modifiers: Modifiers::NONE }
 }
 
-/// Draws one frame after these events, and returns what was reported in it.
+/// Draws a frame with the given events and returns the reported changes.
 fn step(harness: &mut Harness<'_, Jog>, events: impl IntoIterator<Item = Event>) -> Vec<HoldEvent> {
     harness.state_mut().events.clear();
     for event in events {
@@ -117,14 +117,14 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
     assert_eq!(step(&mut harness, []), []);
 }
 
-/// Waits, so that a release is as long ago as a finger needs.
+/// Waits for the minimum time between a release and a fresh press.
 fn wait(harness: &mut Harness<'_, Jog>) {
     for _ in 0..4 {
         assert_eq!(step(harness, []), []);
     }
 }
 
-/// Creates a button with the keyboard focus, after Space was seen up.
+/// Creates a focused button, after Space has been released.
 fn armed() -> Harness<'static, Jog> {
     let mut harness = jog();
     focus(&mut harness, "Jog up");
@@ -151,7 +151,7 @@ fn a_key_holds_the_button_and_repeats_start_nothing() {
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
 }
 
-/// Draws a frame this many seconds after the previous one.
+/// Draws a frame at the given time after the previous one, in seconds.
 fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) -> Vec<HoldEvent> {
     let before = harness.ctx.input(|input| input.time);
     harness.input_mut().time = Some(before + apart);

@@ -1,4 +1,4 @@
-//! A register table of the size of the kit encoder's, operated by keys, pointer and accessible labels.
+//! Tests of a register table as large as that of the kit encoder, with keys, pointer and accessible labels.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -88,7 +88,7 @@ fn place(group: usize, row: usize) -> RegisterLocation {
     RegisterLocation { group, row }
 }
 
-/// Presses at a row, this many points from its left.
+/// Clicks a row at a distance from its left edge, in points.
 fn click(harness: &mut Harness<'_, Registers>, label: &str, from_left: f32, times: usize) {
     let rect = harness.get_by_label(label).rect();
     let pos = Pos2::new(rect.left() + from_left, rect.center().y);

@@ -1,4 +1,4 @@
-//! The table of values.
+//! Tests of the table of values.
 
 use egui_kittest::kittest::Queryable;
 

@@ -1,4 +1,4 @@
-//! A host at the virtual adapter, in virtual time, and devices that exist in tests alone.
+//! A host for the virtual adapter in virtual time, and devices for tests.
 
 use std::time::Duration;
 
@@ -28,7 +28,7 @@ impl Host {
         Self::to(query, &[&SsiTestEncoder, &Dial::SETTINGS])
     }
 
-    /// Creates a host with an adapter for these devices.
+    /// Creates a host with an adapter for the given devices.
     pub(crate) fn to(query: &str, devices: &[&dyn AttachableKind]) -> Self {
         let adapter = Adapter::from_pairs(&query_pairs(query), devices).unwrap();
         Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
@@ -51,7 +51,7 @@ impl Host {
         packets.map(|packet| (packet.seq, Message::parse(&packet).unwrap())).collect()
     }
 
-    /// Returns the reply to a request, of which there is no more than one within 100 ms.
+    /// Returns the reply to a request. There must be exactly one within 100 ms.
     pub(crate) fn ask(&mut self, request: Request) -> Option<Message> {
         self.send(&request);
         let mut messages = self.receive(self.now + Duration::from_millis(100));
@@ -89,8 +89,8 @@ impl Host {
     }
 }
 
-/// Shaft with 35 bits of position, 17 of them within a revolution, and six bits after them; its registers keep the
-/// values written. It is at 270° of turn 1234h, and needs half a second to start.
+/// Shaft with a position of 35 bits, 17 of them within a revolution, followed by six other bits. Its registers store
+/// what is written. It is at 270° of turn 1234h, and needs half a second to start.
 pub(crate) struct Dial {
     motor: Motor,
     revolutions: f64,
@@ -103,7 +103,7 @@ pub(crate) struct Dial {
 /// Settings of a dial.
 pub(crate) struct DialSettings;
 
-/// SSI device that sends the position of the shaft: 12 bits of turns and 13 within one.
+/// SSI device that sends the position of the shaft: 12 turn bits and 13 step bits.
 pub(crate) struct SsiTestEncoder;
 
 impl Dial {

@@ -1,4 +1,4 @@
-//! The adapter's own line with its faults.
+//! Tests of faults on the line of the adapter.
 
 use super::*;
 use crate::sim::SimulatedFaults;

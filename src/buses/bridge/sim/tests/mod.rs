@@ -1,4 +1,4 @@
-//! The virtual adapter as seen by a host, in virtual time.
+//! Tests of the virtual adapter from the perspective of a host, in virtual time.
 
 mod host;
 mod line;

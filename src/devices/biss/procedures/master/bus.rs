@@ -16,12 +16,12 @@ use crate::units::Moment;
 
 /// Slave number of an encoder that is the only one on its line.
 const SLAVE: u8 = 0;
-/// Time since the last reply within which the encoder cannot have restarted unnoticed. A restart takes 500 ms (EDS
+/// Maximum time since the last reply for which a restart of the encoder can be ruled out. A restart takes 500 ms (EDS
 /// 02:0Eh).
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Pause between two attempts, since the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
-/// Number of consecutive frames with wrong checksums that rules out noise as the cause (`U`: not documented).
+/// Number of consecutive frames with wrong checksums after which noise is ruled out as the cause (`U`: not documented).
 const WRONG_FRAMES: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -214,7 +214,7 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Reads more frames after five had wrong checksums and none was ever correct. Some of them are correct if the
+    /// Reads more frames if five had wrong checksums and none has ever been correct. Some of them are correct if the
     /// cause is noise, and none if the widths are wrong.
     pub(super) fn recheck_frame_widths(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
@@ -235,7 +235,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame after a register gave no reply. The result shows whether the line itself is at fault.
+    /// Reads a frame after a register access without a reply. The result shows whether the line itself is at fault.
     pub(super) fn diagnose_line(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {

@@ -1,5 +1,4 @@
-//! Streaming of frames. The adapter handles no other requests during a stream, so any other request ends the stream
-//! first.
+//! Streaming frames. The adapter handles no other requests during a stream, so any other request ends the stream first.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -42,7 +42,7 @@ impl Master<'_> {
         self.read_register_once(address.global_number(), order)
     }
 
-    /// Sends a request that reveals the byte order of register numbers.
+    /// Sends a request whose reply reveals the byte order of register numbers.
     pub(super) fn probe_byte_order_once(&mut self) -> AttemptResult<u8> {
         self.read_register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }

@@ -63,7 +63,7 @@ pub(super) struct RunProgress {
     pub(super) limit: Duration,
 }
 
-/// What the operator decided about a task, with the measurement at that time.
+/// The operator's decision about a task, with the measurement at that time.
 pub(super) enum OperatorDecision {
     Go(Option<ShaftMotion>),
     Skip,
@@ -93,7 +93,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.master
     }
 
-    /// Records that the encoder was found in operation. `password` specifies whether the password is set.
+    /// Records that the encoder was in operation at the start. `password` specifies whether the password is set.
     pub(in crate::devices::biss::procedures) fn set_initial_state(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
@@ -290,7 +290,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         Ok(())
     }
 
-    /// Gives the operator a task at the motor. Measures repeatedly until the conditions are met and the operator
+    /// Assigns a task at the motor to the operator. Measures repeatedly until the conditions are met and the operator
     /// confirms.
     pub(super) fn run_operator_task(&mut self, task: OperatorTask) -> Result<OperatorDecision, Failure> {
         self.begin_step(ProcedureStep::Await(task));
@@ -381,7 +381,7 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
     ended
 }
 
-/// Brings the encoder from any mode back to operation, clears the password, and returns the previous mode. A running
+/// Returns the encoder from any mode to operation and clears the password. The result is the previous mode. A running
 /// calibration is allowed to finish, because leaving it would lose the table.
 pub(super) fn lead_back(
     master: &mut Master<'_>,

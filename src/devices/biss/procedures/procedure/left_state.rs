@@ -1,5 +1,4 @@
-//! The state of an encoder, as far as it is known from its replies. It is reported if the link is lost during a
-//! procedure.
+//! The state of an encoder as inferred from its replies. It is reported if the link is lost during a procedure.
 
 use super::MotorRun;
 use crate::devices::biss::procedures::Error;
@@ -53,7 +52,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         }
     }
 
-    /// Updates the possible values after a write of `after`. They depend on the result of the write.
+    /// Updates the possible values after `after` was written. They depend on the result of the write.
     pub(super) fn update_after_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = PossibleValues::new(after),
@@ -84,8 +83,8 @@ impl LeftState {
         self.activity = Activity::Restarting;
     }
 
-    /// Records that the encoder is out of reach. If it loses power, it starts again in operation with the password
-    /// cleared.
+    /// Records that the encoder can no longer be reached. If it loses power, it starts again in operation with the
+    /// password cleared.
     pub(in crate::devices::biss::procedures) fn record_possible_power_loss(&mut self) {
         self.mode.add_possible(DeviceMode::OPERATION);
         self.password.add_possible(false);

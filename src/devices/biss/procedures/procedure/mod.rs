@@ -91,7 +91,7 @@ impl ProcedureContext<'_, '_> {
     }
 }
 
-/// Brings an encoder back to operation, clears the password, and returns the previous mode. This also works after the
+/// Returns an encoder to operation and clears the password. The result is the previous mode. This also works after the
 /// link was lost or another host changed the mode. If the encoder is silent because it is calibrating, the function
 /// waits for it.
 ///

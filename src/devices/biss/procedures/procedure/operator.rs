@@ -237,7 +237,7 @@ pub struct UnattendedOperator {
 }
 
 impl UnattendedOperator {
-    /// Additional time allowed for the first measurement.
+    /// Additional time for the first measurement.
     const FIRST_MEASUREMENT_TIME: Duration = Duration::from_secs(5);
 }
 

@@ -1,4 +1,4 @@
-//! Single changes and guided runs by case.
+//! Tests of single changes and guided runs, case by case.
 
 use super::*;
 use crate::devices::biss::profile::test_profiles::{data_areas, profile, set_bank_bytes};

@@ -1,4 +1,4 @@
-//! Plans by case.
+//! Tests of plans, case by case.
 
 use super::*;
 use crate::devices::biss::profile::test_profiles::{data_areas, profile, set_bank_bytes};
@@ -20,7 +20,7 @@ fn with_preset(profile: &mut BissProfile, singleturn: u32, multiturn: u32) {
     profile.preset = Some(PresetSetting { value, unknown: Default::default() });
 }
 
-/// Returns the operations in short, with their cost.
+/// Returns the operations in short form with their cost.
 fn ops(restore: &Restore) -> Vec<String> {
     let short = |op: &Op| {
         let cost = crate::profile::Operation::write_cycles(op);

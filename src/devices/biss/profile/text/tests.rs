@@ -1,4 +1,4 @@
-//! The user's text is parsed, the written text is parsed again, and errors are named.
+//! Tests of handwritten profiles, round trips and error messages.
 
 use super::*;
 use crate::devices::biss::protocol::{Access, Area, DeviceMode, RegisterAddress};
@@ -38,7 +38,7 @@ fn profile_with(from: &str, to: &str) -> BissProfile {
     profile(&SHORT.replacen(from, to, 1))
 }
 
-/// Returns everything that a profile can hold.
+/// Returns a profile with every possible entry.
 fn full_profile() -> BissProfile {
     let mut profile = profile_with("listed:", "name: \"OEM data\", empty: 0x00, listed:");
     profile.identity.firmware = Some(Firmware::new(1, 6, 0));

@@ -1,4 +1,5 @@
-//! The control frame: published strings of both directions, both sides against each other, and damage.
+//! Tests of the control frame: published bit strings in both directions, host and encoder connected to each other, and
+//! damage.
 
 use proptest::prelude::*;
 
@@ -74,7 +75,7 @@ impl Line {
         }
     }
 
-    /// Adds another encoder, which has been on the line for long.
+    /// Adds another encoder that has been on the line for a long time.
     fn attach(&mut self, slave: u8) {
         self.encoder = Encoder::new(slave);
         (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.receive_cdm(false), None));
@@ -135,7 +136,7 @@ fn published_writes_match() {
     }
 }
 
-/// Both sides alone, against the literal bits of the other.
+/// Each side by itself, against the literal bits of the other.
 #[test]
 fn published_reply_matches() {
     let (_, cdm) = READS[4];

@@ -1,4 +1,4 @@
-//! A name in English, and in German if the description provides one.
+//! A name in English with an optional German translation.
 
 use std::fmt;
 

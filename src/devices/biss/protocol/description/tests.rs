@@ -1,4 +1,4 @@
-//! The built-in descriptions against the reference, and broken ones with their locations.
+//! Tests of the built-in descriptions against the reference, and of the locations of errors.
 
 use proptest::prelude::*;
 

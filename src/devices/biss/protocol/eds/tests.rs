@@ -1,10 +1,10 @@
-//! The data sheet of the reference, field by field; sums; and sheets without a frame.
+//! Tests of the data sheet in the reference field by field, of checksums, and of sheets without a frame layout.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Returns bank 2 of the reference, put together by hand.
+/// Returns bank 2 of the reference, composed by hand.
 fn common() -> [u8; 64] {
     let mut bank = [0; 64];
     for (offset, bytes) in [

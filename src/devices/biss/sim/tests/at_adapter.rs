@@ -1,4 +1,4 @@
-//! The kit encoder behind the virtual adapter, as seen by a host.
+//! Tests of the kit encoder at the virtual adapter from the perspective of a host.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! The virtual kit encoder as seen by a host, in virtual time. Expected values are the manual's and the reference's;
-//! none is computed by the code under test.
+//! Tests of the virtual kit encoder from the perspective of a host, in virtual time. Expected values are the manual's
+//! and the reference's; none is computed by the code under test.
 
 mod at_adapter;
 mod modes;
@@ -14,7 +14,7 @@ use super::*;
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::units::Moment;
 
-/// Host that reads and writes registers by name, without a line.
+/// Host that accesses registers by name, without a line.
 struct Host {
     encoder: Encoder,
     now: Moment,
@@ -34,7 +34,7 @@ impl Host {
         self.encoder.write(self.now, address(register), value)
     }
 
-    /// Writes a value that the encoder must accept.
+    /// Writes a value and checks that the encoder accepts it.
     #[track_caller]
     fn put(&mut self, register: &str, value: u8) {
         assert!(self.write(register, value), "{register} = {value:02X}");
@@ -45,7 +45,7 @@ impl Host {
         assert_eq!(self.read(register), value, "{register}");
     }
 
-    /// Runs the prologue of every procedure.
+    /// Enters a device mode, as at the start of every procedure.
     #[track_caller]
     fn enter(&mut self, mode: u8) {
         self.put("0x6B", 0x2A);

@@ -1,4 +1,4 @@
-//! The device modes (reference 5, last table) and restarts.
+//! Tests of the device modes (reference 5, last table) and of restarts.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! The procedures that need a turning motor: durations, results, failures (reference 5.1 and 5.2).
+//! Tests of the procedures that need a turning motor: durations, results, failures (reference 5.1 and 5.2).
 
 use super::*;
 

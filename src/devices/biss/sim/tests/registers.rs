@@ -1,4 +1,4 @@
-//! Registers at rest: the appendix of the manual, temperature, errors, warnings.
+//! Tests of the registers in operation: the appendix of the manual, temperature, errors, warnings.
 
 use super::*;
 use crate::devices::biss::protocol::{Descriptions, ErrorRegister};

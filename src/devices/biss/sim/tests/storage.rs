@@ -1,4 +1,4 @@
-//! Saved values: data, filter, preset; the wear of the flash; and a loss of power during a save.
+//! Tests of saved values (data, filter, preset), of the wear of the flash, and of a loss of power during a save.
 
 use super::*;
 use crate::devices::biss::protocol::PositionFilter;

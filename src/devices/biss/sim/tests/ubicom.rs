@@ -1,4 +1,4 @@
-//! The line of the configuration pin: the reference's frames, timing, noise, silence.
+//! Tests of the configuration pin's line: frames of the reference, timing, noise and silence.
 
 use super::*;
 use crate::bits::{hex, parse_hex};
@@ -15,7 +15,7 @@ impl Line {
         Line { port: UbicomPort::new(&config(query)), now: Moment::START }
     }
 
-    /// Returns everything that arrives until nothing more will, and when the last byte did.
+    /// Returns all bytes until the line is idle, and the time of the last one.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.port.poll_at() {

@@ -33,7 +33,7 @@ struct ShutdownProgress {
     off: u32,
 }
 
-/// Time for the stop sequence, including braking.
+/// Time allowed for the stop sequence, including braking.
 const STOP_LADDER_TIME: Duration = Duration::from_millis(700);
 /// Number of packets that switch the drives off. More than one is sent, since a packet may be lost.
 const SWITCH_OFF_PACKETS: u32 = 3;

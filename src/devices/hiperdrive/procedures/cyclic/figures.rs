@@ -59,7 +59,7 @@ pub struct Bucket {
 }
 
 impl Histogram {
-    /// Counts an interval with the actual duration `took` and the nominal duration `wanted`.
+    /// Counts an interval with the actual duration `took` instead of the nominal duration `wanted`.
     pub fn count(&mut self, wanted: Duration, took: Duration) {
         let nanoseconds = |duration: Duration| i64::try_from(duration.as_nanos()).unwrap_or(i64::MAX);
         let off = nanoseconds(took).saturating_sub(nanoseconds(wanted)) / 1000;

@@ -1,4 +1,4 @@
-//! The engine with packets of the reference (section 9), and with any.
+//! Tests of the cyclic engine with the packets of the reference (section 9) and with arbitrary ones.
 
 use std::time::Duration;
 
@@ -117,7 +117,7 @@ fn permit(_: DriveNumber) -> Permit {
     Permit::for_range(-1_000_000, 1_000_000)
 }
 
-/// Adapter whose drive follows at once, cycle by cycle.
+/// Adapter whose drive follows each command immediately.
 struct Bench {
     drives: Drives,
     intent: MotionIntent,

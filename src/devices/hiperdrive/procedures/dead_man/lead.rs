@@ -1,5 +1,6 @@
-//! Brings a drive through its states. The control words are sent one after another, each until the drive has followed
-//! or a time limit has expired (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
+//! Sequences of control words that bring a drive to a requested state. The control words are sent one after another,
+//! each until the drive has followed or a time limit has expired (reference 3, and the recipes in
+//! `devices/hiperdrive/protocol/recipe`).
 
 use super::{
     ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRefusal, ReportMark, STEP, Stage, TargetState, UserAction,
@@ -151,7 +152,7 @@ impl DeadMan {
         }
     }
 
-    /// Enters the stage whose control word allows a motion to begin, without starting one.
+    /// Enters the stage in which a motion may begin, without starting one.
     fn prepare_motion(&mut self, now: Moment, actual: ActualValues, kind: MotionKind) {
         let acknowledged = actual.status.is_set(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(kind, MotionKind::Run { .. });

@@ -1,4 +1,4 @@
-//! The dead-man with arbitrary reports, requests and times.
+//! Property tests of the dead-man control with arbitrary reports, requests and times.
 
 use std::time::Duration;
 
@@ -57,7 +57,7 @@ fn wish() -> impl Strategy<Value = MotionRequest> {
     ]
 }
 
-/// Realistic status words are generated more often than arbitrary ones.
+/// Generates status words, realistic ones more often than arbitrary ones.
 fn status() -> impl Strategy<Value = u16> {
     let said = [0x2A30, 0x2A31, 0x2A33, 0x2A37, 0x3A37, 0x1A37, 0x0A37, 0x3E37, 0x2E37, 0x2AB8, 0x2A70, 0, 0x0A30];
     prop_oneof![8 => prop::sample::select(said.to_vec()), 1 => any::<u16>()]
@@ -164,7 +164,7 @@ fn an_unseen_stop_still_ends_the_job() {
     }
 }
 
-/// Drive that replies as configured, ten milliseconds per call; the request is always fresh.
+/// Drive that replies as configured, with ten milliseconds per call and a request that is always fresh.
 struct DeadManBench {
     man: DeadMan,
     now: Moment,
@@ -183,7 +183,7 @@ impl DeadManBench {
         self.intent = MotionIntent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// Calls the dead-man this number of times with a drive that reports this.
+    /// Calls the dead-man control `times` times with the same report.
     fn look(&mut self, times: u32, status: u16, position: i32) -> Setpoint {
         for _ in 0..times {
             self.now = self.now + Duration::from_millis(10);

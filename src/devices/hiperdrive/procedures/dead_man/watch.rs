@@ -51,7 +51,7 @@ pub(super) struct ActionMonitor {
 const ACCURACY_DEG: i64 = 3;
 
 impl OutsideLimits {
-    /// Returns whether the direction may move the drive further outside.
+    /// Returns whether motion in the direction may take the drive further outside.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
             OutsideLimits::At(side) => side.outward_direction() == direction,
@@ -61,8 +61,8 @@ impl OutsideLimits {
 }
 
 impl Permit {
-    /// Returns how a drive is outside its limits, according to its position or, if that is inside, to status bit 15.
-    /// Bit 15 is taken to refer to the limit that is within a degree. Returns `None` if the drive is inside or no
+    /// Returns on which side a drive is outside its limits, according to its position or, if that is inside, to status
+    /// bit 15. Bit 15 is assumed to refer to a limit within one degree. Returns `None` if the drive is inside or no
     /// limits are known.
     pub fn outside_limits(&self, actual: ActualValues) -> Option<OutsideLimits> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
@@ -93,7 +93,7 @@ impl LimitSide {
         }
     }
 
-    /// Returns the direction that moves the drive further outside. Positions increase clockwise (manual 7.2: the step
+    /// Returns the direction that takes the drive further outside. Positions increase clockwise (manual 7.2: the step
     /// of parameter 170, +4096, is clockwise).
     pub const fn outward_direction(self) -> Direction {
         match self {

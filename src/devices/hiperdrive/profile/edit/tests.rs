@@ -1,11 +1,11 @@
-//! Orders of writing, rejections, warnings: compared with the rules of the manual, worked out by hand.
+//! Tests of the order of writes, of rejections and of warnings, according to the rules of the manual.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_with_values, parameter};
 use crate::devices::hiperdrive::profile::{Warning, plan_warnings};
 use crate::devices::hiperdrive::protocol::{ParameterRange, Variant};
 
-/// Returns the writes of a plan in order; a service by its code.
+/// Returns the writes of a plan in order. A service is given by its code.
 fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
     let step = |op: &Op| match op {
         Op::Write { number, new, .. } => (number.get(), *new),

@@ -1,4 +1,4 @@
-//! The text, written and parsed, in the form of a user, and its errors.
+//! Tests of handwritten profiles, round trips and error messages.
 
 use super::super::test_profiles::{drive, identity, image_with_values, parameter, profile};
 use super::*;
@@ -21,7 +21,7 @@ fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
     ProfileDocument::parse(text, HiperdriveProfile::FORMATS)?.body.into_profile()
 }
 
-/// Profile as written by a user, for no particular device.
+/// Profile as written by a user, without a particular device.
 const SHORT: &str = r#"(
     schema: 1,
     device: "hiperdrive",

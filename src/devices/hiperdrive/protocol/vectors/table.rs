@@ -1,5 +1,5 @@
-//! Comparison of the parameter table, row by row, with a second transcription of the manual's
-//! (`hiperdrive_parameters.txt`), and of the limits that result from the turns of a family (issue 21.10).
+//! Comparison of the parameter table with a second transcription of the manual (`hiperdrive_parameters.txt`), and of
+//! the limits with the turns of each drive family (issue 21.10).
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -90,8 +90,7 @@ fn parse_numbers(text: &str) -> Vec<i64> {
     text.split(',').map(|own| own.trim().parse().unwrap()).collect()
 }
 
-/// Returns values that the manual allows and values that it does not: the limits, the values next to the limits, and
-/// the gaps of a list.
+/// Returns values to probe: the limits, the values next to the limits, and values in the gaps of a list.
 fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     let all = || match typed.bits {
         "32" => (0, 4_294_967_295),

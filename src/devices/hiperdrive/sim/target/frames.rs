@@ -1,4 +1,4 @@
-//! Frames and replies: sessions, lists, and the services that carry CIP messages.
+//! Frames and their replies: sessions, lists, and the services that carry CIP messages.
 
 use std::net::SocketAddrV4;
 

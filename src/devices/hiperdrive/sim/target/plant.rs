@@ -164,7 +164,7 @@ impl TargetDevice {
         Some(bytes)
     }
 
-    /// Sends a datagram at the given moment, unless a fault drops it.
+    /// Sends a datagram at the given time, unless a fault drops it.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.apply_faults(bytes) {
             self.datagrams.insert(at + self.faults.reply_delay(), (to, bytes));

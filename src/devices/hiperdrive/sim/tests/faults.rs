@@ -1,4 +1,4 @@
-//! Faults, how they appear, and how to leave them (reference 3, 4 and 7).
+//! Tests of faults: how they appear, and how they are cleared (reference 3, 4 and 7).
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};
@@ -8,7 +8,7 @@ fn is_fault(bench: &mut Bench) -> bool {
     bench.actual(FIRST).status.to_u16() & 0x2AFF == 0x2AB8
 }
 
-/// Leads out of a fault by the recipe of the reference; each step is done before the next one is sent.
+/// Clears a fault with the recipe of the reference. Each step is complete before the next one is sent.
 fn acknowledge(bench: &mut Bench) {
     for step in ACKNOWLEDGE {
         bench.word(step.word.to_u16());

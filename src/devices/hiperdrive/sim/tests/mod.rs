@@ -1,4 +1,4 @@
-//! The virtual drives against the reference: words of a host and the replies, in virtual time.
+//! Tests of the virtual drives against the reference: control words of a host and their replies, in virtual time.
 
 mod faults;
 mod motion;
@@ -51,7 +51,7 @@ impl Bench {
         (0..ms / 10).for_each(|_| self.cycle());
     }
 
-    /// Sends a control word for 30 ms; returns the status of the first drive.
+    /// Sends a control word for 30 ms and returns the status of the first drive.
     fn word(&mut self, control: u16) -> u16 {
         self.out[FIRST].control = control;
         self.run(30);
@@ -82,7 +82,7 @@ impl Bench {
         self.actual(FIRST).position
     }
 
-    /// Cycles until the first drive reports a status; returns the time taken.
+    /// Runs cycles until the first drive reports a status, and returns the time taken.
     fn until(&mut self, status: u16) -> u64 {
         for ms in (0..120_000).step_by(10) {
             if self.actual(FIRST).status.to_u16() == status {

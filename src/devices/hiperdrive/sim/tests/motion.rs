@@ -1,4 +1,4 @@
-//! Jobs, runs and steps: how they start, and what ends them (reference 3).
+//! Tests of jobs, runs and steps: how they start and end (reference 3).
 
 use proptest::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Actions of the user during axis set-up, and the resulting requests to the device.
+//! The user's actions during axis set-up, and the resulting requests to the device.
 
 use std::path::PathBuf;
 

@@ -141,7 +141,7 @@ impl Axis {
         }
     }
 
-    /// Records that the user confirmed the taught limits by approving their plan.
+    /// Records that the user confirmed the limits by approving their plan.
     fn record_agreed_limits(&mut self, values: &[(u16, i64)], whole: bool) {
         let value = |own: u16| {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
@@ -237,7 +237,7 @@ impl Axis {
         }
     }
 
-    /// Undoes the results of the given step and all later steps. `taught` specifies whether taught entries are
+    /// Discards the results of the given step and all later steps. `taught` specifies whether taught entries are
     /// discarded as well.
     fn undo_results_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {

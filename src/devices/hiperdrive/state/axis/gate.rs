@@ -124,7 +124,7 @@ impl Axis {
         }
     }
 
-    /// Returns both taught limits after checking that the axis is between them.
+    /// Returns both limits set by teach-in, after checking that the axis is between them.
     fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper_limit(ruler)?);
@@ -185,8 +185,8 @@ impl Axis {
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
-    /// Checks whether a step has been shown for long enough to be left, forward or back. A second click within that
-    /// time was meant for the previous step.
+    /// Checks whether a step has been shown for long enough to be left. A second click within that time was meant for
+    /// the previous step.
     ///
     /// # Errors
     /// Returns the remaining time as an error if the step has not been shown for long enough.

@@ -1,18 +1,18 @@
-//! Power-cycle check: the state before and after the supply was lost, and the proof that the supply was actually off. A
+//! Power-cycle check: the state before and after the power cycle, and the evidence that the supply was off. A
 //! connection that was lost and restored does not prove anything.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{FactoryValue, PARAMETERS, PositionScale};
 
-/// Parameter that reveals a restart of the drive. It is never saved, so only a restart restores its factory setting
-/// (manual, 182), and it has no effect on motion.
+/// Parameter by which a restart of the drive is detected. It is never saved, so only a restart restores its factory
+/// setting (manual, 182), and it has no effect on motion.
 pub(super) const RESTART_MARKER: u16 = HAND_DRIVE_WAIT;
 
 /// Angle in degrees by which a drive may readjust its position at power-up and after a stop (manual, 8.3).
 pub(super) const READJUSTMENT_DEG: f64 = 5.0;
 
-/// Facts of the drive before the supply is switched off.
+/// State of the drive before the supply is switched off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateBeforePowerOff {
     scale: Option<PositionScale>,

@@ -48,7 +48,7 @@ impl TestTarget {
 }
 
 impl Outcome {
-    /// Returns the number of steps by which the position misses the target.
+    /// Returns the deviation of the position from the target in steps.
     pub fn position_deviation(&self) -> i64 {
         i64::from(self.position) - i64::from(self.target)
     }

@@ -1,4 +1,4 @@
-//! The run against possible reports of a drive, step by step, without a drive.
+//! Tests of the set-up with reports of a simulated drive, step by step.
 
 mod facts;
 mod standstill;
@@ -40,7 +40,7 @@ fn at(seen: &mut DriveFacts, position: i32) {
     seen.position = Some(position);
 }
 
-/// Makes the drive do what is requested.
+/// Applies a request to the simulated drive.
 #[track_caller]
 fn apply_command(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
     axis.begin_request(ask.clone(), seen);
@@ -102,7 +102,7 @@ fn enter_spindle(axis: &mut Axis) {
     axis.set_entries(LengthEntries { pitch: "4".to_owned(), ..axis.entries().clone() });
 }
 
-/// Goes past the step with the spindle: the confirmed pitch applies from then on.
+/// Completes the step with the spindle, after which the confirmed pitch applies.
 #[track_caller]
 fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
     next(axis, seen, AxisStep::Confirm);
@@ -144,7 +144,7 @@ fn rewritten_parameters_are_reported_once() {
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
-/// Goes from the beginning to the step with the slow jog: 4 mm per turn, a step of 0.01 mm.
+/// Runs the set-up up to the slow jog, with 4 mm per turn and a step of 0.01 mm.
 fn at_jog_step() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(152, 1)]));

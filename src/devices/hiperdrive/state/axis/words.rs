@@ -194,7 +194,7 @@ pub fn differences(seen: &DriveFacts) -> Option<Text> {
     (!all.is_empty()).then(|| TEXTS.text("hd_axis.unsaved").with_list("differences", all))
 }
 
-/// Describes the outcome of writing values back, or returns `None` if none were written back.
+/// Describes the outcome of restoring values, or returns `None` if none were restored.
 pub fn write_back_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     if axis.returned.is_empty() {
         return None;

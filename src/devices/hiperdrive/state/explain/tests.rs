@@ -1,4 +1,4 @@
-//! The texts about HIPERDRIVE drives: a sentence on what happened and one on what to do, in both languages.
+//! Tests of the texts about HIPERDRIVE drives: what happened and what to do, in both languages.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ fn number(number: u16) -> ParameterNumber {
     ParameterNumber::new(number).unwrap()
 }
 
-/// Sentences, with nothing left open in them.
+/// Checks that texts are complete sentences without unfilled arguments.
 #[track_caller]
 fn assert_complete(text: &Text, sentences: usize) {
     for words in [text.to_string_in(Language::English), text.to_string_in(Language::German), text.terminal_text()] {

@@ -1,4 +1,4 @@
-//! Edits: the effect of each on the edited values, and the reasons for rejecting one.
+//! Edits, their effects on the edited values, and the reasons why they are rejected.
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;

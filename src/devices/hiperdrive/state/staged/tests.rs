@@ -1,4 +1,4 @@
-//! Edits, steps and drafts of a HIPERDRIVE.
+//! Tests of edits, undo steps and drafts of a HIPERDRIVE.
 
 use super::{Edit, EditError, EditFinding, LimitsPolicy, SavedEdit, StagedEdits, ValueDifference};
 use crate::app::PendingEdits;
@@ -15,7 +15,7 @@ fn image(values: &[(u16, i64)]) -> Image {
     Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
 }
 
-/// Returns the image of a drive with factory scaling and limits of 511 turns, a speed, and a step of its own keys.
+/// Returns the image of a drive with factory scaling, limits of 511 turns, a speed and a jog step.
 fn read() -> Image {
     image(&[(24, 0), (154, 256), (156, 1), (158, -33_488_896), (160, 33_488_896), (166, 350), (170, 4096), (186, 20)])
 }

@@ -1,4 +1,4 @@
-//! Reading of the status queue. 50h removes a code from the encoder, so a lost reply may have contained one. For this
+//! Reading the status queue. 50h removes a code from the encoder, so a lost reply may have contained one. For this
 //! reason, late replies are accepted, and codes that may have been lost are counted.
 
 use super::Master;

@@ -165,7 +165,7 @@ impl Master<'_> {
         Ok(trailing)
     }
 
-    /// Returns the reply received so far, or `None` while it may still be the echo.
+    /// Returns the reply received so far, or `None` while the bytes may still be the echo.
     fn strip_echo<'l>(&self, line: &'l [u8], frame: &MaskableFrame) -> Option<&'l [u8]> {
         self.station.line.echo.strip_echo(line, frame.bytes())
     }

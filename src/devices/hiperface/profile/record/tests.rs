@@ -1,10 +1,10 @@
-//! The user's text is parsed, the written text is parsed again, and errors are named.
+//! Tests of handwritten profiles, round trips and error messages.
 
 use super::*;
 use crate::profile::testing::{assert_edit_in_place, edit_profile};
 use crate::profile::{ProfileDocument, ProfileError};
 
-/// Profile as a user may write it.
+/// Profile as written by a user.
 const SHORT: &str = r#"(
     schema: 1, device: "hiperface",
     identity: (serial_number: "A1", encoder_type: 0x37),
@@ -12,7 +12,7 @@ const SHORT: &str = r#"(
     fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
 )"#;
 
-/// Returns the same profile as written by another user, with comments; with CR LF line ends.
+/// Returns the same profile with the comments of a user and CR LF line ends.
 fn commented_profile() -> String {
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperface.ron")).replace('\n', "\r\n")
 }

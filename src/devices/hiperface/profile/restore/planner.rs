@@ -86,7 +86,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the first field that must change size although other fields follow it.
+    /// Returns the first field that must change its size although other fields follow it.
     pub(super) fn first_field_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
         let last = self.device.fields.last().map(|field| field.number);
         for target in &self.wanted {

@@ -1,4 +1,4 @@
-//! Plans by case.
+//! Tests of plans, case by case.
 
 use super::super::{Interface, MountingMark, Op, ProfileIdentity, RecordedValues};
 use super::*;
@@ -48,7 +48,7 @@ fn device(free_blocks: u8, fields: Vec<FieldImage>) -> DeviceState {
     }
 }
 
-/// Returns the operations in short: `C9>A9` define, `@3+2` store.
+/// Returns the operations in short form: `C9>A9` defines a field, `@3+2` stores bytes.
 fn ops(profile: &HiperfaceProfile, device: &DeviceState, options: RestoreOptions) -> Result<Vec<String>, PlanError> {
     let restore = plan_restore(profile, device, options)?.common;
     let short = |op: &Op| match op {

@@ -1,5 +1,5 @@
-//! The golden vectors as entered values: the request of the host, the bytes on the line, and the meaning of the
-//! encoder's reply.
+//! The golden vectors as values: the request of the host, the bytes on the line, and the meaning of the encoder's
+//! reply.
 
 use super::bytes;
 use crate::devices::hiperface::protocol::*;

@@ -1,4 +1,4 @@
-//! The encoder at the serial line of the virtual adapter, as seen by a host.
+//! Tests of the encoder at the serial line of the virtual adapter from the perspective of a host.
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::Host;

@@ -1,4 +1,4 @@
-//! The golden vectors and the manual's example, the rejections, the queue and the wear.
+//! Tests of the golden vectors, the manual's example, rejections, the status queue and wear.
 
 use super::*;
 use crate::devices::hiperface::protocol::{Command, StatusCode};

@@ -1,4 +1,4 @@
-//! Noise, silence, a failing supply; and no input stops the line from working.
+//! Tests of noise, silence, a failing supply and arbitrary input.
 
 use proptest::prelude::{Just, Strategy, any, prop_oneof, proptest};
 
@@ -105,7 +105,7 @@ fn bytes_received_before_opening_are_discarded() {
     host.expect("40 50 10", "40 50 00 10");
 }
 
-/// Returns random bytes, and sometimes a valid beginning or a whole request.
+/// Returns random bytes, sometimes with a valid beginning or a whole request.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         proptest::collection::vec(any::<u8>(), 0..200),

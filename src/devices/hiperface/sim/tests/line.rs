@@ -1,4 +1,4 @@
-//! Timing, gaps, echo, formats, several encoders.
+//! Tests of timing, gaps, echoes, character formats and several encoders.
 
 use super::*;
 use crate::units::{Baud, Parity};

@@ -1,5 +1,5 @@
-//! The virtual encoder as seen by a host, in virtual time. Expected bytes are the manual's and the reference's; none is
-//! computed by the code under test.
+//! Tests of the virtual encoder from the perspective of a host, in virtual time. Expected bytes are the manual's and
+//! the reference's; none is computed by the code under test.
 
 mod at_adapter;
 mod commands;
@@ -15,7 +15,7 @@ use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
 
-/// Host at the line: it receives until the line is idle, then keeps the dead time.
+/// Host that receives until the line is idle and then observes the dead time.
 struct Host {
     bus: Bus,
     now: Moment,
@@ -44,7 +44,7 @@ impl Host {
         self.bus.on_bytes(self.now, &parse_hex(request).unwrap());
     }
 
-    /// Returns everything that arrives until nothing more will, as hex, and when the last byte arrived.
+    /// Returns all bytes as hex until the line is idle, and the time of the last one.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.bus.poll_at() {
@@ -70,7 +70,7 @@ impl Host {
         assert_eq!(self.ask(request), reply, "reply to {request}");
     }
 
-    /// Returns the time from the first bit of the request to the last of the reply.
+    /// Returns the time from the first bit of the request to the last bit of the reply.
     fn duration(&mut self, request: &str) -> Duration {
         let start = self.now;
         self.send(request);
@@ -96,7 +96,7 @@ impl Host {
     }
 }
 
-/// Returns an encoder with eight blocks of memory and no field, as in the manual's example.
+/// Returns an encoder with eight blocks of memory and no fields, as in the manual's example.
 fn blank() -> Config {
     let mut config = Config::default();
     config.model.user_blocks = 8;

@@ -1,11 +1,10 @@
-//! Figure 38: not listening, listening with factory settings, not listening, listening with the stored ones; 57h and
-//! 67h.
+//! Tests of figure 38: deaf, factory settings, deaf, stored settings; and of commands 57h and 67h.
 
 use super::*;
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
-/// Returns an encoder with 19200 8E1 stored, power-cycled just now.
+/// Returns an encoder with stored settings of 19200 8E1 that has just been power-cycled.
 fn restarted() -> Host {
     let mut host = Host::with("settings=0xE5");
     host.bus.power_cycle(host.now);

@@ -1,4 +1,4 @@
-//! Actions of the user in the commutation assistant.
+//! Handling the user's actions in the commutation assistant.
 
 use super::outcome::check_can_read;
 use super::{CommutationAction, VectorSlot};

@@ -71,7 +71,7 @@ fn is_filler(bytes: &[u8]) -> bool {
     FILLERS.iter().any(|filler| bytes.iter().all(|byte| byte == filler))
 }
 
-/// Returns whether the location contains a complete record that a new record may replace.
+/// Returns whether the location contains a complete record, which a new record may replace.
 fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }

@@ -1,4 +1,4 @@
-//! The connection form: links in and out, and the messages about invalid entries.
+//! Tests of the connection form: conversion from and to links, and messages about invalid entries.
 
 use super::*;
 use crate::app::Language;

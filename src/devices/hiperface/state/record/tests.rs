@@ -1,4 +1,4 @@
-//! Recordings of positions with known times and values, over hours.
+//! Tests of long recordings with known times and values.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
     record.track.recorder.series().iter().find(|line| line.heading == heading).unwrap()
 }
 
-/// Returns the time in nanoseconds, value in the samples' own unit, flags.
+/// Returns the time in nanoseconds, the value in the unit of the samples, and the flags of each sample.
 fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
     let history = record.track.recorder.history(line).unwrap();

@@ -1,4 +1,4 @@
-//! Words with an echo (reference 4), including those whose echo may be the same as the word of a busy encoder
+//! Words that the encoder echoes (reference 4), including those whose echo may equal the word of a busy encoder
 //! (reference 6.11a).
 //!
 //! The echo of a word that sets cam 0, the mask, the shift or a program has code 0. The word of a busy encoder has the
@@ -14,7 +14,7 @@ use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
-/// IN word of a busy encoder without further bits. The echo is the same if the start of cam 0 is set to 0.
+/// IN word of a busy encoder without data bits. The echo is the same if the start of cam 0 is set to 0.
 const BUSY: u32 = 0xC000_0000;
 /// Maximum number of attempts to set an edge of cam 0. None of the attempts stores the edge.
 const MAX_ATTEMPTS: u32 = 4;

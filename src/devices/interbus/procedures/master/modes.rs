@@ -11,7 +11,7 @@ use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupM
 /// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`: not
 /// documented).
 const VALUE_CLEAR_TIMEOUT: Duration = Duration::from_millis(300);
-/// Number of additional readings, because the first one may return an old word.
+/// Number of additional readings, because the first reading may return an old word.
 const EXTRA_READINGS: u32 = 2;
 const READING_INTERVAL: Duration = Duration::from_millis(10);
 /// Time for which the known mode stays valid after a step of a job that returned the encoder to it.
@@ -206,7 +206,7 @@ impl Master<'_> {
         Err(Error::NoMode { wanted, is })
     }
 
-    /// Returns the encoder to the mode in which it was found.
+    /// Returns the encoder to its original mode.
     fn lead_back(&mut self) -> Result<(), Error> {
         if self.out.is_none() {
             return Ok(());

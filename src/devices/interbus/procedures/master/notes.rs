@@ -51,7 +51,7 @@ impl Master<'_> {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
 
-    /// If an interrupted run left the encoder in the given mode, marks the original mode as the one to return to.
+    /// Marks the original mode as the one to return to, if an interrupted run has left the encoder in the given mode.
     pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
         if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_modes_to_restore()) {
             return Ok(());
@@ -96,7 +96,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Records that settings of another program were stored when the encoder was returned to operation.
+    /// Records that the return to operation stored settings of another program.
     pub(super) fn note_foreign_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;

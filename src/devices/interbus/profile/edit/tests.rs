@@ -1,4 +1,4 @@
-//! Plans of edits: the writes, their order, and rejections.
+//! Tests of planned edits: the writes, their order, and rejections.
 
 use super::super::test_profiles::{cam, cam_between, image, image_with, logbook_note, parse_item, program, value};
 use super::super::{Direction, ItemValue};
@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{GearError, OutOfRange, WindowShift};
 
 use ItemValue::Number;
 
-/// Returns the parameters that are sent, in their order.
+/// Returns the parameters in the order in which they are sent.
 fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
     match plan_edits(device, wanted).unwrap().ops.as_slice() {
         [Op::Parameterise(changes)] => changes.iter().map(|change| (change.parameter, change.to)).collect(),

@@ -6,7 +6,7 @@ use super::{CamNames, Scale, Unit};
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::CamNumber;
 
-/// Returns the active cams of all known programs as a table in machine units. Semicolons separate the columns if a
+/// Formats the active cams of all known programs as a table in machine units. Semicolons separate the columns if a
 /// decimal comma is used, and commas otherwise. Reading the table back yields the same steps.
 pub fn emit(image: &Image, names: &CamNames, scale: &Scale, decimal_comma: bool) -> String {
     let separator = if decimal_comma { ';' } else { ',' };

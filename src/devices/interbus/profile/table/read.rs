@@ -1,4 +1,4 @@
-//! Parsing of a table into rows. The crate csv-core splits the lines, and each edge is rounded to the nearest step.
+//! Parsing a table into rows. The crate csv-core splits the lines, and each edge is rounded to the nearest step.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -129,7 +129,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Adds a note for each name that has several pulses, since every pulse uses up one cam.
+    /// Adds a note for each name with several pulses, because every pulse takes up a cam.
     fn note_repeated_names(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();

@@ -1,4 +1,4 @@
-//! Tables from spreadsheets and drawings, with their errors.
+//! Tests of tables from spreadsheets and drawings, and of errors in them.
 
 use super::{CamTable, Column, TableNote, TableOptions, TableProblem, TableProblemKind, emit_table};
 use crate::analysis::capture::Delimiter;

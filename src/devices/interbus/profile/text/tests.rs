@@ -1,4 +1,4 @@
-//! The text, written and parsed, in the form of a user, and its errors.
+//! Tests of handwritten profiles, round trips and error messages.
 
 use super::super::test_profiles::{cam, cam_between, profile, program};
 use super::*;

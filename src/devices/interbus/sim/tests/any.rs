@@ -1,4 +1,4 @@
-//! With arbitrary input: no panic, and the invariants hold.
+//! Property tests with arbitrary input: nothing panics, and the invariants hold.
 
 use proptest::prelude::*;
 
@@ -7,7 +7,7 @@ use super::*;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::sim::ByteDevice;
 
-/// Returns the words, with more valid ones than by chance.
+/// Generates words, more of them valid than random ones would be.
 fn word() -> impl Strategy<Value = u32> {
     let of_parameters = (0_u32..16, 0_u32..0x3000).prop_map(|(code, data)| code << 25 | data);
     let of_cams = (0x20_u32..0x70, any::<u32>()).prop_map(|(code, data)| code << 24 | data & 0xFF_FFFF);

@@ -1,9 +1,9 @@
-//! Cam programs (reference 5 and 7).
+//! Tests of cam programs (reference 5 and 7).
 
 use super::*;
 use crate::devices::interbus::protocol::{Cam, StartupMode, Value};
 
-/// A step is two positions of the disc.
+/// Settings with two disc positions per step.
 const SETTINGS: &str = "steps=4096&revolutions=1&position=200";
 
 fn at(position: i32) -> i32 {

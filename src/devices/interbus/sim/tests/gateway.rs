@@ -1,4 +1,4 @@
-//! Modbus/TCP bytes, written by hand.
+//! Tests with handwritten Modbus/TCP frames.
 
 use super::*;
 use crate::sim::ByteDevice;
@@ -13,7 +13,7 @@ impl Host {
         Host { gateway: Gateway::new(&config(&format!("stale=0&busy=0&{query}"))), now: Moment::START }
     }
 
-    /// Returns another client of the same gateway.
+    /// Creates another client of the same gateway.
     fn second_client(&self) -> Host {
         Host { gateway: self.gateway.new_connection(), now: self.now }
     }

@@ -1,5 +1,5 @@
-//! The virtual encoder as seen by a master, in virtual time. Expected words are the reference's; none is computed by
-//! the code under test.
+//! Tests of the virtual encoder from the perspective of a master, in virtual time. Expected words are the reference's;
+//! none is computed by the code under test.
 
 mod any;
 mod cams;
@@ -22,7 +22,7 @@ struct Master {
 }
 
 impl Master {
-    /// Creates a master with the query of a `sim:` link; without old and busy words, unless the query sets them.
+    /// Creates a master from the query of a `sim:` link, without stale and busy words unless the query configures them.
     fn with(query: &str) -> Self {
         let config = config(&format!("stale=0&busy=0&{query}"));
         Master { encoder: Encoder::new(&config, 0), now: Moment::START }
@@ -36,7 +36,7 @@ impl Master {
         self.encoder.read(self.now).unwrap()
     }
 
-    /// Writes words, and finds the IN word that belongs to each.
+    /// Writes words and compares the IN word after each of them.
     #[track_caller]
     fn exchange(&mut self, words: &[(u32, u32)]) {
         for (out, expected) in words {
@@ -46,7 +46,7 @@ impl Master {
         }
     }
 
-    /// Writes words of which none is rejected.
+    /// Writes words and checks that none is rejected.
     #[track_caller]
     fn put(&mut self, words: &[u32]) {
         for word in words {
@@ -64,7 +64,7 @@ impl Master {
         self.encoder.set_shaft_position(self.now, place);
     }
 
-    /// Returns the position, at a position of the disc.
+    /// Returns the position at a disc position.
     fn position(&mut self, place: i32) -> u32 {
         self.set_shaft_position(place);
         self.read()

@@ -1,4 +1,4 @@
-//! Read-outs (reference 3 and 7).
+//! Tests of read-outs (reference 3 and 7).
 
 use super::*;
 

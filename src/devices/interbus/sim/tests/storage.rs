@@ -1,4 +1,4 @@
-//! The EEPROM: what it stores, what a loss of power loses, and its wear (reference 3, `U`).
+//! Tests of the EEPROM: stored values, loss of power, and wear (reference 3, `U`).
 
 use super::*;
 use crate::devices::interbus::protocol::StartupMode;

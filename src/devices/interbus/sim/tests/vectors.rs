@@ -1,5 +1,5 @@
-//! The golden vectors of reference 7 through the gateway's bytes: every OUT word is written as in the reference, and
-//! the IN word is its exact echo, or the value in the reference.
+//! Tests of the golden vectors of reference 7 at the gateway: every OUT word is written as in the reference, and the IN
+//! word is its exact echo or the value in the reference.
 
 use super::gateway::Host;
 

@@ -17,7 +17,7 @@ const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
 /// Maximum number of grid lines. No chart has space for more.
 const MAX_TICKS: usize = 400;
 
-/// Returns the smallest number of the series 1, 2, 5, 10, 20, 50 and so on that is at least `at_least`.
+/// Returns the smallest number in the series 1, 2, 5, 10, 20, 50… that is at least `at_least`.
 pub fn round_up_1_2_5(at_least: f64) -> f64 {
     if !at_least.is_finite() || at_least <= 0.0 {
         return 1.0;

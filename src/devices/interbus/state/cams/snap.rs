@@ -1,4 +1,4 @@
-//! Snapping of a dragged edge to other cams and to grid lines.
+//! Snapping a dragged edge to other cams and to grid lines.
 
 use super::{Chart, DragTarget, edge_value, grid};
 use crate::devices::interbus::profile::{Edge, Scale};

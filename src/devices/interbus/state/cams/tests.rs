@@ -1,4 +1,4 @@
-//! Charts: active positions, targets of snapping, results of dragging.
+//! Tests of charts: active positions, snap targets, results of drags.
 
 mod session;
 
@@ -27,7 +27,7 @@ fn program() -> ProgramNumber {
     ProgramNumber::new(1).unwrap()
 }
 
-/// Returns a profile of 1000 steps with these cams of program 1.
+/// Returns a profile of 1000 steps with the given cams in program 1.
 fn staged(cams: &[(u8, u32, u32)]) -> StagedEdits {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };

@@ -1,4 +1,4 @@
-//! Every error states what happened and what to do, in both languages and with the facts in it.
+//! Tests that every error states what happened and what to do, in both languages and with its facts.
 
 use std::path::Path;
 

@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Progra
 /// An edit as it is stored. It contains only the resulting value, with numbers as in the manual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedEdit {
-    /// Steps and turns, which form a gear.
+    /// A gear, given by its steps and turns.
     Gear(u32, u32),
     /// Direction, 3 clockwise or 4 counterclockwise.
     Direction(u32),

@@ -1,4 +1,4 @@
-//! Merging of edits with new base values.
+//! Merging edits with new base values.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Image;

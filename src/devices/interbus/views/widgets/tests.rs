@@ -1,4 +1,4 @@
-//! The widgets driven as a user would: by their accessible labels, with keys and pointer.
+//! Tests that operate the widgets like a user, through accessible labels, keys and pointer.
 
 mod cams;
 mod word_layout;

@@ -1,4 +1,4 @@
-//! The user's text is parsed, the written text is parsed again, and errors are named.
+//! Tests of handwritten profiles, round trips and error messages.
 
 use proptest::prelude::*;
 
@@ -44,7 +44,7 @@ fn a_handwritten_profile_parses() {
     assert_eq!(named, of_family("ahm36"));
 }
 
-/// Returns everything that a frame can have, at once.
+/// Returns a profile whose frame has every possible feature.
 fn full_profile() -> SsiProfile {
     let error = |name: &str, clock, meaning, active_low| ErrorBit {
         name: name.to_owned(),

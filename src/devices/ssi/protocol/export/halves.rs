@@ -1,4 +1,5 @@
-//! Decoder for controllers without 64-bit words. A frame is one double word or two, and a position is a 32-bit number.
+//! Decoder source for controllers without 64-bit words. A frame is one double word or two, and a position is a 32-bit
+//! number.
 //!
 //! The decoder is available as IEC 61131-3 structured text and as an SCL source file for TIA Portal (S7-1200 and
 //! S7-1500).
@@ -110,7 +111,7 @@ impl SplitWordDialect {
         Ok(SplitWordDialect { language, is_wide: layout.clock_count() > HALF_BITS })
     }
 
-    /// Returns the text of a comment that states which bit holds the first bit of a frame.
+    /// Returns a comment about the location of the first bit of a frame.
     fn describe_first_bit(&self, layout: &Layout) -> String {
         let clocks = layout.clock_count();
         let (bit, name) = if self.is_wide { (clocks - 1 - HALF_BITS, "frame_high") } else { (clocks - 1, "frame") };

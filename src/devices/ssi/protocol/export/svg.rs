@@ -1,4 +1,4 @@
-//! Pictures of a layout: the frame as a row of cells, and the timing of a burst to scale.
+//! Pictures of a layout: the frame as a row of cells, and a timing diagram of a burst to scale.
 
 use super::text::{ExportText, TranslateFn};
 use crate::devices::ssi::protocol::explain::Role;
@@ -38,7 +38,7 @@ fn family(role: Role) -> &'static str {
     }
 }
 
-/// Returns the name of a clock's content in the language of `say`. See also [`Layout::role_name`].
+/// Returns the name of a clock's content, translated by `say`. See also [`Layout::role_name`].
 pub(super) fn role_name(layout: &Layout, role: Role, say: TranslateFn<'_>) -> String {
     match role {
         Role::Parity => say(&ExportText::ParityBit),

@@ -1,4 +1,4 @@
-//! Format strings and tables; the compiled decoders are tested separately (`tests/behaviour/ssi_export.rs`).
+//! Tests of format strings and tables. `tests/behaviour/ssi_export.rs` tests the compiled decoders.
 
 use super::*;
 use crate::devices::ssi::protocol::{ErrorBit, Families, FrameDescriptor, Layout, Parity, Settings};

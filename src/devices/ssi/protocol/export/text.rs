@@ -1,5 +1,4 @@
-//! Texts of the exports as values, which the window translates into its language. The command line uses the English
-//! texts below.
+//! Texts of the exports as values that the window can translate. The command line uses the English texts below.
 
 use std::fmt;
 

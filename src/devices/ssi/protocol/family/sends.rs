@@ -1,4 +1,4 @@
-//! Search for the settings with which a family sends a given frame.
+//! Search for the settings of a family that yield a given frame.
 
 use super::{Alignment, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::descriptor::FrameDescriptor;
@@ -101,7 +101,7 @@ mod tests {
         Some(resolved.layout.descriptor().clone())
     }
 
-    /// Returns every combination of these that the family can send.
+    /// Returns every combination of the given values that the family can send.
     fn spread(families: &Families, family: &Family) -> Vec<String> {
         let resolutions: &[&str] = match family.key.as_str() {
             "kh53" | "ttk70" => &["", ",step=500"],

@@ -57,7 +57,7 @@ pub struct ResolvedFrame {
     pub advice: Vec<SettingAdvice>,
 }
 
-/// A remark about a setting that was accepted although the manual does not mention it.
+/// A remark about an accepted setting that the manual does not mention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingAdvice {
     /// The manual lists other codes for this family.

@@ -1,4 +1,4 @@
-//! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
+//! Tests of the golden frames (reference section 8) and the pitfalls (section 6) with the settings of each family.
 
 use super::*;
 use crate::devices::ssi::protocol::{BitMeaning, Direction, Flags, FrameFinding, Location, Range, gray_to_binary};

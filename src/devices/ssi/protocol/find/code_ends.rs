@@ -1,4 +1,4 @@
-//! Search for the number of steps after which positions wrap, if it is not a power of two. The number is derived from
+//! Search for a number of steps that is not a power of two, after which positions wrap. The number is derived from
 //! numbers that never occur and from the size of backward jumps.
 
 use super::motion::{Motion, median};
@@ -9,8 +9,8 @@ const TRIED_COUNTS: usize = 40;
 /// Maximum information in bits by which another number of steps may exceed the best one to be considered equally good.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
-/// Returns the possible codes, each with two possible numbers of steps: the most common number and the last number that
-/// fit.
+/// Returns the possible codes, each with two possible numbers of steps: the most common one and the largest one that
+/// fits.
 pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
     let whole = read.reading.wrap_after();
     if whole == 0 || read.reading.steps.is_some() {
@@ -44,8 +44,8 @@ fn number_extremes(read: &FrameNumbers) -> Vec<(u64, u64)> {
     [0, few].into_iter().filter_map(pair).collect()
 }
 
-/// Returns the numbers of steps that make the motion most even: the most common one and the last one. Returns `None` if
-/// none of them is better than the full range of the bits.
+/// Returns the numbers of steps that make the motion most even: the most common one and the largest one. Returns `None`
+/// if none of them is better than the full range of the bits.
 fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
@@ -100,7 +100,7 @@ fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole
     Some((first, others.copied().unwrap_or(first)))
 }
 
-/// Returns the number of steps that results from the most frequent size of a jump.
+/// Returns the number of steps derived from the most frequent jump size.
 fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
     let mut jumps: Vec<u64> = motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     jumps.retain(|size| *size > motion.limit);

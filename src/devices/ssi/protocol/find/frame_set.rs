@@ -1,5 +1,5 @@
-//! Recorded frames as bits over time, which show the clocks that change, the clocks that are constant, and repetitions
-//! of a word. This module does not decode anything.
+//! Recorded frames as bits over time, from which changing clocks, constant clocks and repeated words are recognised.
+//! This module does not decode anything.
 
 use std::collections::HashMap;
 
@@ -41,7 +41,7 @@ impl FrameSet {
         FrameSet { words, clocks, bits }
     }
 
-    /// Returns the first words of frames that contain each word twice.
+    /// Returns the first of the two words in each frame.
     pub(super) fn first_words(&self, repeat: Repeat) -> Self {
         let words: Vec<u64> = self.words.iter().map(|word| word >> (self.clocks - repeat.word)).collect();
         FrameSet::new(&words, repeat.word)

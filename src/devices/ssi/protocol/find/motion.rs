@@ -1,10 +1,10 @@
-//! Measurement of how evenly a shaft turns if frames are interpreted as certain numbers. The measure is the information
+//! Information content of the motion that results from an interpretation of the frames. The measure is the information
 //! in each number that cannot be predicted from the previous ones. A wrong interpretation causes jumps, which cannot be
 //! predicted.
 
 /// Number of steps over which each median is taken.
 const BLOCK: usize = 16;
-/// Cost in bits of each group of similar differences that occurs.
+/// Cost in bits of each group of similar differences.
 const MODEL_BITS: f64 = 8.0;
 /// Information in bits of a frame without a valid number.
 const NONE_BITS: f64 = 16.0;

@@ -1,6 +1,6 @@
-//! Ways to read frames as numbers. A reading defines the clocks of the position, its code, whether the wires are
-//! swapped, and the number of steps after which positions wrap. The information of bits outside the position is added
-//! to that of the motion.
+//! Possible interpretations of frames as numbers. A reading defines the clocks of the position, its code, whether the
+//! wires are swapped, and the number of steps after which positions wrap. The information of bits outside the position
+//! is added to that of the motion.
 
 use std::ops::RangeInclusive;
 

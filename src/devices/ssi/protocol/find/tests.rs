@@ -1,5 +1,5 @@
-//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found; and recordings of
-//! encoders made by other means.
+//! Tests with frames of turning, stationary and disturbed shafts, generated from the layouts to be found, and with
+//! independent recordings.
 
 #[path = "../../../../../tests/tools/ssi_recordings.rs"]
 mod recordings;
@@ -14,7 +14,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
-/// Returns 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
+/// Returns 2000 frames of a shaft that turns slowly and not quite evenly, starting at a quarter of the range.
 fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     let mut rng = Rng::with_seed(7);
     let last = layout.position_code().last_position();
@@ -29,7 +29,7 @@ fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     frames.collect()
 }
 
-/// Compares the frames that encoders send, not the names of their settings.
+/// Returns whether two layouts describe the same frame, apart from names.
 fn is_same_frame(one: &Layout, other: &Layout) -> bool {
     let shape =
         |layout: &Layout| (layout.clock_roles().len(), layout.position_code().code(), layout.descriptor().coded);
@@ -170,7 +170,8 @@ fn disturbed_frames_do_not_hide_the_layout() {
     assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)));
 }
 
-/// Returns frames of a file of `tests/vectors/ssi_find`, with the intended positions; none if a frame is disturbed.
+/// Returns the frames of a file in `tests/vectors/ssi_find` with their intended positions, which are `None` for
+/// disturbed frames.
 fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
     let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split_once(' ').unwrap());
     let rows: Vec<(&str, &str)> = lines.collect();
@@ -179,7 +180,7 @@ fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
     (rows[0].0.len() as u8, frames, meant)
 }
 
-/// Returns whether it reads every undisturbed frame as intended.
+/// Returns whether a layout decodes every undisturbed frame as intended.
 fn reads(proposal: &LayoutProposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
     let read =
         |(frame, meant): (&u64, &Option<u64>)| meant.is_none_or(|own| proposal.layout.decode(*frame).position == own);

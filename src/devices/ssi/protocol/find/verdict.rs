@@ -1,5 +1,5 @@
-//! Assessment of the classes: whether the result is certain, how well each class fits, and which motion would
-//! distinguish them.
+//! Assessment of the classes: the certainty of the result, the fit of each class, and the motion that would distinguish
+//! them.
 
 use super::frame_set::FrameSet;
 use super::members::{LayoutCandidate, has_only_even_steps};
@@ -42,7 +42,7 @@ pub(super) fn search_uncertainty(words: &FrameSet, groups: &[Group]) -> Option<S
     (!proven).then_some(SearchUncertainty::Open)
 }
 
-/// Returns whether many jumps have the same size, which indicates a wrong code and not disturbances.
+/// Returns whether many jumps have the same size, which indicates a wrong code rather than disturbances.
 fn has_uniform_jumps(read: &FrameNumbers) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
@@ -112,7 +112,7 @@ fn step_count_bounds(read: &FrameNumbers) -> Option<(u64, u64)> {
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 
-/// Returns whether the step sizes vary enough to show that a lower bit is missing.
+/// Returns whether the step sizes vary so much that a missing lower bit would show.
 pub(super) fn has_varied_steps(read: &FrameNumbers) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);

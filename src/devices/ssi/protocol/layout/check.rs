@@ -275,7 +275,7 @@ fn word_parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[Bi
     Ok([high, low])
 }
 
-/// Moves the bits of a code word to their locations.
+/// Moves the bits of a code word to their places in a frame.
 fn place_bits(parts: &[BitPart; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }

@@ -1,11 +1,11 @@
-//! All possible layouts, to a frame and back; and impossible ones, with the reason.
+//! Tests that possible layouts round-trip through a frame, and that impossible ones are rejected with a reason.
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::devices::ssi::protocol::{BitMeaning, Code, ErrorBit, Fraction, Parity, Range, Repeat};
 
-/// Returns any possible frame, with error bits, zeros, repetition, parity, and any code.
+/// Generates possible frames with error bits, zeros, repetition, parity, and any code.
 pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),

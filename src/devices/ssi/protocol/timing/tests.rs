@@ -1,4 +1,4 @@
-//! Times of the reference, sections 1 and 5.
+//! Tests of the times in the reference, sections 1 and 5.
 
 use super::*;
 use crate::devices::ssi::protocol::Families;

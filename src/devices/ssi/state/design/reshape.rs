@@ -1,9 +1,9 @@
-//! Adaptation of a frame to other positions or another code. The frame becomes longer or shorter in the way in which a
-//! user would redraw it.
+//! Adaptation of a frame to a different position range or code. The frame becomes longer or shorter in the way in which
+//! a user would redraw it.
 
 use crate::devices::ssi::protocol::{Code, FrameDescriptor, LayoutError, PositionCode, Range};
 
-/// Returns the frame with other positions or another code. If there are zeros after the position, they absorb the
+/// Returns the frame with a different position range or code. If there are zeros after the position, they absorb the
 /// change. Otherwise, the parts after the position move, and the frame becomes longer or shorter.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Words of an AFS60: 18 bits of position, then ERRDIG, ERRSI and ERRSYNC (reference section 8).
+//! Tests with words of an AFS60: 18 bits of position, then ERRDIG, ERRSI and ERRSYNC (reference section 8).
 
 use super::*;
 use crate::devices::ssi::protocol::{Families, FrameFinding, Settings};

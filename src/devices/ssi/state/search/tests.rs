@@ -1,4 +1,4 @@
-//! Files with frames: as people write them down, as this program does, and as logic analysers do.
+//! Tests of files with frames, written by users, by this program and by logic analysers.
 
 use super::*;
 
@@ -70,7 +70,7 @@ fn the_table_of_positions_has_frames() {
     assert!(few.starts_with("Line 3: 14237420 has 24 bits") && few.contains("23 clocks"), "{few}");
 }
 
-/// A burst of 4 clocks at 500 kHz that brings 1011, as a logic analyser sees it: reference section 1.
+/// A burst of 4 clocks at 500 kHz that transfers 1011, as recorded by a logic analyser (reference section 1).
 const EDGES: [(f64, &str); 13] = [
     (0.0, "1,1"),
     (40.0, "0,1"),

@@ -1,5 +1,5 @@
-//! Moving of parts of a frame. The result is always a possible frame. If the requested clock is not possible, the
-//! nearest possible clock on the side of the current one is used.
+//! Moving parts of a frame. The result is always a possible frame. If the requested clock is not possible, the nearest
+//! possible clock on the side of the current one is used.
 
 use super::{Handle, PositionParts, has_bit_patterns};
 use crate::devices::ssi::protocol::{FrameDescriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};

@@ -1,4 +1,4 @@
-//! Frames by their cells; moves compared with frames of the reference (section 8), and moved back.
+//! Tests of the cells of frames, and of moves compared with frames of the reference (section 8).
 
 use proptest::prelude::*;
 
@@ -30,7 +30,7 @@ fn kinds(strip: &Strip) -> Vec<(Kind, u8, u8)> {
     strip.fields().iter().map(|field| (field.kind, field.first, field.last)).collect()
 }
 
-/// Returns any valid layout, with error and parity bits anywhere.
+/// Generates valid layouts with error and parity bits anywhere.
 fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
@@ -79,7 +79,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
     )
 }
 
-/// Returns the frame without an area that has no effect: here it is the whole word.
+/// Returns the frame without an area that has no effect because it covers the whole word.
 fn without_area(layout: &Layout) -> FrameDescriptor {
     let mut descriptor = layout.descriptor().clone();
     if !descriptor.shift_right && descriptor.coded == GrayCoverage::Position {

@@ -1,4 +1,4 @@
-//! Bursts in time: the times of the reference, and an axis that shows every event.
+//! Tests of timing diagrams: the times of the reference, and an axis that shows every event.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! The timing of a burst to scale: clock line, data line with its bits, and the times between them.
+//! A timing diagram of a burst to scale: clock line, data line with its bits, and the times between them.
 //!
 //! * **Size**: the available width, and the height required by the labels.
 //! * **Keyboard**: none. Tab skips the diagram.

@@ -1,4 +1,4 @@
-//! With arbitrary input: no panic, and the target still answers.
+//! Property tests with arbitrary input: nothing panics, and the target still replies.
 
 use proptest::prelude::*;
 
@@ -12,7 +12,7 @@ fn answers(host: &mut Host) {
     host.is_asking("0E 03 20 64 24 01 30 11", "8E 00 00 00 67 12");
 }
 
-/// Returns the frames of the reference, of which parts are replaced.
+/// Generates the frames of the reference with random changes.
 fn corrupt_frame() -> impl Strategy<Value = Vec<u8>> {
     let messages = [OPEN, CLOSE, "0E 03 20 65 24 01 30 6B", "10 03 20 64 24 01 30 2F 01 00", "01 02 20 01 24 01"];
     let message = proptest::sample::select(messages.to_vec()).prop_map(|text| unconnected(&bytes(text)));

@@ -1,4 +1,4 @@
-//! The cyclic connection (reference 7 and 9).
+//! Tests of the cyclic connection (reference 7 and 9).
 
 use super::*;
 
@@ -41,7 +41,7 @@ fn published_connection_matches() {
     assert_eq!(host.datagrams(), []);
 }
 
-/// Returns the published request with other bytes in it.
+/// Returns the published request with some bytes replaced.
 fn open_with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(OPEN.to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from}");

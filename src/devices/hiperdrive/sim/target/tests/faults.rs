@@ -1,4 +1,4 @@
-//! Injected faults.
+//! Tests of injected faults.
 
 use super::*;
 
@@ -39,7 +39,7 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
     assert_eq!(host.target.with_station(|station| station.save_count()), 2);
 }
 
-/// Half of the values are saved when the supply returns: by number, 152 but not 186.
+/// Half of the values, in the order of their numbers, are saved when the supply returns: 152, but not 186.
 #[test]
 fn power_can_fail_during_a_save() {
     let mut host = Host::new("fault=die-in-store:2");

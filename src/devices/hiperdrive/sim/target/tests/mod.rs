@@ -1,4 +1,4 @@
-//! The target against packets of the reference and packets composed by hand: input and expected output are bytes.
+//! Tests of the target with packets of the reference and packets composed by hand. Input and expected output are bytes.
 
 mod any;
 mod connections;
@@ -39,7 +39,7 @@ fn config(query: &str) -> Config {
     Config::from_pairs(&query_pairs(query)).unwrap()
 }
 
-/// Builds a frame: command, session, data; status, context and options are 0.
+/// Builds a frame whose status, context and options are 0.
 fn frame(command: u16, session: u32, data: &[u8]) -> Vec<u8> {
     let length = u16::try_from(data.len()).unwrap();
     [&command.to_le_bytes()[..], &length.to_le_bytes(), &session.to_le_bytes(), &[0; 16], data].concat()
@@ -52,7 +52,7 @@ fn unconnected(message: &[u8]) -> Vec<u8> {
 }
 
 impl Host {
-    /// Nothing but a connection.
+    /// Creates a bare connection.
     fn bare(query: &str) -> Self {
         let target = Target::new(&config(query)).connect_from(PEER);
         Host { target, now: Moment::START, session: 0 }
@@ -80,14 +80,14 @@ impl Host {
         self.target.poll(self.now)
     }
 
-    /// Sends a frame in the session; returns the status of its reply, and the data.
+    /// Sends a frame in the session and returns the status and the data of its reply.
     fn frame(&mut self, command: u16, data: &[u8]) -> Option<(u32, Vec<u8>)> {
         let reply = self.bytes(&frame(command, self.session, data));
         let status = reply.get(8..12)?.try_into().unwrap();
         Some((u32::from_le_bytes(status), reply[24..].to_vec()))
     }
 
-    /// Sends a CIP request; returns the items of the reply from the CIP message on.
+    /// Sends a CIP request and returns the items of the reply, starting with the CIP message.
     fn items(&mut self, request: &str) -> String {
         let (status, data) = self.frame(0x6F, &unconnected(&bytes(request))).expect("no reply");
         assert_eq!(status, 0, "{request}");
@@ -100,7 +100,7 @@ impl Host {
         assert_eq!(self.items(request), reply, "{request}");
     }
 
-    /// Sends a ForwardOpen; returns the reply without the socket item after it.
+    /// Sends a ForwardOpen and returns the reply without the socket item.
     fn open(&mut self, request: &str) -> String {
         let reply = self.items(request);
         reply.split(" 00 80 10 00").next().unwrap().to_owned()
@@ -112,7 +112,7 @@ impl Host {
         host
     }
 
-    /// A packet of the connection 00020001.
+    /// Returns a packet of the connection 00020001.
     fn packet(&mut self, sequence: u32, header: u32, data: &[u8]) {
         self.packet_of(0x0002_0001, sequence, header, data);
     }
@@ -132,14 +132,14 @@ impl Host {
         self.target.on_datagram(self.now, FROM, &packet.concat());
     }
 
-    /// Sends the data of the reference for the one drive of an adapter: a control word, full speed and torque, 2.5
+    /// Sends a control word with the data of the reference for the drive of an adapter: full speed and torque, 2.5
     /// turns.
     fn word(&mut self, sequence: u32, control: u16) {
         let [low, high] = control.to_le_bytes();
         self.packet(sequence, 1, &[low, high, 100, 100, 0, 0x80, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     }
 
-    /// Sends words one after the other, three packets each; returns the next number.
+    /// Sends each word in three packets and returns the next number.
     fn words(&mut self, mut sequence: u32, words: &[u16]) -> u32 {
         for word in words {
             for _ in 0..3 {

@@ -1,4 +1,4 @@
-//! The last step if its own write is rejected or interrupted.
+//! Tests of the last step if its write is rejected or interrupted.
 
 use super::*;
 

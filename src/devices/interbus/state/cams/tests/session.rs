@@ -1,5 +1,6 @@
-//! A long session of edits: chart and table stay equal, and both agree with an independent model. The model stores a
-//! cam as its first position and its length around the range, and undoes by a list of all earlier states.
+//! Test of a long session of edits, in which chart and table must stay equal and agree with an independent model. The
+//! model stores a cam as its first position and its length around the range, and undoes by a list of all earlier
+//! states.
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -10,12 +11,12 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 use crate::devices::interbus::state::cams::{Chart, apply_drag};
 use crate::devices::interbus::state::staged::{Edit, StagedEdits};
 
-/// Steps of one session.
+/// Number of edits in the session.
 const STEPS: usize = 10_000;
 
-/// First position, length, and whether it works.
+/// First position and length of a cam, and whether it is active.
 type Own = (u32, u32, bool);
-/// Eight programs of eight cams.
+/// Eight programs of eight cams each.
 type Cams = [[Own; 8]; 8];
 
 struct Model {
@@ -37,7 +38,7 @@ enum Step {
     Copy(usize, usize),
     Mirror(usize),
     Rotate(usize, i64),
-    /// Program, and a cam in it.
+    /// Indices of a program and of one of its cams.
     Table(usize, usize, u32, u32),
     Undo,
     Redo,
@@ -65,7 +66,7 @@ impl Model {
         &self.past[self.at]
     }
 
-    /// Applies a step; nothing if it is rejected or does not change anything.
+    /// Applies a step, unless it is rejected or changes nothing.
     fn play_event(&mut self, step: &Step) {
         let range = self.range;
         let wrap = |at: i64| at.rem_euclid(i64::from(range)) as u32;
@@ -137,12 +138,12 @@ fn cam(cam: usize) -> CamNumber {
     CamNumber::new(cam as u8).unwrap()
 }
 
-/// Returns the stop of a cam with this start and length.
+/// Returns the stop of a cam with the given start and length.
 fn stop(start: u32, length: u32, range: u32) -> u32 {
     (start + length.min(range) - 1) % range
 }
 
-/// Applies the same step to the tested code.
+/// Applies the same step to the code under test.
 fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
     let edit = match *step {
         Step::Undo => {
@@ -187,7 +188,7 @@ fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
     assert_eq!(staged.apply_edit(&edit).is_err(), outside, "{step:?}");
 }
 
-/// Checks that the chart equals the table, and both equal the model.
+/// Checks that chart, table and model agree.
 fn compare(staged: &StagedEdits, model: &Model, program: usize) {
     let range = model.range;
     let chart = Chart::from_edits(staged, number(program)).unwrap();

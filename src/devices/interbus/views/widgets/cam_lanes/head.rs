@@ -1,4 +1,4 @@
-//! Head of a lane with the switch, the number, the name and the output indicator of its cam.
+//! Header of a lane with the switch, the number, the name and the output indicator of its cam.
 
 use egui::accesskit::Role;
 use egui::text::{LayoutJob, TextWrapping};

@@ -7,7 +7,7 @@ use crate::devices::interbus::state::cams::{PositionRange, VisibleRange};
 
 const RULER_HEIGHT: f32 = 20.0;
 const LANE_HEIGHT: f32 = 28.0;
-/// Maximum width of the heads in points.
+/// Maximum width of the lane headers in points.
 const MAX_HEAD_WIDTH: f32 = 208.0;
 const HEAD_PART: f32 = 0.34;
 /// Space to the right of the lanes for half of a ruler number.

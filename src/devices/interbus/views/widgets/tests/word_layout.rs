@@ -1,4 +1,4 @@
-//! The cam output word, its bits and the position's.
+//! Tests of the cam output word and its position bits.
 
 use egui_kittest::kittest::Queryable;
 

@@ -1,4 +1,4 @@
-//! Painting of a bit strip.
+//! Painting a bit strip.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 

@@ -1,4 +1,4 @@
-//! The strip of an SSI frame with keys and pointer.
+//! Tests of the strip of an SSI frame with keys and pointer.
 
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
@@ -20,7 +20,7 @@ fn layout(family: &str, settings: &Settings) -> Layout {
     settings.resolve(Families::built_in().find_by_key(family).unwrap()).unwrap().layout
 }
 
-/// Draws a frame that takes the user's changes.
+/// Draws a frame that accepts the user's changes.
 fn strip(layout: &Layout, width: f32) -> Harness<'static, Design> {
     let state = Design { strip: Strip::from_layout(layout), frame: Some(0), selected: None, events: Vec::new() };
     window(state, move |ui, state: &mut Design| {
@@ -91,7 +91,7 @@ fn focus_follows_the_zeros_between() {
     assert_eq!(value(&harness, "Start of the step bits"), "after clock 13");
 }
 
-/// Presses a handle, moves the pointer by this number of cells of 28 points, and releases it.
+/// Drags a handle by a number of cells, each 28 points wide.
 fn drag(harness: &mut Harness<'_, Design>, label: &str, cells: f32) {
     let from = harness.get_by_label(label).rect().center();
     harness.drag_at(from);

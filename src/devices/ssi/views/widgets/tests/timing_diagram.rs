@@ -1,4 +1,4 @@
-//! A burst in time by its accessible values and the pointer.
+//! Tests of the timing diagram with accessible values and the pointer.
 
 use std::time::Duration;
 
