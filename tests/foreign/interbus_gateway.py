@@ -27,6 +27,7 @@ class Gateway:
         self.requests = self.writes = 0
         # OUT as the gateway holds it, and the words that have not arrived at the encoder yet.
         self.out, self.coming = 0, collections.deque()
+        self.cams_since = None
 
     def note(self, line):
         if self.options.log:
@@ -60,6 +61,8 @@ class Gateway:
     def put(self, word):
         if word != self.out:
             self.note(f"W {word:08X}")
+        if word >> 24 in (0x40, 0x42) and self.cams_since is None:
+            self.cams_since = self.requests
         self.out = word
         self.coming.append((time.monotonic() + self.options.lag / 1000, word))
         self.pass_on()
@@ -87,6 +90,9 @@ class Gateway:
         self.requests += 1
         options = self.options
         if options.vanish_after is not None and self.requests > options.vanish_after:
+            return None
+        if options.vanish_writing is not None and self.cams_since is not None \
+                and self.requests > self.cams_since + options.vanish_writing:
             return None
         if options.silent_after is not None and self.requests > options.silent_after:
             return b""
@@ -158,6 +164,7 @@ def main():
     add("--second-master", type=every(lambda text: int(text, 16)), help="WORD or WORD:N: written behind every Nth word")
     add("--silent-after", type=int, help="requests after which nothing is answered")
     add("--vanish-after", type=int, help="requests after which the gateway is gone")
+    add("--vanish-writing", type=int, help="requests after the first write of a cam after which the gateway is gone")
     add("--garbage", action="store_true", help="answer random bytes")
     add("--foreign-reply", action="store_true", help="the reply to another transaction before each reply")
     add("--cut", type=int, help="the end of every Nth reply is missing")

@@ -15,7 +15,7 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
 /// Time limit longer than any test, to detect a hanging thread.
-pub(crate) const LONG: Duration = Duration::from_secs(20);
+pub(crate) const LONG: Duration = Duration::from_secs(60);
 
 pub(crate) struct Bench {
     pub(crate) worker: Worker<Hiperface>,

@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
-use encoder_studio::devices::ssi::protocol::{Code, Location, Range, SearchUncertainty};
+use encoder_studio::devices::ssi::protocol::{Code, LayoutProposal, Location, Range, SearchUncertainty};
 use encoder_studio::devices::ssi::state::strip::Handle;
 use encoder_studio::devices::ssi::state::{
     Edit, Encoder, Entry, ExportFormat, Field, FieldInput, SearchState, SsiAction as Ssi, TrialInput,
@@ -281,11 +281,17 @@ fn a_layout_found_live_can_be_adopted() {
     act(&mut desk, Ssi::Find);
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
-    // The end of 4096 turns was not passed.
-    assert_eq!(search.doubt, Some(SearchUncertainty::Open));
-    let members = &search.classes[0].members;
-    let place = members.iter().position(|own| own.family.as_ref().is_some_and(|(key, _)| key == "afm60")).unwrap();
-    act(&mut desk, Ssi::Take(0, place));
+    // The end of 4096 turns was not passed, so the result is not certain. How many classes are left depends on the angle
+    // that the shaft turned meanwhile.
+    assert!(matches!(search.doubt, Some(SearchUncertainty::Open | SearchUncertainty::Close)), "{:?}", search.doubt);
+    let is_afm60 = |member: &LayoutProposal| member.family.as_ref().is_some_and(|(key, _)| key == "afm60");
+    let (class, member) = search
+        .classes
+        .iter()
+        .enumerate()
+        .find_map(|(class, own)| Some((class, own.members.iter().position(is_afm60)?)))
+        .expect("the layout that the encoder has is among the classes");
+    act(&mut desk, Ssi::Take(class, member));
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "afm60");
     assert_eq!(own.design().profile.descriptor.code, Code::Gray);

@@ -33,7 +33,7 @@ use crate::texts;
 use crate::wire::{TestLink, Wire};
 
 /// Time limit longer than any test, to detect a hanging thread.
-pub(crate) const LONG: Duration = Duration::from_secs(20);
+pub(crate) const LONG: Duration = Duration::from_secs(60);
 /// The margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
