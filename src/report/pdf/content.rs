@@ -20,6 +20,10 @@ const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 /// Width of the labels of facts: 45 mm, and the distance to their values: 4 mm.
 const LABELS: f32 = 127.6;
 const LABEL_GAP: f32 = 11.3;
+/// Distance between two facts.
+const FACT_GAP: f32 = 2.5;
+/// Number of lines up to which a fact is not divided between two pages.
+const KEPT_LINES: usize = 6;
 /// Width of a paragraph.
 const MEASURE: f32 = 425.2;
 /// Points of a drawing unit, unless the drawing is wider than the page.
@@ -75,17 +79,21 @@ impl Flow<'_> {
         let style = cell_style(fact.style);
         let labels = self.lines(LABEL, &fact.label, LABELS);
         let values = self.lines(style, &fact.value, WIDTH - LABELS - LABEL_GAP);
-        let height = labels.len().max(values.len()) as f32 * BODY.line_height() + 2.5;
-        self.ensure(height);
+        let count = labels.len().max(values.len());
         let lower = (BODY.size - style.size) * 1.05;
-        for (lines, x, style, lower) in
-            [(labels, MARGIN, LABEL, 0.0), (values, MARGIN + LABELS + LABEL_GAP, style, lower)]
-        {
-            for (line, number) in lines.into_iter().zip(0_u16..) {
-                self.text_at(x, self.y + lower + f32::from(number) * BODY.line_height(), style, line);
+        // A short fact stays on one page.
+        self.ensure(count.min(KEPT_LINES) as f32 * BODY.line_height() + FACT_GAP);
+        for number in 0..count {
+            self.ensure(BODY.line_height());
+            if let Some(line) = labels.get(number) {
+                self.text_at(MARGIN, self.y, LABEL, line);
             }
+            if let Some(line) = values.get(number) {
+                self.text_at(MARGIN + LABELS + LABEL_GAP, self.y + lower, style, line);
+            }
+            self.y += BODY.line_height();
         }
-        self.y += height;
+        self.y += FACT_GAP;
     }
 
     fn place_section(&mut self, section: &Section) {
@@ -124,7 +132,7 @@ impl Flow<'_> {
             [Block::Paragraph(text), Block::Paragraph(_), ..] => self.paragraph_height(text),
             // A paragraph explains the part after it.
             [Block::Paragraph(text), after @ ..] => self.paragraph_height(text) + self.lead_height(after),
-            [Block::Facts(_), ..] => 2.0 * (BODY.line_height() + 2.5),
+            [Block::Facts(_), ..] => 2.0 * (BODY.line_height() + FACT_GAP),
             [Block::Table(table), ..] => TableLayout::new(self, table).lead_height(self),
             [Block::Drawing(drawing), ..] => drawing_height(drawing),
         }
@@ -212,4 +220,31 @@ fn drawing_scale(drawing: &Drawing) -> f32 {
 
 fn drawing_height(drawing: &Drawing) -> f32 {
     drawing.height as f32 * drawing_scale(drawing) + 8.5
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::flow::END;
+    use super::super::typeface::Typefaces;
+    use super::*;
+
+    #[test]
+    fn a_fact_longer_than_a_page_is_divided() {
+        let faces = Typefaces::load().unwrap();
+        let mut flow = Flow::new(&faces);
+        let words: Vec<String> = (0..300).map(|number| format!("line{number}")).collect();
+        flow.place_fact(&Fact::new("Note", words.join("\n")));
+        let texts = flow.pages.iter().flatten().filter_map(|mark| match mark {
+            PageMark::Text { y, text, .. } => Some((*y, text.clone())),
+            _ => None,
+        });
+        let (heights, texts): (Vec<f32>, Vec<String>) = texts.unzip();
+        assert!(heights.iter().all(|y| *y <= END), "{heights:?}");
+        let (label, lines): (Vec<_>, Vec<_>) = texts.into_iter().partition(|text| text == "Note");
+        assert_eq!((label.len(), lines), (1, words));
+        // A page has room for 728 points: 57 lines of 12.6 points.
+        assert_eq!(flow.pages.len(), 6);
+    }
 }

@@ -11,7 +11,7 @@ pub(super) const MARGIN: f32 = 51.02;
 pub(super) const BOTTOM: f32 = 62.36;
 /// Width of the content.
 pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * MARGIN;
-const END: f32 = PAGE.1 - BOTTOM;
+pub(super) const END: f32 = PAGE.1 - BOTTOM;
 /// Height of a line relative to the size of its font.
 const LINE_HEIGHT: f32 = 1.4;
 /// Height of the baseline below the top of a line, relative to the size of the font.

@@ -1,6 +1,8 @@
 //! Typefaces with the widths of their characters. Texts are set without kerning and ligatures, which the built-in fonts
 //! do not need at the sizes of a report.
 
+use std::borrow::Cow;
+
 use krilla::text::{Font, GlyphId, KrillaGlyph};
 use skrifa::MetadataProvider as _;
 use skrifa::instance::{LocationRef, Size};
@@ -33,9 +35,6 @@ pub(super) struct Run {
     pub(super) width: f32,
 }
 
-/// Stands for a character that no typeface has.
-const MISSING: char = '?';
-
 impl Typefaces {
     pub(super) fn load() -> Result<Self, PdfError> {
         let [text, strong, mono] = [fonts::TEXT, fonts::STRONG, fonts::MONOSPACE].map(Typeface::load);
@@ -53,24 +52,40 @@ impl Typefaces {
 
     /// Returns the typeface that has a character, preferably the given one, and its glyph with its advance in ems.
     fn glyph(&self, face: Face, character: char) -> (Face, u32, f32) {
-        let other = if face == Face::Mono { Face::Text } else { Face::Mono };
-        let shown = [(face, character), (other, character), (face, MISSING)];
-        let found = shown.into_iter().find_map(|(face, character)| {
+        let found = [face, Face::Mono, Face::Text].into_iter().find_map(|face| {
             let (glyph, advance) = self.face(face).glyph(character)?;
             Some((face, glyph, advance))
         });
         found.unwrap_or((face, 0, 0.5))
     }
 
+    /// Replaces each character that no typeface has by its code point, for example `[U+96FB]`.
+    fn displayable<'a>(&self, text: &'a str) -> Cow<'a, str> {
+        let is_missing =
+            |character: char| [Face::Text, Face::Mono].iter().all(|face| self.face(*face).glyph(character).is_none());
+        if !text.contains(is_missing) {
+            return Cow::Borrowed(text);
+        }
+        let mut shown = String::new();
+        for character in text.chars() {
+            if is_missing(character) {
+                shown.push_str(&format!("[U+{:04X}]", u32::from(character)));
+            } else {
+                shown.push(character);
+            }
+        }
+        Cow::Owned(shown)
+    }
+
     /// Returns the width of a text in points.
     pub(super) fn width(&self, face: Face, size: f32, text: &str) -> f32 {
-        text.chars().map(|character| self.glyph(face, character).2 * size).sum()
+        self.displayable(text).chars().map(|character| self.glyph(face, character).2 * size).sum()
     }
 
     /// Splits a text into parts of one typeface each.
     pub(super) fn runs(&self, face: Face, size: f32, text: &str) -> Vec<Run> {
         let mut runs: Vec<(Face, Run)> = Vec::new();
-        for character in text.chars() {
+        for character in self.displayable(text).chars() {
             let (own, glyph, advance) = self.glyph(face, character);
             if runs.last().is_none_or(|(last, _)| *last != own) {
                 let font = self.face(own).font.clone();
@@ -90,7 +105,7 @@ impl Typefaces {
         let mut lines = Vec::new();
         for paragraph in text.split('\n') {
             let (mut line, mut taken) = (String::new(), 0.0);
-            for word in paragraph.split_inclusive([' ', '·', '-', '/']) {
+            for word in self.displayable(paragraph).split_inclusive([' ', '·', '-', '/']) {
                 let own = self.width(face, size, word.trim_end());
                 if taken > 0.0 && taken + own > width {
                     lines.push(std::mem::take(&mut line).trim_end().to_owned());
@@ -123,5 +138,26 @@ impl Typeface {
         let glyph = self.bytes.charmap().map(character)?;
         let advance = self.bytes.glyph_metrics(Size::new(1.0), LocationRef::default()).advance_width(glyph)?;
         Some((glyph.to_u32(), advance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// U+96FB, U+52D5 and U+6A5F: the name of an electric motor in Japanese, which the built-in fonts do not contain.
+    #[test]
+    fn characters_without_a_glyph_are_printed_as_code_points() {
+        let typefaces = Typefaces::load().unwrap();
+        let printed = "[U+96FB][U+52D5][U+6A5F]/7 Größe Ω";
+        let text: String =
+            typefaces.runs(Face::Text, 9.0, "電動機/7 Größe Ω").into_iter().map(|run| run.text).collect();
+        assert_eq!(text, printed);
+        assert_eq!(typefaces.lines(Face::Text, 9.0, "電動機/7 Größe Ω", 1_000.0), [printed]);
+        // Each missing character becomes eight characters, which are broken like others.
+        let lines = typefaces.lines(Face::Strong, 9.0, "電動機", 60.0);
+        assert!(lines.len() > 1 && lines.concat() == "[U+96FB][U+52D5][U+6A5F]", "{lines:?}");
     }
 }
