@@ -27,6 +27,19 @@ fn an_encoder_at_an_adapter_is_read_and_written() {
     assert_eq!(stores, 1, "a store is never repeated without a check");
 }
 
+/// The encoder has executed the store, so the host reads the byte back and does not store it again.
+#[test]
+fn a_store_whose_reply_is_lost_is_not_repeated() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.serial_adapter(&["--fields", FIELDS, "--lose-command", "4B"]) else { return };
+    let run = |words: &[&str]| bench.run(&[words, &["--link", &adapter.url, "--json"]].concat());
+    let written = run(&["write", "hiperface", "field:0@1", "AB", "--yes"]);
+    let stores = adapter.requests().iter().filter(|line| line.starts_with("40 4B")).count();
+    assert_eq!(stores, 1, "{written:?}");
+    assert_eq!(written.json()["verified"], json!(1), "{written:?}");
+    assert_eq!(run(&["read", "hiperface", "field:0@0+3"]).json()["value"], json!("08ABFF"));
+}
+
 /// Transfer 2 reaches the encoder, and its reply does not reach the host.
 #[test]
 fn a_lost_reply_is_requested_again() {
@@ -86,4 +99,8 @@ fn a_configuration_pin_at_an_adapter_is_read_and_written() {
     bench
         .run(&["read", "biss", "0x66", "--link", &format!("{}?pin=on&voltage=24", adapter.url)])
         .fails(2, &["voltage=24"]);
+    // The adapter waits for a reply for two seconds at most.
+    bench
+        .run(&["read", "biss", "0x66", "--link", &format!("{}?pin=on&timeout=2001", adapter.url)])
+        .fails(2, &["timeout=2001", "1 to 2000"]);
 }

@@ -59,6 +59,7 @@ class Adapter:
         self.heard = b""
         self.format = None
         self.transfers = 0
+        self.lost_command = options.lose_command
 
     def hear(self, data):
         self.heard += data
@@ -77,6 +78,9 @@ class Adapter:
         number = self.transfers
         reply = self.carry_out(op, body)
         if op == bridge.UART_TRANSFER and number in self.options.lose:
+            return
+        if op == bridge.UART_TRANSFER and body[9] == self.lost_command:
+            self.lost_command = None
             return
         if self.options.dead_from is not None and self.transfers > self.options.dead_from:
             return
@@ -127,6 +131,8 @@ class Adapter:
 def more(add):
     add("--lose", type=lambda text: [int(part) for part in text.split(",")], default=[], metavar="N,…",
         help="the replies of these transfers (0 is the first) do not reach the host")
+    add("--lose-command", type=lambda text: int(text, 16), metavar="HEX",
+        help="the first reply to this command of the encoder does not reach the host")
     add("--pin", action="store_true", help="the configuration pin of a kit encoder is at the line")
     add("--dead-from", type=int, metavar="N", help="no reply after this number of transfers")
     add("--supply", choices=["off", "on"], help="it switches the encoder's supply, which is like this at the start")

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::buses::bridge::procedures::{AdapterSerialLink, SupplyAfterSession};
+use encoder_studio::buses::bridge::procedures::{AdapterSerialLink, DeviceLine, SupplyAfterSession};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::hiperface::jobs::{Hiperface, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::Station;
@@ -20,8 +20,9 @@ fn session(settings: &[(&str, &str)]) -> (Session<Hiperface>, Arc<VirtualClock>,
     let pairs: Vec<_> = settings.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
     let adapter = Adapter::from_pairs(&pairs, attachable_kinds()).unwrap();
     let wire = SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone());
-    let line = ((station.format, MARGIN), (None, SupplyAfterSession::AsFound));
-    let link = AdapterSerialLink::new(Box::new(wire), clock.clone(), "test", line.0, line.1);
+    let line = DeviceLine { format: station.format, margin: MARGIN, max_reply: 134 };
+    let supply = (None, SupplyAfterSession::AsFound);
+    let link = AdapterSerialLink::new(Box::new(wire), clock.clone(), "test", line, supply);
     let store = Store::at_root(folder.path());
     let session = Session::new(Box::new(link), clock.clone(), station, store, EncoderTypes::built_in(), true);
     (session, clock, folder)

@@ -25,7 +25,7 @@ use crate::units::{Moment, SupplyVoltage};
 pub use flow::Chunk;
 pub use power::SupplyAfterSession;
 pub(crate) use power::log_supply_failure;
-pub use serial_link::{AdapterSerialLink, LineSupply};
+pub use serial_link::{AdapterSerialLink, DeviceLine, LineSupply, MAX_TIMEOUT_MS};
 pub use tap::{AdapterStreamError, StreamRequest, StreamTap, StreamingAdapter};
 
 /// BiSS time-out in microseconds. An encoder needs 18 µs to notice the end of a frame. See manual, table 3.

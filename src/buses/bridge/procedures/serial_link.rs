@@ -6,20 +6,28 @@ use std::time::Duration;
 
 use super::power::SupplyAfterSession;
 use super::{Adapter, AdapterError, AdapterState, Failure};
-use crate::buses::bridge::protocol::{Capabilities, ErrorCode, MAX_BODY, Reply, Request};
+use crate::buses::bridge::protocol::{Capabilities, ErrorCode, Reply, Request};
 use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{ByteLink, CancelToken, Clock, Ctx, LinkError, LinkErrorKind, Trace};
 use crate::units::{CharacterFormat, Moment, Parity, SupplyVoltage};
 
 /// Silence after which the adapter considers a reply complete, in bits. HIPERFACE allows 44 bits within a frame.
 const IDLE_BITS: u64 = 55;
-/// Longest time for which the firmware waits for a reply.
-const MAX_TIMEOUT: Duration = Duration::from_secs(2);
-/// Maximum number of characters in a transfer. A reply also has a time of eight bytes.
-const MAX_CHARACTERS: u32 = MAX_BODY as u32;
+/// Longest time for which the firmware waits for a reply, in milliseconds.
+pub const MAX_TIMEOUT_MS: u64 = 2_000;
 /// Time after the last transfer before the supply is switched off. An encoder may still be storing; the manual does not
 /// state for how long (`U`).
 const STORE_TIME: Duration = Duration::from_secs(1);
+
+/// Properties of the line between an adapter and a device.
+#[derive(Clone, Copy, Debug)]
+pub struct DeviceLine {
+    pub format: CharacterFormat,
+    /// Time by which the replies of the adapter may be late.
+    pub margin: Duration,
+    /// Length of the longest reply of the device in characters.
+    pub max_reply: usize,
+}
 
 /// Supply of the encoder by the adapter.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +45,8 @@ pub struct AdapterSerialLink {
     target: String,
     line: LineState,
     adapter: AdapterState,
+    /// Length of the longest reply of the device in characters.
+    max_reply: usize,
     supply: Option<LineSupply>,
     /// Whether the supply has been switched on since the adapter was identified.
     is_supplied: bool,
@@ -51,12 +61,12 @@ pub struct AdapterSerialLink {
 }
 
 impl AdapterSerialLink {
-    /// Creates a connection through an adapter that has not been identified. Its replies may be late by `margin`.
+    /// Creates a connection through an adapter that has not been identified.
     pub fn new(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
         target: &str,
-        (format, margin): (CharacterFormat, Duration),
+        DeviceLine { format, margin, max_reply }: DeviceLine,
         (supply, after): (Option<LineSupply>, SupplyAfterSession),
     ) -> Self {
         let mut adapter = AdapterState::default();
@@ -67,6 +77,7 @@ impl AdapterSerialLink {
             target: target.to_owned(),
             line: LineState::new(margin),
             adapter,
+            max_reply,
             supply,
             is_supplied: false,
             format,
@@ -135,10 +146,11 @@ impl AdapterSerialLink {
         self.configure()?;
         let tx = std::mem::take(&mut self.unsent);
         let character = self.format.character_time();
-        let sending = character.saturating_mul(u32::try_from(tx.len()).unwrap_or(MAX_CHARACTERS));
-        let timeout = until.duration_since(self.clock.now() + sending).min(MAX_TIMEOUT);
+        let duration_of = |count: usize| character.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX));
+        let sending = duration_of(tx.len());
+        let timeout = until.duration_since(self.clock.now() + sending).min(Duration::from_millis(MAX_TIMEOUT_MS));
         let idle = self.format.baud.duration_of_bits(IDLE_BITS);
-        let longest = sending + timeout + character * MAX_CHARACTERS + idle;
+        let longest = sending + timeout + duration_of(self.max_reply) + idle;
         let microseconds = |duration: Duration| u32::try_from(duration.as_micros()).unwrap_or(u32::MAX);
         let request = Request::UartTransfer { timeout_us: microseconds(timeout), idle_us: microseconds(idle), tx };
         self.last_transfer = Some(self.clock.now());

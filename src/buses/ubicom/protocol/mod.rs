@@ -37,7 +37,5 @@ pub const fn character_bits(format: CharacterFormat) -> u64 {
 
 /// Time-out for a reply (`U`: not documented).
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
-/// Time-out for a reply while the encoder calibrates (`U`: not documented).
-pub const CALIBRATION_TIME_OUT: Duration = Duration::from_secs(10);
 /// Duration of silence after which an incomplete frame is abandoned (`U`: not documented).
 pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use super::Biss;
 use crate::buses::bridge::jobs::FORMAT;
-use crate::buses::bridge::procedures::{AdapterSerialLink, LineSupply, SupplyAfterSession};
+use crate::buses::bridge::procedures::{AdapterSerialLink, DeviceLine, LineSupply, MAX_TIMEOUT_MS, SupplyAfterSession};
 use crate::buses::bridge::sim::{self as bridge, Adapter};
+use crate::buses::ubicom::protocol::{Frame, MAX_PAYLOAD};
 use crate::devices::biss::procedures::{Echo, Station, Supply, Transport};
 use crate::devices::biss::sim::{Config, UbicomPort};
 use crate::kinds::attachable_kinds;
 use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock, UrlError, UrlQuery};
-use crate::parameter::{Keywords, Millivolts, OptionalValue, ParameterGroup, SWITCH};
+use crate::parameter::{Keywords, Milliseconds, Millivolts, OptionalValue, ParameterGroup, SWITCH};
 use crate::parameters;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
@@ -39,7 +40,8 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 }
 
 /// Opens a link to a BiSS encoder. `serial:` and `tcp:` lead to its configuration pin, and `bridge:` to an adapter on
-/// its bus or, with `pin=on`, to the configuration pin at the adapter's serial line. `sim:` and `replay:` lead to the pin or, with `bridge=on`, to the adapter.
+/// its bus or, with `pin=on`, to the configuration pin at the adapter's serial line. `sim:` and `replay:` lead to the
+/// pin or, with `bridge=on`, to the adapter.
 ///
 /// # Errors
 /// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
@@ -57,7 +59,8 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     if url.scheme == LinkScheme::Bridge && station.transport == Transport::ConfigPin {
         let PinAtAdapter { millivolt, after, .. } = PinAtAdapter::read(url.query.pairs())?;
         let supply = millivolt.map(|own| LineSupply { voltage: Supply::with_voltage(own), power_up: Supply::POWER_UP });
-        let line = (station.format, station.line.margin);
+        let max_reply = Frame::OVERHEAD + MAX_PAYLOAD;
+        let line = DeviceLine { format: station.format, margin: station.line.margin, max_reply };
         wire = Box::new(AdapterSerialLink::new(wire, clock.clone(), &url.target, line, (supply, after)));
     }
     Ok(Session::from_connection(wire, clock, station, store, motor))
@@ -76,6 +79,10 @@ fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
         // The bus has some of them as well.
         known.extend(of_the_pin.iter().filter(|name| !way.parameters().contains(name)));
         check_parameters(&url.query, url.scheme, &known)?;
+        if url.scheme == LinkScheme::Bridge && way == Transport::ConfigPin {
+            // The adapter waits no longer than this.
+            url.query.read("timeout", &Milliseconds(1..=MAX_TIMEOUT_MS))?;
+        }
     }
     let mut station = Station::from_query(&url.query, way, reply_margin(url.scheme))?;
     if !is_virtual {

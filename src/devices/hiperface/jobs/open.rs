@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::{Hiperface, encoder_types};
 use crate::buses::bridge::jobs::FORMAT;
-use crate::buses::bridge::procedures::AdapterSerialLink;
+use crate::buses::bridge::procedures::{AdapterSerialLink, DeviceLine};
 use crate::devices::hiperface::procedures::{AdapterParameters, Echo, LinkParameters, Station};
+use crate::devices::hiperface::protocol::MAX_TRANSFER;
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock};
 use crate::parameter::ParameterGroup;
@@ -57,7 +58,10 @@ fn at_adapter(
     station: &Station,
     parameters: AdapterParameters,
 ) -> Box<dyn ByteLink> {
-    let (line, supply) = ((station.format, station.line.margin), (parameters.supply(), parameters.after));
+    // Address, command, three arguments and the checksum surround the data.
+    let max_reply = MAX_TRANSFER + 6;
+    let line = DeviceLine { format: station.format, margin: station.line.margin, max_reply };
+    let supply = (parameters.supply(), parameters.after);
     Box::new(AdapterSerialLink::new(wire, clock.clone(), &url.target, line, supply))
 }
 
