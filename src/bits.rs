@@ -42,7 +42,7 @@ pub struct MaskedBytes(Vec<Option<u8>>);
 
 impl MaskedBytes {
     /// Creates bytes without any mask.
-    pub fn clear(bytes: &[u8]) -> Self {
+    pub fn unmasked(bytes: &[u8]) -> Self {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
 
@@ -69,7 +69,7 @@ impl MaskedBytes {
         self.0.iter().copied().collect()
     }
 
-    pub fn with_stand_in(&self, stand_in: u8) -> Vec<u8> {
+    pub fn with_placeholder(&self, stand_in: u8) -> Vec<u8> {
         self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
     }
 
@@ -223,26 +223,26 @@ fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
         TypedKind::I16 => word.map(|word| word.cast_signed().to_string()),
         TypedKind::U32 => long.map(|long| long.to_string()),
         TypedKind::I32 => long.map(|long| long.cast_signed().to_string()),
-        TypedKind::F32 => long.map(|long| float_text(f32::from_bits(long))),
-        TypedKind::Binary => one.map(binary_text),
-        TypedKind::Text => one.map(|_| bytes.iter().map(|byte| ascii(*byte).unwrap_or(NOT_PRINTABLE)).collect()),
+        TypedKind::F32 => long.map(|long| format_float(f32::from_bits(long))),
+        TypedKind::Binary => one.map(format_binary),
+        TypedKind::Text => one.map(|_| bytes.iter().map(|byte| ascii(*byte).unwrap_or(UNPRINTABLE)).collect()),
     }
 }
 
 /// Replacement for a byte that is not a printable character.
-pub const NOT_PRINTABLE: char = '·';
+pub const UNPRINTABLE: char = '·';
 
 /// Returns the ASCII character of a byte, or `None` if the byte is not printable.
 pub fn ascii(byte: u8) -> Option<char> {
     (0x20..0x7F).contains(&byte).then_some(char::from(byte))
 }
 
-pub fn binary_text(byte: u8) -> String {
+pub fn format_binary(byte: u8) -> String {
     format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
 }
 
 /// Returns the shortest representation that parses back to the same number. A long number is written with an exponent.
-fn float_text(value: f32) -> String {
+fn format_float(value: f32) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }
 }
@@ -276,7 +276,7 @@ mod tests {
         assert!(!masked.matches_visible(&[0x40, 0x4F, 0x03, 1, 2, 3]));
         assert!(!masked.matches_visible(&[0x40, 0x4F, 0x02, 1, 2]));
         assert_eq!(masked.to_bytes(), None);
-        assert_eq!(MaskedBytes::clear(&[1, 2]).to_bytes(), Some(vec![1, 2]));
+        assert_eq!(MaskedBytes::unmasked(&[1, 2]).to_bytes(), Some(vec![1, 2]));
     }
 
     #[test]

@@ -167,7 +167,7 @@ impl Studio {
     }
 
     /// Asks for confirmation before comments are lost.
-    pub(super) fn confirm_loss(&mut self, mut saving: SaveRequest, lost: &[String]) {
+    pub(super) fn confirm_comment_loss(&mut self, mut saving: SaveRequest, lost: &[String]) {
         self.with_device(saving.session, |device, _| device.mark_save_waiting());
         saving.may_lose = true;
         let text =

@@ -170,7 +170,7 @@ impl Studio {
         let page = &mut self.logbook;
         if number == page.search {
             page.is_searching = false;
-            page.matches = Some(matches.map_err(|error| explain::logbook_unreadable(&error)));
+            page.matches = Some(matches.map_err(|error| explain::logbook_unreadable_text(&error)));
         }
     }
 

@@ -90,7 +90,7 @@ pub use settings::{ColorScheme, Settings};
 pub use settings_store::{LoadedSettings, SavedSettings};
 pub use shutdown::GracePeriods;
 pub use sine_cosine::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts};
-pub use stop_press::StopPresses;
+pub use stop_press::StopPressTracker;
 pub use studio::{SessionId, Studio};
 pub use tab::Tab;
 pub use tasks::{ActionMailbox, TaskRunner, Wake};

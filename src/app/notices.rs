@@ -170,7 +170,7 @@ mod tests {
 
     /// Saving a file removes the errors about that file and no others.
     #[test]
-    fn saving_a_file_settles_its_own_errors() {
+    fn saving_a_file_dismisses_its_errors() {
         let mut log = NoticeLog::default();
         let full = Text::new("file.disk_full").with("path", "/a/b.csv");
         let texts = vec![full, Text::new("session.not_saved")];

@@ -40,7 +40,7 @@ impl Studio {
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
         let leads_there =
             |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| !kind.check_link(link).is_err_and(is_elsewhere));
-        let is_usual = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.is_usual_link(link));
+        let is_usual = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.is_typical_link(link));
         let find = |fits: &dyn Fn(&Tab) -> bool| {
             tabs().find(|tab| is_usual(tab) && fits(tab)).or_else(|| tabs().find(|tab| fits(tab)))
         };

@@ -181,7 +181,7 @@ mod tests {
 
     /// A user's press is fresh even if nothing else happened after the release, because a frame was requested.
     #[test]
-    fn a_users_press_is_fresh_after_the_requested_frame() {
+    fn a_press_by_the_user_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
             let mut keys = KeyStates::ALL_UP;
             assert!(keys.is_fresh_press(Enter));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, RecorderOwner, TaskResult};
 use super::file_question::FileQuestion;
-use super::report::{DeviceReading, ReportFormat, ReportRequest, company, printed_now};
+use super::report::{DeviceReading, ReportFormat, ReportRequest, company, current_time_text};
 use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
@@ -30,7 +30,7 @@ impl Studio {
             Ok(prepared) => prepared,
             Err(why) => return self.services.notify(Severity::Error, vec![why], Some(&name)),
         };
-        let printed = printed_now(&self.services.current_time(), request.language);
+        let printed = current_time_text(&self.services.current_time(), request.language);
         let (kinds, store) = (self.services.world.kinds, self.services.world.store.clone());
         let settings = self.settings.clone();
         self.services.tasks.run("report", move || {

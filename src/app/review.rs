@@ -195,7 +195,7 @@ pub struct Question {
 pub enum ExecutionMode {
     Writes,
     /// The plan is executed step by step, and the user acts at the device.
-    Leads,
+    Guided,
     /// The plan is executed step by step and does not write anything.
     Tests,
 }
@@ -204,7 +204,7 @@ impl ExecutionMode {
     pub const fn button_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.write",
-            ExecutionMode::Leads => "review.begin",
+            ExecutionMode::Guided => "review.begin",
             ExecutionMode::Tests => "review.test",
         }
     }
@@ -213,7 +213,7 @@ impl ExecutionMode {
     pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
-            ExecutionMode::Leads => "review.way_led",
+            ExecutionMode::Guided => "review.way_led",
             ExecutionMode::Tests => "review.way_test",
         }
     }

@@ -7,12 +7,12 @@ const REPEAT_WINDOW_S: f64 = 0.5;
 
 /// Times of the last stop and of the last press of a stop button.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StopPresses {
+pub struct StopPressTracker {
     stopped: Option<f64>,
     pressed: Option<f64>,
 }
 
-impl StopPresses {
+impl StopPressTracker {
     /// Returns whether a press at the given time counts as a stop, because a motion is running or has just been
     /// stopped.
     pub fn register_stop_press(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn a_second_press_within_half_a_second_counts_for_the_same_motion() {
-        let mut presses = StopPresses::default();
+        let mut presses = StopPressTracker::default();
         assert!(!presses.register_stop_press(false, 9.0, 9.0), "nothing moves, and nothing has");
         assert!(presses.register_stop_press(true, 10.0, 10.0));
         assert!(presses.register_stop_press(false, 10.5, 10.5), "half a second later");
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn a_click_counts_from_the_button_press() {
-        let mut presses = StopPresses::default();
+        let mut presses = StopPressTracker::default();
         presses.register_stop_press(true, 10.0, 10.0);
         presses.press_began(10.25);
         // Released long after.

@@ -356,7 +356,7 @@ impl Studio {
                 device.handle_profile_written(*saving, file, result, services);
             }),
             TaskResult::Diverged(diverged) => self.show_conflict(*diverged),
-            TaskResult::WouldLose(saving, lost) => self.confirm_loss(*saving, &lost),
+            TaskResult::WouldLose(saving, lost) => self.confirm_comment_loss(*saving, &lost),
             TaskResult::SettingsRead(read) => self.settings_store.adopt(read, &mut self.settings, &mut self.services),
             TaskResult::SettingsKept(result) => {
                 self.settings_store.finish_write(result, &mut self.settings, &mut self.services)

@@ -352,7 +352,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.lines = before.map(|old| {
             let Some((line, _)) = lines.next() else { return old };
             let name = self.ended_line_name(old);
-            let new = self.recorder.continue_line(old, line, name);
+            let new = self.recorder.replace_line(old, line, name);
             if !has_samples {
                 self.recorder.remove_line(old);
             }

@@ -30,7 +30,7 @@ pub(super) fn parse_entry(text: &str) -> std::result::Result<EntryId, String> {
 pub(super) fn entry_with_number(common: &CommonArgs, id: EntryId) -> Result<Entry> {
     let entry = match existing_logbook(common)? {
         None => None,
-        Some(logbook) => logbook.entry(id).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))?,
+        Some(logbook) => logbook.entry(id).map_err(|error| to_failure(&explain::logbook_unreadable_text(&error)))?,
     };
     entry.ok_or_else(|| Failure::Failed(vec![format!("The logbook has no entry {id}. log prints the numbers.")]))
 }
@@ -68,7 +68,7 @@ pub(super) fn log(common: &CommonArgs, output: &Output, arguments: &LogArgs) -> 
     let entries = match existing_logbook(common)? {
         None => Vec::new(),
         Some(logbook) => {
-            let unreadable = |error| to_failure(&explain::logbook_unreadable(&error));
+            let unreadable = |error| to_failure(&explain::logbook_unreadable_text(&error));
             if let Some(kept) = logbook.damaged_file().map_err(unreadable)? {
                 output.print_message(&Text::new("logbook.lacks_damaged").with("kept", kept.display()).terminal_text());
             }
@@ -92,7 +92,7 @@ fn existing_logbook(common: &CommonArgs) -> Result<Option<Logbook>> {
     if matches!(path.try_exists(), Ok(false)) {
         return Ok(None);
     }
-    Logbook::open(&path).map(Some).map_err(|error| to_failure(&explain::logbook_unreadable(&error)))
+    Logbook::open(&path).map(Some).map_err(|error| to_failure(&explain::logbook_unreadable_text(&error)))
 }
 
 fn entry_json(entry: &Entry) -> Json {

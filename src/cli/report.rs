@@ -13,7 +13,7 @@ use super::profiles::{load, read_document};
 use super::runner::to_failure;
 use super::user_store::{exchange_entries, user_store};
 use super::{Failure, Result, Success};
-use crate::app::report::{ReportContext, ReportFormat, ReportRequest, company, file_name, printed_now};
+use crate::app::report::{ReportContext, ReportFormat, ReportRequest, company, current_time_text, file_name};
 use crate::app::{Language, Settings, explain};
 use crate::link::LinkUrl;
 use crate::profile::Body;
@@ -48,7 +48,7 @@ pub(super) fn report(common: &CommonArgs, output: &Output, arguments: &ReportArg
     };
     let settings = read_text(&store.settings_path()).map(|text| Settings::of_file(&text)).unwrap_or_default();
     let report = Report { company: company(&settings).map_err(|why| to_failure(&why))?, ..report };
-    let printed = printed_now(&Zoned::now(), context.language);
+    let printed = current_time_text(&Zoned::now(), context.language);
     let bytes = format.render(&report, &printed).map_err(|why| to_failure(&why))?;
     write_atomically(file, &bytes).map_err(|error| to_failure(&explain::file_error_text(&error)))?;
     replaces.report_replaced(output);

@@ -37,7 +37,7 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 34.0;
 /// Minimum distance between two axis labels.
-const APART: (f64, f64) = (70.0, 30.0);
+const MIN_LABEL_DISTANCE: (f64, f64) = (70.0, 30.0);
 const GRID: &str = "#d5dadf";
 
 impl Plot<'_> {
@@ -88,7 +88,7 @@ impl Plot<'_> {
 
     fn draw_axes(&self, drawing: &mut Drawing) {
         let (right, bottom) = (self.right(), self.bottom());
-        let most = ((right - LEFT) / APART.0, (bottom - TOP) / APART.1);
+        let most = ((right - LEFT) / MIN_LABEL_DISTANCE.0, (bottom - TOP) / MIN_LABEL_DISTANCE.1);
         let steps = (step_1_2_5(self.x.1 - self.x.0, most.0), step_1_2_5(self.y.1 - self.y.0, most.1));
         for value in tick_values(self.x.0, self.x.1, steps.0) {
             let (x, _) = self.place((value, self.y.0));

@@ -79,7 +79,7 @@ fn misspelt_names_in_ready_made_profiles_are_reported() {
 
 /// Issue 22.17: the ready-made profiles of schema 1 open, and one saved profile of each kind from that time.
 #[test]
-fn profiles_of_schema_1_open() {
+fn schema_1_profiles_can_be_opened() {
     let files = profiles_in("tests/fixtures/schema-1");
     assert_eq!(
         files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(),

@@ -61,12 +61,12 @@ pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
             PortInfo { path: port.port_name, description, serial_number }
         })
         .collect();
-    ports.sort_by(|a, b| number_last(&a.path).cmp(&number_last(&b.path)));
+    ports.sort_by(|a, b| split_port_number(&a.path).cmp(&split_port_number(&b.path)));
     Ok(ports)
 }
 
 /// Splits the name of a port from its number, so that `COM3` is sorted before `COM10`.
-fn number_last(path: &str) -> (&str, u64, &str) {
+fn split_port_number(path: &str) -> (&str, u64, &str) {
     let name = path.trim_end_matches(|c: char| c.is_ascii_digit());
     (name, path.strip_prefix(name).and_then(|number| number.parse().ok()).unwrap_or(0), path)
 }
@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn ports_are_ordered_by_their_number() {
         let mut ports = ["COM10", "/dev/ttyUSB10", "COM3", "/dev/ttyUSB2", "/dev/ttyS0", "COM"];
-        ports.sort_by_key(|path| number_last(path));
+        ports.sort_by_key(|path| split_port_number(path));
         assert_eq!(ports, ["/dev/ttyS0", "/dev/ttyUSB2", "/dev/ttyUSB10", "COM", "COM3", "COM10"]);
     }
 

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn no_frame_is_before_the_previous_one() {
+    fn frame_times_never_decrease() {
         let (sender, receiver) = std::sync::mpsc::channel();
         let mut trace = Trace::default();
         trace.add_watcher(move |entry| sender.send(entry.at).unwrap());

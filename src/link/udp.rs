@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_of_other_senders_are_dropped_and_a_closed_port_is_no_loss() {
+    fn packets_of_other_senders_are_dropped_and_a_closed_port_is_tolerated() {
         let (target, mut packets, clock) = pair();
         let to = ("127.0.0.1", packets.port());
         // All of 127/8 is this computer.
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_network_is_asked_at_its_last_address() {
+    fn requests_go_to_the_broadcast_address_of_a_network() {
         let of = |ip: [u8; 4], mask: [u8; 4]| {
             broadcast_address(&Ifv4Addr { ip: ip.into(), netmask: mask.into(), prefixlen: 0, broadcast: None })
         };

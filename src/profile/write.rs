@@ -66,7 +66,7 @@ pub trait Write {
     ///
     /// # Errors
     /// Returns the reason why the operations were aborted, or why the mode of the device cannot be restored.
-    fn lead_back(
+    fn return_to_safe_state(
         &mut self,
         _confirmed: &ConfirmedPlan<'_, Self::Base, Self::Op>,
         ended: Result<(), Self::Error>,
@@ -155,13 +155,13 @@ impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
     ///
     /// # Errors
     /// Returns the progress and the cause if the write was interrupted.
-    pub(crate) fn carry_out<W: Write<Base = Base, Op = Op>>(
+    pub(crate) fn execute<W: Write<Base = Base, Op = Op>>(
         &self,
         write: &mut W,
         tell: &mut dyn FnMut(usize, &Op),
     ) -> Result<W::Written, Box<InterruptedWriteOf<W>>> {
         let (mut at, mut done) = (0, W::Written::default());
-        let mut carry_out = || {
+        let mut execute = || {
             write.begin()?;
             for op in &self.plan.ops {
                 tell(at, op);
@@ -170,8 +170,8 @@ impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
             }
             write.finish(self, &mut done)
         };
-        let ended = carry_out();
-        let Err(cause) = write.lead_back(self, ended, &mut done) else { return Ok(done) };
+        let ended = execute();
+        let Err(cause) = write.return_to_safe_state(self, ended, &mut done) else { return Ok(done) };
         let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.end_state(&cause));
         Err(Box::new(InterruptedWrite { done, unfinished, cause, end_state: left }))
     }

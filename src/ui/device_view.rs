@@ -353,7 +353,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_are_dropped_when_another_device_answers() {
+    fn typed_text_is_dropped_when_another_device_replies() {
         let mut memory = Memory::<String>::default();
         memory.for_device(None).push_str("48");
         assert_eq!(memory.for_device(Some("00123")), "48", "the first device that is known");

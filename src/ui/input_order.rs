@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn at_once_nothing_is_held_back() {
+    fn immediate_input_is_not_deferred() {
         let (mut held, mut now) = (DeferredInput::default(), vec![button(false), text("1")]);
         assert!(held.split_frame_events(&mut now, false));
         assert_eq!(now, [button(false)]);

@@ -1,21 +1,21 @@
-//! Stop button presses as reported by egui. [`StopPresses`] interprets them.
+//! Stop button presses as reported by egui. [`StopPressTracker`] interprets them.
 
 use egui::{Context, Event, Id, Key, Response, Ui};
 
-use crate::app::StopPresses;
+use crate::app::StopPressTracker;
 
 /// Returns whether a press at the given frame time applies to a motion that is running or has just ended.
 pub(crate) fn register_stop_press(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
-    with_stop_presses(ctx, |presses| presses.register_stop_press(moves, pressed, now))
+    with_stop_press_tracker(ctx, |presses| presses.register_stop_press(moves, pressed, now))
 }
 
 /// Returns whether an earlier press has stopped something so recently that another press must also be meant as a stop.
 pub(super) fn has_recently_stopped(ctx: &Context, pressed: f64) -> bool {
-    with_stop_presses(ctx, |presses| presses.has_recently_stopped(pressed))
+    with_stop_press_tracker(ctx, |presses| presses.has_recently_stopped(pressed))
 }
 
-fn with_stop_presses<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
+fn with_stop_press_tracker<T>(ctx: &Context, act: impl FnOnce(&mut StopPressTracker) -> T) -> T {
     let id = Id::unique("presses of what stops");
     ctx.data_mut(|data| act(data.get_temp_mut_or_default(id)))
 }
@@ -25,7 +25,7 @@ pub(crate) fn press_began(ui: &Ui, response: &Response) -> bool {
     let is_press = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if is_press {
         let now = ui.input(|input| input.time);
-        with_stop_presses(ui.ctx(), |presses| presses.press_began(now));
+        with_stop_press_tracker(ui.ctx(), |presses| presses.press_began(now));
     }
     is_press
 }
@@ -33,7 +33,7 @@ pub(crate) fn press_began(ui: &Ui, response: &Response) -> bool {
 /// Returns the start time of the stop button press that is handled in this frame.
 pub(crate) fn press_time(ui: &Ui, press_began: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
-    with_stop_presses(ui.ctx(), |presses| presses.press_time(press_began || released, now))
+    with_stop_press_tracker(ui.ctx(), |presses| presses.press_time(press_began || released, now))
 }
 
 /// Returns whether Escape is newly pressed in this frame. Repetitions of a held key are ignored.

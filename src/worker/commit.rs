@@ -184,7 +184,7 @@ pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
         return Err(NotStarted::WearUnknown { cost }.into());
     }
     let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, step: what });
-    let ended = confirmed.carry_out(write, tell);
+    let ended = confirmed.execute(write, tell);
     let (outcome, spent) = match &ended {
         Ok(written) => (Outcome::Done, written.write_cycles()),
         Err(own) => (own.reason().map_or(Outcome::Cancelled, Outcome::Failed), own.done.write_cycles()),
@@ -232,8 +232,8 @@ pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
     known_cycles(store, device)
 }
 
-/// Returns the write cycles recorded for a device in the local file. Returns `None` if the file cannot be read, or if an
-/// earlier file was damaged and is still there.
+/// Returns the write cycles recorded for a device in the local file. Returns `None` if the file cannot be read, or if
+/// an earlier file was damaged and is still there.
 pub fn known_cycles(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
     let (path, server) = (store.logbook_path(), store.logbook_server());
     let is_complete = !server.is_set() || server.contact().is_reached;

@@ -90,7 +90,7 @@ fn a_dynamic_filter_prevents_a_calibration() {
 
 /// The second run fails: the encoder is in operation afterwards, and its table is lost.
 #[test]
-fn a_failed_run_leads_back_to_operation() {
+fn a_failed_run_returns_to_operation() {
     let bench = Bench::new();
     let failing = ["--rpm", "-500", "--reverse", "--calibration-fails", "0x33"];
     let (Some(kit), Some(adapter)) = (bench.kit(&failing), bench.adapter(&failing)) else { return };

@@ -346,7 +346,7 @@ fn the_adapters_supply_is_restored_on_exit() {
 
 /// Reference 5: the mode and the password that another host has set are reset.
 #[test]
-fn an_encoder_left_in_a_mode_is_led_back() {
+fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--left-in", "4"]) else { return };
     for encoder in &encoders {
@@ -362,7 +362,7 @@ fn an_encoder_left_in_a_mode_is_led_back() {
 /// Issue 22.15: restoring the mode discards unsaved changes: on a terminal the program asks, unless --yes answers it.
 /// It stores nothing, so that a script needs no --yes.
 #[test]
-fn on_a_terminal_leading_back_needs_confirmation() {
+fn on_a_terminal_the_return_to_operation_needs_confirmation() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let lead_back = ["do", "biss", "lead-back", "--link", &encoder.url];

@@ -74,7 +74,7 @@ fn current_errors_are_errors_and_past_ones_are_notes() {
 
 /// Issue 26.7: the advice for an error is to write 0 to parameter 197, which does what an acknowledgement does.
 #[test]
-fn writing_0_to_197_acknowledges_and_status_is_of_one_drive() {
+fn writing_0_to_197_acknowledges_one_drive() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=1,1", "--set", "requested=1"]);
     // 258 = 7FFFFFFFh.

@@ -77,7 +77,7 @@ fn out_of_range_values_name_both_limits() {
 
 /// The encoder's own rejection (reference 2), and the return to its mode.
 #[test]
-fn a_refusal_is_reported_with_its_word_and_led_back() {
+fn a_refusal_is_reported_with_its_word_and_the_mode_restored() {
     let bench = Bench::new();
     for (word, words) in [
         ("82000000", "within the limits"),

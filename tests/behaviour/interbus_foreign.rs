@@ -53,7 +53,7 @@ fn log(foreign: &Foreign) -> Vec<String> {
 }
 
 #[test]
-fn gateways_of_any_behaviour_can_read_write_and_lead_back() {
+fn any_gateway_can_read_write_and_restore_the_mode() {
     let cases: [(&[&str], &str); 5] = [
         (&[], "?cycle=1"),
         (&["--busy=40", "--stale=3", "--early"], "?cycle=1"),
@@ -95,7 +95,7 @@ fn faults_of_the_encoder_or_another_master_are_reported() {
         (&["--error=1:82000000"], |error| matches!(error, Error::Refused { .. })),
         (&["--deaf-from=1"], |error| matches!(error, Error::TimeOut { .. })),
         (&["--other-data"], |error| matches!(error, Error::TimeOut { input: 0xCA00_0062, .. })),
-        (&["--no-position"], |error| matches!(error, Error::Refused { .. } | Error::NotLedBack { .. })),
+        (&["--no-position"], |error| matches!(error, Error::Refused { .. } | Error::ModeNotRestored { .. })),
         (&["--unstored"], |error| matches!(error, Error::NotTaken { .. })),
         (&["--error=1:98000004"], |error| matches!(error, Error::Refused { .. })),
     ];

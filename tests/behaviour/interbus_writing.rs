@@ -112,7 +112,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
 
 /// Reference 3: one parameterisation, in an order in which each number is legal; the preset is stored and not applied.
 #[test]
-fn parameters_need_one_store_and_a_restore_fires_no_preset() {
+fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
     let bench = Bench::new();
     let parameters = r#"steps: 36000, revolutions: 10, direction: "ccw", preset: 20000, zero_shift: 0"#;
     let file = bench.write("gear.ron", profile("4000", parameters, ""));
@@ -155,7 +155,7 @@ fn each_item_is_written_by_name() {
 
 /// Reference 4: 00000000 → 40000000 → IN shows the preset → 00000000; once for each time that it was programmed.
 #[test]
-fn a_preset_is_programmed_and_fired_at_standstill() {
+fn a_preset_is_programmed_and_triggered_at_standstill() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600", "--preset=500"]) else { return };
     let told = ask(&bench, &encoder, &["do", "interbus", "preset", "--yes"]).json();
@@ -185,7 +185,7 @@ fn the_default_is_experimental() {
 
 /// Issue 22.19: an encoder that sends an error word after the return to its mode has not recovered.
 #[test]
-fn leading_back_fails_if_the_encoder_sends_an_error() {
+fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--lost"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "interbus", "lead-back"]);

@@ -83,7 +83,7 @@ fn entries_wait_while_the_server_is_away() {
 
 /// The unknown writes of other benches may have used up a memory that wears out quickly; others have plenty left.
 #[test]
-fn what_wears_out_quickly_needs_a_permit_while_the_server_is_away() {
+fn quickly_wearing_memories_need_a_permit_while_the_server_is_unreachable() {
     let bench = Bench::new();
     let away = "postgres://bench@127.0.0.1:1/logs";
     let write = |words: &[&str]| bench.run_with_server(away, &[words, &["--yes", "--link", "sim:"]].concat());

@@ -212,7 +212,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
 }
 
 #[test]
-fn what_32_bits_cannot_hold_is_refused() {
+fn layouts_too_wide_for_32_bits_are_refused() {
     let wide = Layout::new(FrameDescriptor::binary(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
     for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {

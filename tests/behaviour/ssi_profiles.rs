@@ -164,7 +164,7 @@ fn user_families_are_loaded_and_broken_ones_reported() {
 }
 
 #[test]
-fn positions_given_twice_must_agree() {
+fn duplicate_positions_must_agree() {
     let bench = Bench::new();
     let encode = |words: &[&str]| bench.run(&[&["ssi", "encode", "--json", "--layout"], words].concat());
     // 123h · 4000h + 2A5Bh.

@@ -95,7 +95,7 @@ fn the_table_of_positions_is_read_again() {
 }
 
 #[test]
-fn what_is_no_recording_is_refused_with_the_line_and_a_way_out() {
+fn invalid_recordings_are_refused_with_line_and_remedy() {
     let bench = Bench::new();
     let refused = |text: &str, told: &[&str]| {
         let path = bench.write("bad.csv", text);

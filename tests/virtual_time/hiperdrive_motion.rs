@@ -251,11 +251,11 @@ fn a_run_ends_at_the_end_of_the_range() {
 #[test]
 fn an_unresponsive_drive_is_reported() {
     let mut bench = Bench::new();
-    bench.station.set_s3(bench.now, 1);
+    bench.station.set_drive_select_switch(bench.now, 1);
     bench.act(to(TURN));
     let ended = bench.until_over();
     assert!(matches!(ended, ActionEnd::NoAnswer(_)), "{ended:?}");
-    bench.station.set_s3(bench.now, 0);
+    bench.station.set_drive_select_switch(bench.now, 0);
     bench.run(3000);
     assert_eq!((bench.status(), bench.position()), (0x2A30, 0));
 }

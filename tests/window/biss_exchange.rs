@@ -82,7 +82,7 @@ fn an_adapter_does_not_take_the_wire_from_a_write() {
     let served = ServedDevice::new("rpm=0");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
-    ask(&mut desk, Biss::LeadBack);
+    ask(&mut desk, Biss::ReturnToOperation);
     assert!(encoder(&desk).session.is_writing());
     desk.signals(Signals::Source(SourceAction::SetLink(served.link())));
     desk.signals(Signals::Source(SourceAction::StartAdapter));

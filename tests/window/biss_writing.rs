@@ -142,7 +142,7 @@ fn a_calibration_is_guided_step_by_step() {
 }
 
 #[test]
-fn stopping_a_procedure_leads_the_encoder_back() {
+fn stopping_a_procedure_returns_the_encoder_to_operation() {
     let mut desk = open("sim:?bridge=on&rpm=-500");
     plan(&mut desk, calibration());
     write(&mut desk);
@@ -158,11 +158,11 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     let status = encoder(&desk).status.as_ref().unwrap();
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
     let guide = encoder(&desk).guide.as_ref().unwrap();
-    let ProcedureEnd::Failed { texts, may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
+    let ProcedureEnd::Failed { texts, may_return_to_operation, .. } = guide.end.clone().unwrap() else { panic!() };
     let weights: Vec<Severity> = texts.iter().map(encoder_studio::devices::biss::state::explain::severity_of).collect();
     assert_eq!(weights, [Severity::Warning, Severity::Note, Severity::Good, Severity::Note]);
     assert_eq!(texts.last().unwrap().id(), "write.backup_calibration");
-    assert!(!may_lead_back, "it is in operation");
+    assert!(!may_return_to_operation, "it is in operation");
     let reached: Vec<StepStatus> = guide.steps().iter().map(|own| own.reached).collect();
     let cut = reached.iter().position(|own| *own == StepStatus::Cancelled).unwrap();
     assert!(reached[..cut].iter().all(|own| *own == StepStatus::Done), "{reached:?}");
@@ -214,8 +214,8 @@ fn the_position_is_preset_at_standstill() {
     let value = PresetValue::new(0x8000, 7);
     plan(&mut desk, Change::Preset { value, parts: Some(PresetParts::Both) });
     write(&mut desk);
-    until_asked(&mut desk, OperatorTask::StandAtPlace, true);
-    ask(&mut desk, Biss::Answer(OperatorTask::StandAtPlace, OperatorAnswer::Go));
+    until_asked(&mut desk, OperatorTask::HoldAtPresetAngle, true);
+    ask(&mut desk, Biss::Answer(OperatorTask::HoldAtPresetAngle, OperatorAnswer::Go));
     desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
     command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("it is read", |studio| {

@@ -77,7 +77,7 @@ fn a_profile_that_is_chosen_to_be_restored_is_reviewed_first() {
 }
 
 #[test]
-fn what_cannot_be_compared_names_the_reason() {
+fn incomparable_captures_are_reported_with_a_reason() {
     let (mut desk, _) = with_changed_profile();
     let profiles = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
     for (path, id) in [

@@ -20,7 +20,7 @@ fn drive_state(desk: &Desk) -> (State, bool, bool) {
     let target = unit(desk).target.clone().unwrap();
     target.with_station(|station| {
         let status = station.drive(ONE).unwrap().actual_values(Moment::default()).status;
-        (status.state(), status.is_set(StatusBit::StandingStill), station.is_open(Moment::default()))
+        (status.state(), status.is_set(StatusBit::Standstill), station.is_open(Moment::default()))
     })
 }
 
@@ -31,7 +31,7 @@ fn moving() -> Desk {
 }
 
 #[track_caller]
-fn until_let_go(desk: &Desk) {
+fn until_released(desk: &Desk) {
     let began = Instant::now();
     while drive_state(desk).2 {
         assert!(began.elapsed() < LONG, "the connection is open");
@@ -51,7 +51,7 @@ fn a_closing_window_releases_the_drives_first() {
         assert!(!desk.studio.can_close(), "{closes}: the drive is in hand");
         drive(&mut desk, MotorCommand::Move { target: 1 });
         desk.until("it may close", |studio| studio.can_close());
-        until_let_go(&desk);
+        until_released(&desk);
         assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
         drive(&mut desk, MotorCommand::Lead(TargetState::Enabled));
         desk.settle();
@@ -84,7 +84,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
     desk.act(Action::Close);
     desk.act(Action::Confirm);
     desk.until("it may close", |studio| studio.can_close());
-    until_let_go(&desk);
+    until_released(&desk);
 }
 
 /// Issue 21.1: a signal from the system asks no question.
@@ -97,7 +97,7 @@ fn a_signal_closes_without_asking() {
     desk.act(Action::Quit);
     assert!(desk.studio.question.is_none());
     desk.until("it may close", |studio| studio.can_close());
-    until_let_go(&desk);
+    until_released(&desk);
 }
 
 /// Issue 21.1: it does not depend on a window that is not updated, as on a display that does not answer.
@@ -108,7 +108,7 @@ fn drives_are_released_without_the_window() {
     assert!(!brakes.is_done() && !brakes.has_begun());
     brakes.begin_stop();
     assert!(brakes.wait_for_disconnect(LONG) && brakes.has_begun());
-    until_let_go(&desk);
+    until_released(&desk);
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 

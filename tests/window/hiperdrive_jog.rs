@@ -37,7 +37,7 @@ fn travel(screen: &Screen) -> Node<'_> {
     screen.harness.query_all_by(is_it).next().unwrap()
 }
 
-fn travel_says(screen: &Screen) -> String {
+fn travel_text(screen: &Screen) -> String {
     travel(screen).accesskit_node().value().unwrap_or_default()
 }
 
@@ -129,14 +129,14 @@ fn every_connection_begins_slowly() {
 #[test]
 fn the_travel_bar_names_the_way_back_in() {
     let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);
-    let said = travel_says(&inside);
+    let said = travel_text(&inside);
     assert!(said.contains("65536 steps") && said.contains("-33488896 steps … 33488896 steps"), "{said}");
     assert!(!said.contains(&inside.say("hd_outside.short")), "{said}");
     for (link, way) in
         [("sim:?position=40000000", "hd_travel.back_down"), ("sim:?position=-40000000", "hd_travel.back_up")]
     {
         let screen = in_control_on_screen(link, [1280.0, 800.0]);
-        assert!(travel_says(&screen).starts_with(&screen.say(way)), "{}", travel_says(&screen));
+        assert!(travel_text(&screen).starts_with(&screen.say(way)), "{}", travel_text(&screen));
         let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.is_enabled(id));
         assert_eq!(pads, if way == "hd_travel.back_down" { [true, false] } else { [false, true] });
     }

@@ -28,7 +28,7 @@ fn status(desk: &Desk) -> StatusWord {
 }
 
 fn is_at_standstill(desk: &Desk) -> bool {
-    status(desk).is_set(StatusBit::StandingStill)
+    status(desk).is_set(StatusBit::Standstill)
 }
 
 /// Returns a studio in control of the drives of a virtual device.
@@ -109,7 +109,7 @@ fn a_frozen_window_stops_motion() {
     let mut desk = in_control("sim:");
     set_off(&mut desk);
     until_standstill(&desk);
-    assert!(status(&desk).is_set(StatusBit::StandingStill) && !status(&desk).is_set(StatusBit::TargetReached));
+    assert!(status(&desk).is_set(StatusBit::Standstill) && !status(&desk).is_set(StatusBit::TargetReached));
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
         while !target
             .with_station(|station| station.drive(ONE).unwrap().actual_values(Moment::default()))
             .status
-            .is_set(StatusBit::StandingStill)
+            .is_set(StatusBit::Standstill)
         {
             assert!(began.elapsed() < LONG, "{what}: it still moves");
             std::thread::sleep(Duration::from_millis(1));
@@ -333,7 +333,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
     for _ in 0..2 {
         let free = |desk: &mut Desk| {
-            drive(desk, MotorCommand::FreeOutward(up));
+            drive(desk, MotorCommand::AllowOutward(up));
             assert!(unit(desk).check_can_jog(ONE, up).is_ok() && !unit(desk).can_enable_outward_jog(ONE, up));
             drive(desk, MotorCommand::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
@@ -350,10 +350,10 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         assert!(unit(&desk).check_can_jog(ONE, up).is_err(), "freed for one press");
     }
     // A permission ends with a stop, and with another page of the window.
-    drive(&mut desk, MotorCommand::FreeOutward(up));
+    drive(&mut desk, MotorCommand::AllowOutward(up));
     desk.act(Action::StopMotion);
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
-    drive(&mut desk, MotorCommand::FreeOutward(up));
+    drive(&mut desk, MotorCommand::AllowOutward(up));
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
@@ -376,7 +376,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
             assert!(unit(&desk).is_blocked(ONE, own), "{own:?}");
         }
         let free = |desk: &mut Desk| {
-            drive(desk, MotorCommand::FreeOutward(way));
+            drive(desk, MotorCommand::AllowOutward(way));
             assert!(unit(desk).check_can_jog(ONE, way).is_ok() && unit(desk).check_can_jog(ONE, other).is_err());
             drive(desk, MotorCommand::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };

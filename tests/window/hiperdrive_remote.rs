@@ -55,7 +55,7 @@ fn a_jog_ends_when_the_session_becomes_remote() {
 }
 
 #[test]
-fn the_panel_says_why_the_jog_is_locked() {
+fn the_panel_shows_why_the_jog_is_locked() {
     let (outside, remote) = (Outside::new(""), Arc::new(AtomicBool::new(true)));
     let studio = studio(&outside, &remote);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);

@@ -60,7 +60,7 @@ fn names_are_found_in_both_languages() {
 }
 
 #[test]
-fn actions_of_the_shown_device_are_carried_out() {
+fn actions_of_the_shown_device_are_executed() {
     let mut screen = Screen::new_form(SIZE);
     let before = screen.outside.wire(PORT).count(0x56);
     find_and_choose(&mut screen, "read again");

@@ -214,7 +214,7 @@ fn a_byte_order_mark_is_kept() {
 
 /// Issue 22.28: a save ends the earlier notices about its document, and not those about another one.
 #[test]
-fn a_save_settles_the_notices_of_its_own_document() {
+fn a_save_dismisses_the_notices_of_its_document() {
     let (mut desk, path) = opened(OWN);
     desk.put(0, 0, b"X");
     desk.until_kept();

@@ -60,7 +60,7 @@ fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
 }
 
 #[test]
-fn nothing_that_can_be_clicked_moves_when_a_message_or_a_job_comes() {
+fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
     for size in [LARGE, SMALL] {
         let mut screen = Screen::new_form(size);
         screen.click("page.memory");
@@ -167,7 +167,7 @@ fn live_values_that_start_by_themselves_only_read() {
 }
 
 #[test]
-fn a_pause_says_which_job_it_is_for_and_moves_nothing() {
+fn a_pause_names_its_job_and_moves_nothing() {
     let mut screen = Screen::new_form(LARGE);
     screen.click("live.start");
     let ids = ["live.pause", "live.hide_plot"];
@@ -200,7 +200,7 @@ fn live_narrows_to_values_alone_and_remembers_it() {
 }
 
 #[test]
-fn the_last_frames_are_in_reach_and_stay_while_others_come() {
+fn the_last_frames_stay_visible_while_new_ones_arrive() {
     use egui_kittest::kittest::Queryable;
     let mut screen = Screen::new_form(SMALL);
     screen.act(Action::OpenLowerPanel(true));

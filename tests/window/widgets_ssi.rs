@@ -60,7 +60,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
 
 /// A picture is drawn and its source is not shown; a text is shown as text.
 #[test]
-fn exports_are_shown_as_what_they_are() {
+fn exports_are_shown_in_their_format() {
     let mut screen = layout();
     screen.click("page.export");
     assert!(screen.shows("Frame length"), "the settings sheet");

@@ -117,7 +117,7 @@ fn long_words_survive_a_stream() {
 }
 
 #[test]
-fn a_late_host_loses_samples_and_is_told_how_many() {
+fn lost_samples_of_a_late_host_are_counted() {
     let mut bench = Bench::new();
     bench.ask(&BISS_41);
     bench.ask(&Request::BissStream { period_us: 100 });

@@ -41,7 +41,7 @@ fn pairs_are_sampled_back_to_back_at_their_time() {
 }
 
 #[test]
-fn missed_conversions_and_a_late_host_are_told() {
+fn missed_conversions_and_a_late_host_are_reported() {
     let mut bench = Bench::new();
     bench.ask(&Request::AnalogConfig { sample_hz: 100_000 });
     bench.ask(&Request::AnalogStream { on: true });

@@ -68,7 +68,7 @@ fn another_voltage_than_the_requested_one_is_not_switched_on() {
 }
 
 #[test]
-fn an_overload_switches_off_and_is_told() {
+fn an_overload_switches_the_supply_off_and_is_reported() {
     let mut bench = Bench::new();
     bench.model().has_fault = true;
     bench.run(1_000);

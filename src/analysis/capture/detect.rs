@@ -4,7 +4,7 @@
 use super::CaptureError;
 use super::encoding::decode_head;
 use super::header::{Columns, TimeUnit, VoltUnit, column_unit, is_unit};
-use super::import::{CellNumber, is_no_value, parse_number, to_integer};
+use super::import::{CellNumber, is_missing_value, parse_number, to_integer};
 
 pub const HEAD_BYTES: usize = 64 << 10;
 
@@ -224,7 +224,7 @@ fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(parse_number(field, decimal_comma), CellNumber::Text);
     line.fields.len() >= width
         && line.fields.iter().any(|field| !is_text(field))
-        && line.fields.iter().all(|field| !is_text(field) || is_no_value(field))
+        && line.fields.iter().all(|field| !is_text(field) || is_missing_value(field))
 }
 
 fn count_numbers(line: &HeaderLine, decimal_comma: bool) -> usize {

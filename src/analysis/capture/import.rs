@@ -270,7 +270,7 @@ impl ColumnChoice {
         match parse_number(field, self.comma) {
             CellNumber::Finite(value) => Ok(Ok(value)),
             CellNumber::NotFinite => Ok(Err(CaptureError::NotFinite { row: line, column, text: display_field(field) })),
-            CellNumber::Text if is_no_value(field) => Ok(Err(not_a_number())),
+            CellNumber::Text if is_missing_value(field) => Ok(Err(not_a_number())),
             CellNumber::Text => Err(not_a_number()),
         }
     }
@@ -287,7 +287,7 @@ impl ColumnChoice {
 
 /// Returns whether a field means "no value" in an instrument's notation. Such a field is empty, has only dashes, or
 /// reports an overload.
-pub(super) fn is_no_value(field: &[u8]) -> bool {
+pub(super) fn is_missing_value(field: &[u8]) -> bool {
     const KNOWN_WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
     let text = String::from_utf8_lossy(field).to_lowercase();

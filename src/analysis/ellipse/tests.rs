@@ -113,7 +113,7 @@ fn a_fit_in_chunks_equals_a_fit_in_one() {
 }
 
 #[test]
-fn data_that_is_no_ellipse_is_refused_with_a_reason() {
+fn data_without_an_ellipse_is_refused_with_a_reason() {
     let (sine, cosine) = signals(&REFERENCE, 360, 0.0, 1.0);
     let zeros = vec![0.0; 360];
     let noisy: Vec<f64> = (0..360).map(|i| 1.25 + 0.001 * f64::from(i % 7)).collect();

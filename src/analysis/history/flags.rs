@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn good_stretches_exclude_bad_samples() {
+    fn valid_ranges_exclude_bad_samples() {
         let mut block = FlagBlock::default();
         block.add_flags(1, Flags::WARNING);
         assert!(block.valid_ranges(0..9).eq(std::iter::once(0..9)));

@@ -97,7 +97,7 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
 ///
 /// # Errors
 /// Returns the same errors as [`host_and_port`], or `missing` if no host is entered.
-pub(crate) fn host_and_default_port(
+pub(crate) fn format_host_and_optional_port(
     host: &str,
     missing: &'static str,
     port: &str,

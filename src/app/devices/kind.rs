@@ -53,9 +53,9 @@ pub trait DeviceType: DeviceModel + Sized {
         false
     }
 
-    /// Returns whether such a link usually refers to a device of this kind, rather than to one of another kind for which
-    /// it is valid as well.
-    fn is_usual_link(_url: &LinkUrl) -> bool {
+    /// Returns whether such a link usually refers to a device of this kind, rather than to one of another kind for
+    /// which it is valid as well.
+    fn is_typical_link(_url: &LinkUrl) -> bool {
         true
     }
 
@@ -137,11 +137,11 @@ pub trait DeviceKind: Sync {
     /// Returns whether another master may be connected to the line of a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
     /// Returns whether such a link usually refers to a device of this kind.
-    fn is_usual_link(&self, url: &LinkUrl) -> bool;
+    fn is_typical_link(&self, url: &LinkUrl) -> bool;
     /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
-    /// Returns the values of a profile with their meaning, for a report. Returns `None` if the profile is of another kind
-    /// of device.
+    /// Returns the values of a profile with their meaning, for a report. Returns `None` if the profile is of another
+    /// kind of device.
     fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>>;
     /// Returns the form for the connection dialog, filled in from a link.
     fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
@@ -209,8 +209,8 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
         M::may_have_other_master(url)
     }
 
-    fn is_usual_link(&self, url: &LinkUrl) -> bool {
-        M::is_usual_link(url)
+    fn is_typical_link(&self, url: &LinkUrl) -> bool {
+        M::is_typical_link(url)
     }
 
     fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm> {

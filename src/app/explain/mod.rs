@@ -198,7 +198,7 @@ pub fn cycle_count_text(count: CycleCount) -> Text {
 }
 
 /// Describes why the logbook cannot be read.
-pub fn logbook_unreadable(why: &LogbookError) -> Text {
+pub fn logbook_unreadable_text(why: &LogbookError) -> Text {
     Text::new("backups.no_logbook").with_text("why", logbook_problem(why))
 }
 

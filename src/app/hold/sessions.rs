@@ -32,7 +32,7 @@ fn key_up(key: usize) -> Option<HoldInput> {
 }
 
 #[test]
-fn any_session_holds_only_what_a_person_has_pressed_since_the_last_change() {
+fn only_presses_since_the_last_change_start_a_hold() {
     let (mut by_key, mut by_pointer) = (0, 0);
     for seed in 0..SESSIONS {
         let mut dice = fastrand::Rng::with_seed(seed);

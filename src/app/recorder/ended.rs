@@ -7,7 +7,7 @@ use crate::app::Text;
 impl Recorder {
     /// Replaces a line with a new one of the same colour and, if possible, the same unit. The old line ends and
     /// receives the given name.
-    pub(in crate::app) fn continue_line(
+    pub(in crate::app) fn replace_line(
         &mut self,
         old: SeriesId,
         new: Series,

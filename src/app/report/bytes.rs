@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use super::ReportContext;
 use crate::app::Text;
-use crate::bits::{NOT_PRINTABLE, ascii, hex};
+use crate::bits::{UNPRINTABLE, ascii, hex};
 use crate::report::{CellStyle, Table};
 
 const ROW: usize = 16;
 
-/// Returns bytes in rows of 16 with their text. `address` formats the address of a row, and `meaning` returns the meaning
-/// of a range of bytes. Successive rows of the same byte are summarised.
+/// Returns bytes in rows of 16 with their text. `address` formats the address of a row, and `meaning` returns the
+/// meaning of a range of bytes. Successive rows of the same byte are summarised.
 pub fn byte_table(
     context: &ReportContext<'_>,
     bytes: &[u8],
@@ -25,7 +25,7 @@ pub fn byte_table(
     ]);
     let mut at = 0;
     while let Some(row) = bytes.get(at..bytes.len().min(at + ROW)).filter(|row| !row.is_empty()) {
-        let (byte, same) = leading_run(bytes.get(at..).unwrap_or_default());
+        let (byte, same) = leading_repetition(bytes.get(at..).unwrap_or_default());
         let whole_rows = same / ROW * ROW;
         let end =
             if whole_rows > ROW && meaning(at..at + whole_rows).is_empty() { at + whole_rows } else { at + row.len() };
@@ -33,7 +33,7 @@ pub fn byte_table(
             let repeated = Text::new("report.repeated").with("count", end - at).with("byte", format!("{byte:02X}"));
             [address(at), context.say(repeated), String::new(), String::new()]
         } else {
-            let text = row.iter().map(|byte| ascii(*byte).unwrap_or(NOT_PRINTABLE)).collect();
+            let text = row.iter().map(|byte| ascii(*byte).unwrap_or(UNPRINTABLE)).collect();
             [address(at), hex(row), text, meaning(at..end)]
         };
         table.add_row(cells);
@@ -43,7 +43,7 @@ pub fn byte_table(
 }
 
 /// Returns the first byte and the number of its repetitions at the beginning.
-fn leading_run(bytes: &[u8]) -> (u8, usize) {
+fn leading_repetition(bytes: &[u8]) -> (u8, usize) {
     let first = bytes.first().copied().unwrap_or_default();
     (first, bytes.iter().take_while(|byte| **byte == first).count())
 }

@@ -50,7 +50,7 @@ impl<'a> ReportContext<'a> {
     }
 
     /// Formats a number with as many decimals as it needs.
-    pub fn plain_number(&self, value: f64) -> String {
+    pub fn format_shortest_number(&self, value: f64) -> String {
         self.number(value, plain_decimals(value))
     }
 

@@ -42,7 +42,7 @@ impl ReportFormat {
 }
 
 /// Formats the time of printing, in the time zone of this computer.
-pub fn printed_now(now: &Zoned, language: Language) -> String {
+pub fn current_time_text(now: &Zoned, language: Language) -> String {
     let form = match language {
         Language::English => "%Y-%m-%d %H:%M:%S %Z",
         Language::German => "%d.%m.%Y %H:%M:%S %Z",

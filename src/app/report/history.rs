@@ -49,7 +49,7 @@ pub(super) fn read(content: &ReportContent, source: &ReportSource, store: &Store
         serial_number: Some(key.serial_number.clone()),
         ..EntryFilter::default()
     };
-    let entries = entries(&path, &filter).map_err(|error| explain::logbook_unreadable(&error))?;
+    let entries = entries(&path, &filter).map_err(|error| explain::logbook_unreadable_text(&error))?;
     let is_own = |entry: &Entry| {
         let is_source = match source {
             ReportSource::Profile(_) => true,

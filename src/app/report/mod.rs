@@ -14,7 +14,7 @@ use std::path::Path;
 pub use bytes::byte_table;
 pub use company::company;
 pub use content::{ReportContent, ReportContext};
-pub use format::{ReportFormat, printed_now};
+pub use format::{ReportFormat, current_time_text};
 
 pub use status::{DeviceReading, StatusLine};
 

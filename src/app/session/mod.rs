@@ -203,7 +203,7 @@ impl<D: Kind> Session<D> {
 
     /// Handles the end of polling, with its reason. `is_silent` is set if the device does not reply at all. Polling
     /// that was requested again in the meantime continues.
-    pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
+    pub(in crate::app) fn handle_polling_failure(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
         }

@@ -30,8 +30,8 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values that were read from a device in order to save them to a file. `edits` is the number of edits that are not
-    /// saved, and `remarks` name other missing values.
+    /// Handles values that were read from a device in order to save them to a file. `edits` is the number of edits that
+    /// are not saved, and `remarks` name other missing values.
     pub fn save_read_values(
         &mut self,
         device: Option<DeviceKey>,
@@ -60,8 +60,8 @@ impl SessionState {
         true
     }
 
-    /// Saves a profile in a task. `device` is the one from which it was read, if any. `remarks` name the values that are
-    /// missing from it.
+    /// Saves a profile in a task. `device` is the one from which it was read, if any. `remarks` name the values that
+    /// are missing from it.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -126,7 +126,7 @@ impl SessionState {
         self.cycles = listed.cycles;
         self.asset = listed.asset;
         self.statuses = listed.statuses;
-        self.writes = Some(listed.writes.map_err(|error| explain::logbook_unreadable(&error)));
+        self.writes = Some(listed.writes.map_err(|error| explain::logbook_unreadable_text(&error)));
     }
 }
 

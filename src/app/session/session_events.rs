@@ -140,7 +140,7 @@ pub trait SessionEvents: HasSession {
             Some(why) => self.connection_lost(why, services),
             None => {
                 let is_silent = self.is_no_response(error);
-                self.session_mut().polling_failed(Self::Device::error_texts(error), is_silent, services);
+                self.session_mut().handle_polling_failure(Self::Device::error_texts(error), is_silent, services);
             }
         }
     }

@@ -90,7 +90,7 @@ impl SessionState {
     }
 
     /// Logs the first reply since the link was opened, with facts about the device.
-    pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
+    pub fn log_first_reply(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
         let link = Text::new("log.answers").with("link", self.kinds.display_link(url));
         let texts = std::iter::once(link).chain(facts).collect();

@@ -32,7 +32,7 @@ impl Echo {
     }
 
     /// Stores whether the adapter echoes, unless this is already known.
-    pub(crate) fn store_heard(&mut self, echo_heard: bool) {
+    pub(crate) fn record_echo(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };
         }

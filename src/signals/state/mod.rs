@@ -54,5 +54,5 @@ pub use quantities::{Quantity, QuantityLimit, Unit, error_quantities, signal_qua
 pub use reading::{CaptureReading, ExampleCapture};
 pub use reference_comparison::{AbsoluteOffset, Nonlinearities, OffsetError, nonlinearity_quantities};
 pub use scope::{Scope, TimeAxisError};
-pub use spectra::{ChannelSpectrum, Spectra, decibel_volts};
+pub use spectra::{ChannelSpectrum, Spectra, to_decibel_volts};
 pub use table::{Column, Table};

@@ -61,7 +61,7 @@ fn quality_section(context: &ReportContext<'_>, quantities: &[Quantity], family:
             Some(Verdict::Warn) => (Mark::Warning, Some("quality.outside")),
             Some(Verdict::Fault) => (Mark::Bad, Some("quality.fault")),
         };
-        let plain = |value: f64| context.plain_number((value * 1e6).round() / 1e6);
+        let plain = |value: f64| context.format_shortest_number((value * 1e6).round() / 1e6);
         table.add_marked_row(
             mark,
             [

@@ -28,7 +28,7 @@ pub enum TimeAxisError {
 }
 
 /// Maximum time in seconds that can be represented in nanoseconds.
-const FARTHEST_S: f64 = 9.2e9;
+const MAX_TIME_S: f64 = 9.2e9;
 
 /// Maximum number of samples kept of a running source: five seconds at 100 kHz.
 const MAX_KEPT_SAMPLES: usize = 500_000;
@@ -54,7 +54,7 @@ impl Scope {
         let recorder = if counts { Recorder::without_times(1) } else { Recorder::new(SPAN) };
         let mut scope = Scope::new(capture.wires.is_some(), count.max(1), recorder);
         let mut from = 0;
-        if !counts && capture.time_s.iter().any(|seconds| seconds.abs() > FARTHEST_S) {
+        if !counts && capture.time_s.iter().any(|seconds| seconds.abs() > MAX_TIME_S) {
             scope.refused = Some(TimeAxisError::TooFar);
         }
         while from < count && scope.refused.is_none() {

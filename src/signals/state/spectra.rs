@@ -75,7 +75,7 @@ fn median(values: &[f64]) -> f64 {
 }
 
 /// Converts a peak amplitude in volts to an rms level in decibels relative to one volt.
-pub fn decibel_volts(peak_v: f64) -> f64 {
+pub fn to_decibel_volts(peak_v: f64) -> f64 {
     /// Minimum level in decibels. At this level, an amplitude is indistinguishable from zero in a double next to one
     /// volt.
     const MIN_DECIBELS: f64 = -160.0;
@@ -120,8 +120,8 @@ mod tests {
     #[test]
     fn levels_refer_to_the_rms_value() {
         // A sine of √2 V peak has 1 V rms; a tenth of it is 20 dB less.
-        assert!(decibel_volts(2.0_f64.sqrt()).abs() < 1e-12);
-        assert!((decibel_volts(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);
-        assert_eq!(decibel_volts(0.0), -160.0);
+        assert!(to_decibel_volts(2.0_f64.sqrt()).abs() < 1e-12);
+        assert!((to_decibel_volts(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);
+        assert_eq!(to_decibel_volts(0.0), -160.0);
     }
 }

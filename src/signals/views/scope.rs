@@ -6,7 +6,7 @@ use super::numbers::with_unit;
 use super::{SignalsUiState, quality, source};
 use crate::app::{Action, RecorderOwner, explain};
 use crate::signals::state::{
-    ChannelSpectrum, Measurement, Signals, Spectra, TAB, TEXTS, TimeAxisError, Unit, decibel_volts,
+    ChannelSpectrum, Measurement, Signals, Spectra, TAB, TEXTS, TimeAxisError, Unit, to_decibel_volts,
 };
 use crate::signals::views::translate;
 use crate::ui::controls::{card, card_with_trailing, name, paragraph};
@@ -93,7 +93,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
 }
 
 fn display_scale(volts: bool, peak_v: f64) -> f64 {
-    if volts { peak_v } else { decibel_volts(peak_v) }
+    if volts { peak_v } else { to_decibel_volts(peak_v) }
 }
 
 fn lines_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
@@ -149,7 +149,7 @@ fn peaks_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measure
                 ui.label(theme.label(translate(theme, id)));
                 ui.label(theme.monospace(with_unit(theme, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
                 ui.label(theme.monospace(with_unit(theme, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
-                ui.label(theme.monospace(with_unit(theme, decibel_volts(peak.amplitude_v), 1, Unit::DecibelVolts)));
+                ui.label(theme.monospace(with_unit(theme, to_decibel_volts(peak.amplitude_v), 1, Unit::DecibelVolts)));
                 let order = signal_hz.filter(|hertz| *hertz > 0.0).map(|hertz| peak.frequency_hz / hertz);
                 ui.label(theme.monospace(order.map_or_else(|| "–".to_owned(), |order| theme.format_number(order, 2))));
                 ui.end_row();

@@ -353,7 +353,7 @@ fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
 
 /// An asset keeps its entries when its encoder is exchanged, and an encoder takes none of them along.
 #[test]
-fn an_asset_has_the_entries_of_its_devices_while_they_are_assigned() {
+fn an_asset_has_the_entries_of_its_assigned_devices() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let (old, new) = (device("old"), device("new"));

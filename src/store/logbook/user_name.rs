@@ -1,4 +1,5 @@
-//! The user's name in the entries of the logbook: in full, as initials, or not at all. A plant's rules may forbid names.
+//! The user's name in the entries of the logbook: in full, as initials, or not at all. A plant's rules may forbid
+//! names.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -57,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_name_is_full_or_shortened_or_left_out() {
+    fn names_are_full_abbreviated_or_omitted() {
         let name = |choice: UserName, user: &str, real: &str| {
             let real = (!real.is_empty()).then(|| real.to_owned());
             choice.of(Some(user.to_owned()), real).unwrap_or_default()

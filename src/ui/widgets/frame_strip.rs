@@ -20,7 +20,7 @@ use super::series_colour;
 use crate::analysis::quality::Verdict;
 use crate::ui::{Theme, controls};
 
-use place::{PlacedPiece, RequiredSpace, place_fields};
+use place::{PlacedPiece, RequiredSpace, arrange_fields};
 
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
@@ -54,7 +54,7 @@ pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
     let words: Vec<Words> = strip.fields.iter().map(|field| Words::from_field(ui, theme, field)).collect();
     let wants =
         strip.fields.iter().zip(&words).map(|(field, words)| RequiredSpace { bits: field.bits, words: words.width() });
-    let placing = place_fields(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
+    let placing = arrange_fields(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
     let has_values = strip.fields.iter().any(|field| !field.value.is_empty());
     let line =
         CELL_HEIGHT + BAR_HEIGHT + NAME_HEIGHT + if has_values { VALUE_HEIGHT } else { 0.0 } + theme.space.inside;

@@ -91,7 +91,7 @@ impl Write for Spy {
         Ok(())
     }
 
-    fn lead_back(
+    fn return_to_safe_state(
         &mut self,
         _: &ConfirmedPlan<'_, (), Op>,
         ended: Result<(), Cancelled>,

@@ -108,13 +108,13 @@ impl Novo {
             if cancel.stops_transaction() {
                 return Err(Error::Cancelled);
             }
-            trace.record_frame(clock.now(), Direction::Sent, MaskedBytes::clear(&request.emit()));
+            trace.record_frame(clock.now(), Direction::Sent, MaskedBytes::unmasked(&request.emit()));
             wire.send(&request.emit())?;
             let (until, mut heard) = (clock.now() + PATIENCE, Vec::new());
             while heard.len() < REPLY && clock.now() < until {
                 wire.receive(until, &mut heard)?;
             }
-            trace.record_frame(clock.now(), Direction::Received, MaskedBytes::clear(&heard));
+            trace.record_frame(clock.now(), Direction::Received, MaskedBytes::unmasked(&heard));
             if let Some(word) = parse_reply(request, &heard) {
                 return Ok(word);
             }

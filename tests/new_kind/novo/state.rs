@@ -92,7 +92,7 @@ impl Encoder {
         let is_first = self.read().is_none();
         self.session.title = Some(format!("Novo · {}", read.serial));
         if std::mem::take(&mut self.session.just_connected) {
-            self.session.log_answer(Vec::new(), services);
+            self.session.log_first_reply(Vec::new(), services);
         }
         self.take(read.clone());
         if is_first {

@@ -94,7 +94,7 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
 
 /// Checks that the reconnected encoder can be returned to operation, and that, once for each step, the change can be
 /// repeated.
-fn assert_can_be_led_back(
+fn assert_can_return_to_operation(
     bench: &Bench,
     scene: &Scene,
     told: &InterruptedWrite,
@@ -104,7 +104,7 @@ fn assert_can_be_led_back(
     let first = !steps.contains(&told.end_state.at);
     let mut again = if first { bench.reconnected() } else { bench.reconnected_knowing() };
     again.motor().set_rpm(0.0);
-    again.lead_back().unwrap_or_else(|error| panic!("{context}: {error}"));
+    again.return_to_operation().unwrap_or_else(|error| panic!("{context}: {error}"));
     assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
     if !first {
         return;
@@ -154,7 +154,7 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
                     assert!(told.cause.is_lost(), "{context}: {told}");
                     assert_reported_state(&told.end_state, &bench, &context);
                     assert_cycles(&told, bench.flash_cycles() - before, &context);
-                    assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
+                    assert_can_return_to_operation(&bench, scene, &told, &mut steps, &context);
                 }
             }
         }
@@ -174,27 +174,27 @@ fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, cont
 }
 
 #[test]
-fn a_data_write_cut_at_any_exchange_can_be_led_back() {
+fn a_data_write_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[0], *way));
 }
 
 #[test]
-fn a_filter_change_cut_at_any_exchange_can_be_led_back() {
+fn a_filter_change_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[1], *way));
 }
 
 #[test]
-fn a_preset_cut_at_any_exchange_can_be_led_back() {
+fn a_preset_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[2], *way));
 }
 
 #[test]
-fn a_calibration_cut_at_any_exchange_can_be_led_back() {
+fn a_calibration_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[3], *way));
 }
 
 #[test]
-fn a_wiegand_test_cut_at_any_exchange_can_be_led_back() {
+fn a_wiegand_test_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
 }
 
@@ -233,8 +233,8 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
                     assert!(!lost || warned, "{context}: {told:?}");
                     // Power is back, and the encoder is in operation.
                     let mut again = bench.reconnected_knowing();
-                    assert_eq!(again.lead_back().unwrap(), DeviceMode::OPERATION, "{context}");
-                    assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
+                    assert_eq!(again.return_to_operation().unwrap(), DeviceMode::OPERATION, "{context}");
+                    assert_can_return_to_operation(&bench, scene, &told, &mut steps, &context);
                 }
             }
         }
@@ -243,7 +243,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
 
 /// Power is lost in the middle of the flash being written.
 #[test]
-fn power_lost_in_any_store_is_reported_and_led_back() {
+fn power_lost_in_any_store_is_reported_and_recovered() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -257,14 +257,14 @@ fn power_lost_in_any_store_is_reported_and_led_back() {
             assert!(told.cause.is_lost() && told.end_state.standing.is_some(), "{context}: {told:?}");
             assert_eq!(told.done.write_cycles, store, "{context}");
             bench.encoder(|encoder, _| encoder.set_faults(&Default::default()));
-            assert_can_be_led_back(&bench, scene, &told, &mut Vec::new(), &context);
+            assert_can_return_to_operation(&bench, scene, &told, &mut Vec::new(), &context);
         }
     }
 }
 
 /// A cancellation at every exchange: the encoder is in operation, and the written values are the reported ones.
 #[test]
-fn cancelling_at_any_exchange_leads_back() {
+fn cancelling_at_any_exchange_returns_to_operation() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -314,7 +314,7 @@ fn an_interrupted_mounting_reports_the_finished_operations() {
                 assert_cycles(&told, bench.flash_cycles() - before, &context);
                 assert_eq!(told.done.outcomes.len(), told.done.ops, "{context}");
                 ops.push(told.done.ops);
-                assert!(bench.reconnected().lead_back().is_ok(), "{context}");
+                assert!(bench.reconnected().return_to_operation().is_ok(), "{context}");
                 assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
             }
         }

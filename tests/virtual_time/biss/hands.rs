@@ -70,7 +70,7 @@ impl TestOperator {
                 let speed = if run.is_calibration() { calibration } else { wiegand };
                 if run.is_clockwise() { speed } else { -speed }
             }
-            OperatorTask::Stand | OperatorTask::StandAtPlace => 0.0,
+            OperatorTask::HoldStill | OperatorTask::HoldAtPresetAngle => 0.0,
         };
         self.motor.set_rpm(rpm);
         if demand.is_ready() {
@@ -156,9 +156,9 @@ impl Bench {
         }
     }
 
-    pub(crate) fn lead_back(&mut self) -> Result<DeviceMode, JobError> {
-        match self.run(BissJob::LeadBack)? {
-            BissOutput::LedBack(mode) => Ok(mode),
+    pub(crate) fn return_to_operation(&mut self) -> Result<DeviceMode, JobError> {
+        match self.run(BissJob::ReturnToOperation)? {
+            BissOutput::ReturnedToOperation(mode) => Ok(mode),
             other => panic!("{other:?}"),
         }
     }

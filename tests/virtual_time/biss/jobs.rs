@@ -216,7 +216,7 @@ fn unsaved_registers_are_marked_and_not_compared() {
         assert_eq!(profile.recorded.device_mode, Some(mode), "{way:?}");
         assert_eq!(device_error(bench.run(BissJob::SaveToCompare).unwrap_err()), Error::NotInOperation { mode });
         assert_eq!(bench.encoder_reads(at("0x24:0x10")), Some(entered), "{way:?}: still entered");
-        assert_eq!(bench.lead_back().unwrap(), mode);
+        assert_eq!(bench.return_to_operation().unwrap(), mode);
         let Ok(BissOutput::Saved(profile)) = bench.run(BissJob::SaveToCompare) else { panic!() };
         assert_eq!((profile.bank(0x24).unwrap().bytes[0x10], profile.recorded.device_mode), (held, None), "{way:?}");
         let Ok(BissOutput::Registers(read)) = bench.run(BissJob::ReadBank(0x24)) else { panic!() };

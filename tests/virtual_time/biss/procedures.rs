@@ -96,7 +96,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
             assert_eq!(bench.mode_and_password(), IN_OPERATION);
             // It takes effect after a restart.
             bench.encoder(|encoder, now| encoder.power_cycle(now));
-            bench.run(encoder_studio::devices::biss::jobs::BissJob::LeadBack).unwrap();
+            bench.run(encoder_studio::devices::biss::jobs::BissJob::ReturnToOperation).unwrap();
             assert_eq!(bench.encoder_reads(at("0x00:0x12")), Some(if save { 58 } else { 0 }));
         }
     }
@@ -144,7 +144,7 @@ fn a_filter_is_selected_with_a_restart() {
 
 /// Manual 6.7: 270° are 18000h, its registers 00 80 01.
 #[test]
-fn a_preset_is_stored_and_carried_out_with_two_restarts() {
+fn a_preset_is_stored_and_executed_with_two_restarts() {
     for way in WAYS {
         let mut bench = Bench::new(way, "position=0x20007");
         let before = bench.flash_cycles();
@@ -209,8 +209,8 @@ fn a_mounting_is_one_run_with_a_report() {
         OperatorTask::Turn(MotorRun::CalibrationClockwise),
         OperatorTask::Turn(MotorRun::WiegandClockwise),
         OperatorTask::Turn(MotorRun::WiegandCounterclockwise),
-        OperatorTask::StandAtPlace,
-        OperatorTask::Stand,
+        OperatorTask::HoldAtPresetAngle,
+        OperatorTask::HoldStill,
     ];
     assert_eq!(tasks, expected);
 }
@@ -242,8 +242,8 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
         (calibration(), OperatorTask::Turn(MotorRun::CalibrationCounterclockwise)),
         (calibration(), OperatorTask::Turn(MotorRun::CalibrationClockwise)),
         (wiegand_test(true), OperatorTask::Turn(MotorRun::WiegandCounterclockwise)),
-        (preset(1, 1), OperatorTask::StandAtPlace),
-        (data(), OperatorTask::Stand),
+        (preset(1, 1), OperatorTask::HoldAtPresetAngle),
+        (data(), OperatorTask::HoldStill),
     ] {
         let mut bench = Bench::new(Transport::ConfigPin, "");
         let prepared = bench.prepare(change).unwrap();
@@ -263,7 +263,7 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
 #[test]
 fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let cases = [
-        ("rpm=0", calibration(), StartBlocker::Standing),
+        ("rpm=0", calibration(), StartBlocker::NotTurning),
         ("rpm=500", calibration(), StartBlocker::WrongDirection),
         ("rpm=-1000", wiegand_test(false), StartBlocker::WrongDirection),
         ("rpm=-500&temperature=20", calibration(), StartBlocker::Temperature { celsius: 20 }),
@@ -462,7 +462,7 @@ fn an_encoder_without_a_choice_of_filter_is_calibrated() {
 
 /// Another host has left the encoder in a device mode, with the password set.
 #[test]
-fn an_encoder_left_in_a_mode_is_led_back_first() {
+fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
     for mode in [1, 2, 4, 5, 7] {
         for way in WAYS {
             let mut bench = Bench::new(way, "");
@@ -473,7 +473,7 @@ fn an_encoder_left_in_a_mode_is_led_back_first() {
             let found = DeviceMode::new(mode);
             assert!(matches!(error, JobError::Device(Error::NotInOperation { mode }) if mode == found), "{error}");
             assert_eq!(bench.mode_and_password(), (found, 0x2A), "nothing was written");
-            assert_eq!(bench.lead_back().unwrap(), found);
+            assert_eq!(bench.return_to_operation().unwrap(), found);
             assert_eq!(bench.mode_and_password(), IN_OPERATION);
             bench.change(data()).unwrap();
         }
@@ -483,12 +483,12 @@ fn an_encoder_left_in_a_mode_is_led_back_first() {
     bench.encoder(|encoder, now| assert!(encoder.write(now, at("0x6B"), 0x2A)));
     bench.change(data()).unwrap();
     assert_eq!(bench.mode_and_password(), IN_OPERATION);
-    assert_eq!(bench.lead_back().unwrap(), DeviceMode::OPERATION);
+    assert_eq!(bench.return_to_operation().unwrap(), DeviceMode::OPERATION);
 }
 
 /// A clockwise run of another host is allowed to finish: leaving it would lose the table.
 #[test]
-fn leading_back_waits_for_a_calibration() {
+fn the_return_to_operation_waits_for_a_calibration() {
     for silent in ["on", "off"] {
         let mut bench = Bench::new(Transport::ConfigPin, &format!("rpm=-500&calibration-silent={silent}"));
         let start =
@@ -500,7 +500,7 @@ fn leading_back_waits_for_a_calibration() {
         bench.motor().set_rpm(500.0);
         start(&bench, "0x00:0x00", 2);
         let before = bench.flash_cycles();
-        bench.lead_back().unwrap();
+        bench.return_to_operation().unwrap();
         assert_eq!(bench.mode_and_password(), IN_OPERATION, "{silent}");
         assert_eq!(bench.flash_cycles() - before, 1, "it was saved");
         assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
@@ -523,7 +523,7 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
                 seat.answer_task(demand.task, OperatorAnswer::Go)
             }
             StepDetail::Begins if (news.op, news.step) == (0, ProcedureStep::Save) => {
-                seat.answer_task(OperatorTask::Stand, OperatorAnswer::Go)
+                seat.answer_task(OperatorTask::HoldStill, OperatorAnswer::Go)
             }
             StepDetail::Demand(demand) if news.op == 1 && demand.is_ready() => {
                 asked += 1;

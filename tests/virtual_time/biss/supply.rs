@@ -89,7 +89,7 @@ fn an_encoder_that_never_answers_keeps_its_power() {
 
 /// At any interruption of a write: an encoder that could not be returned to operation keeps its power until it is.
 #[test]
-fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
+fn an_encoder_that_could_not_be_returned_to_operation_keeps_its_power() {
     let mut whole = Bench::supplied(AsFound);
     let prepared = whole.prepare(data()).unwrap();
     let begins = whole.tap().sent.len();
@@ -111,7 +111,7 @@ fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
         assert_eq!(has_power(&bench), unknown, "cut in part {part}: {error}");
         if unknown {
             kept += 1;
-            bench.lead_back().unwrap();
+            bench.return_to_operation().unwrap();
             bench.session.restore_state();
             assert!(!has_power(&bench), "cut in part {part}");
         }

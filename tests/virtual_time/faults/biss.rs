@@ -129,7 +129,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     // The line is intact again: the encoder is returned to operation, then the change is completed.
     let mut again = bench.reconnected();
     again.motor().set_rpm(0.0);
-    again.lead_back().unwrap_or_else(|error| panic!("{context}: {error}"));
+    again.return_to_operation().unwrap_or_else(|error| panic!("{context}: {error}"));
     assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
     let prepared = again.prepare((case.change)()).unwrap_or_else(|error| panic!("{context}: a second plan: {error}"));
     let mut user = hands(&again);

@@ -212,7 +212,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     };
     // The cable is back: the encoder is returned to operation, then the change is completed.
     rig.reconnect();
-    rig.session.run_inline(InterbusJob::LeadBack).unwrap_or_else(|error| panic!("{context}: {error}"));
+    rig.session.run_inline(InterbusJob::RestoreMode).unwrap_or_else(|error| panic!("{context}: {error}"));
     let job = rig.commit_job(case.change.clone()).unwrap_or_else(|error| panic!("{context}: a second plan: {error}"));
     rig.session.run_inline(job).unwrap_or_else(|error| panic!("{context}: a second run: {error}"));
     assert_eq!(rig.state(), *after, "{context}: after a second run");

@@ -43,8 +43,8 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         }
         3 => bench.load(SpindleLoad { percent: 60, ..SpindleLoad::default() }),
         4 | 5 => bench.load(SpindleLoad::default()),
-        6 => bench.station.set_s3(now, dice.u8(..3)),
-        7 => bench.station.set_s3(now, 0),
+        6 => bench.station.set_drive_select_switch(now, dice.u8(..3)),
+        7 => bench.station.set_drive_select_switch(now, 0),
         8 => bench.reset(),
         9 => {
             bench.reconnect();

@@ -108,7 +108,7 @@ fn a_stale_intent_stops_the_drive() {
 
 /// The drive continues to report motion: 200 ms per rung.
 #[test]
-fn a_drive_that_does_not_stop_climbs_the_ladder() {
+fn a_drive_that_does_not_stop_escalates_the_stop() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
         let mut bench = Bench::new();
         bench.act(wish);
@@ -191,7 +191,7 @@ proptest! {
 
     /// Late reports never turn a stop into a start.
     #[test]
-    fn late_reports_start_nothing(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
+    fn late_reports_do_not_start_motion(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
         let mut bench = Bench::new();
         bench.late = late;
         bench.act(if runs { jog(Direction::Counterclockwise) } else { to(9 * TURN) });

@@ -94,7 +94,7 @@ fn an_interrupted_read_ends_in_time_and_reports_out() {
             assert_eq!(mode, StartupMode::Cams(program(2)), "{at}");
             match error {
                 // The last word has reached it, unless that word was the lost one.
-                Error::NotLedBack { standing, .. } => assert!(!hears || standing.out == out, "{at}: {standing}"),
+                Error::ModeNotRestored { standing, .. } => assert!(!hears || standing.out == out, "{at}: {standing}"),
                 _ => assert_eq!(out, 0, "{at}"),
             }
         }
@@ -137,7 +137,7 @@ fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
             assert!(stand.elapsed() - begun < LIMIT + CONFIRMED, "{at}: {:?}", stand.elapsed() - begun);
             // The cable is back: the encoder can be returned to its mode.
             *stand.tap() = Tap::default();
-            stand.run(InterbusJob::LeadBack).unwrap();
+            stand.run(InterbusJob::RestoreMode).unwrap();
             assert!(stand.session.take_sample().unwrap().is_valid(), "{at}");
             assert_eq!(stand.left().0, 0, "{at}");
         }
@@ -166,7 +166,7 @@ fn a_faulty_gateway_is_tolerated() {
 /// Issue 22.6: reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns
 /// the encoder to its earlier mode, not to the program in which it was left.
 #[test]
-fn an_interrupted_cam_read_is_led_back_by_the_next_run() {
+fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
     let save = || InterbusJob::Save { programs: true };
     for (query, found) in [
         ("steps=3600&revolutions=1&serial=77&cams=demo", StartupMode::K3),
@@ -185,7 +185,7 @@ fn an_interrupted_cam_read_is_led_back_by_the_next_run() {
             match stand.run(InterbusJob::Identify) {
                 // Left in the echo of a selection: the user has to confirm that no other master uses it.
                 Err(JobError::Device(Error::NotRunning { .. })) => {
-                    stand.run(InterbusJob::LeadBack).unwrap();
+                    stand.run(InterbusJob::RestoreMode).unwrap();
                 }
                 ended => assert!(ended.is_ok(), "{at}: {ended:?}"),
             }

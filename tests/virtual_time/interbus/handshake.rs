@@ -72,7 +72,7 @@ fn only_a_stable_exact_echo_counts() {
 
 /// Reference 2: each error word, at each word of the worked example; `80000000` and `00000000` follow.
 #[test]
-fn an_error_at_any_step_is_reported_and_led_back() {
+fn an_error_at_any_step_is_reported_and_the_mode_restored() {
     let words = [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN];
     let errors = [
         (0x8200_0000, "wrong parameter data"),
@@ -229,7 +229,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
 /// Modbus application protocol 1.1b3, chapter 7: with 01 to 03 nothing was written; with any other the gateway may have
 /// passed the word on.
 #[test]
-fn a_word_the_gateway_may_have_written_is_led_back() {
+fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
     for (code, wrote) in [(0x02, false), (0x04, true), (0x06, true), (0x0B, true), (0x0B, false)] {
         let script = Script { refuses: Some((STEPS, code, wrote)), ..Script::new() };
         let (ended, _, sent) = carry_out(script, worked_example());
@@ -249,7 +249,7 @@ fn a_word_the_gateway_may_have_written_is_led_back() {
 
 /// A word that is already on OUT has no edge.
 #[test]
-fn leading_back_creates_a_run_edge() {
+fn restoring_the_mode_creates_a_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
     assert_eq!(Master::for_job(script, &mut station).end_foreign_operation(), Ok(StartupMode::K3));
@@ -258,7 +258,7 @@ fn leading_back_creates_a_run_edge() {
 
 /// The shaft is already two steps from the preset: the preset counts as applied only when the position equals it.
 #[test]
-fn a_preset_is_fired_until_the_position_matches() {
+fn a_preset_is_triggered_until_the_position_matches() {
     let fire = || vec![Op::FirePreset { value: POSITION + 2 }];
     let near: Vec<u32> = std::iter::repeat_n(POSITION, 6).chain([POSITION + 2]).collect();
     let (ended, steps, sent) = carry_out(Script::new().on(0x4000_0000, &near), fire());
@@ -307,7 +307,7 @@ fn a_missing_echo_position_or_value_is_reported_with_its_words() {
         let expected = Error::TimeOut { awaited, sent: word, input: 0xC000_0000, milliseconds: 2000 };
         match &interrupted.cause {
             // `80000000` does not return it either, because it is already on OUT.
-            Error::NotLedBack { cause, standing } => {
+            Error::ModeNotRestored { cause, standing } => {
                 assert_eq!((**cause == expected, standing.out, standing.parameterising), (true, RUN, true));
             }
             cause => assert_eq!(*cause, expected),

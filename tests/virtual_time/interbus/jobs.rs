@@ -192,13 +192,13 @@ fn several_encoders_on_one_gateway_are_selected_by_registers() {
 }
 
 #[test]
-fn an_encoder_left_in_parameterisation_is_led_back_on_request() {
+fn an_encoder_left_in_parameterisation_returns_to_operation_on_request() {
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
     let error = stand.run(InterbusJob::Identify).unwrap_err();
     assert_eq!(error.to_string(), "the encoder is being parameterised: IN is C20000FF");
     assert_eq!(stand.sent(), Vec::<u32>::new(), "whoever is at it is not disturbed");
-    assert!(matches!(stand.run(InterbusJob::LeadBack).unwrap(), InterbusOutput::LedBack(mode) if mode == K3));
+    assert!(matches!(stand.run(InterbusJob::RestoreMode).unwrap(), InterbusOutput::ModeRestored(mode) if mode == K3));
     assert_eq!(stand.left(), (0, K3));
     stand.gateway.with_encoder(|encoder| assert_eq!(encoder.mode(), EncoderMode::Position));
 }

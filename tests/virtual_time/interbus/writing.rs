@@ -305,7 +305,7 @@ fn reading_programs_counts_as_stores() {
     // Parameters that another master has partly set are stored by the return to the mode.
     let now = stand.clock.now();
     stand.gateway.with_encoder(|encoder| encoder.write(now, 0x2040_0011));
-    stand.run(InterbusJob::LeadBack).unwrap();
+    stand.run(InterbusJob::RestoreMode).unwrap();
     assert_eq!(stand.counted(), 3);
 }
 
@@ -399,7 +399,7 @@ fn a_preset_near_the_shafts_position_is_set_to_the_step() {
 
 /// IN is 86000000 all the time: the content was lost. The remedy in the message has to work.
 #[test]
-fn an_encoder_with_lost_parameters_can_be_led_back_and_restored() {
+fn an_encoder_with_lost_parameters_can_be_recovered_and_restored() {
     let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");
     let profile = match stand.run(InterbusJob::Save { programs: true }).unwrap() {
         InterbusOutput::Saved(profile) => profile,
@@ -410,8 +410,8 @@ fn an_encoder_with_lost_parameters_can_be_led_back_and_restored() {
     assert!(matches!(stand.commit(prepared), Err(JobError::Interrupted { .. })));
     let now = stand.clock.now();
     stand.gateway.with_encoder(|encoder| encoder.connect(now));
-    match stand.run(InterbusJob::LeadBack).unwrap() {
-        InterbusOutput::LedBack(mode) => assert_eq!(mode, StartupMode::K3),
+    match stand.run(InterbusJob::RestoreMode).unwrap() {
+        InterbusOutput::ModeRestored(mode) => assert_eq!(mode, StartupMode::K3),
         other => panic!("{other:?}"),
     }
     assert_eq!((stand.session.take_sample().unwrap().word, stand.left()), (0x8600_0000, (0, StartupMode::K3)));

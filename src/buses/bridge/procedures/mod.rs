@@ -281,7 +281,7 @@ impl Adapter<'_, '_> {
         let bytes = [before, &request.emit(seq).emit()].concat();
         let sent_at = self.line.now();
         self.state.mark_sent(sent_at);
-        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at).map_err(LineError::Link)?;
+        self.line.send(&bytes, MaskedBytes::unmasked(&bytes), sent_at).map_err(LineError::Link)?;
         let deadline = sent_at + duration + REPEAT_AFTER + self.state.margin;
         let mut portion = Vec::new();
         loop {
@@ -298,7 +298,7 @@ impl Adapter<'_, '_> {
             self.state.quality.damaged += broken;
             if let Some(bytes) = self.adapter.receiver.take_damaged_bytes() {
                 let now = self.line.now();
-                self.line.show(now, MaskedBytes::clear(&bytes));
+                self.line.show(now, MaskedBytes::unmasked(&bytes));
             }
             portion.clear();
             self.line.receive(deadline, &mut portion).map_err(LineError::Link)?;
@@ -325,7 +325,7 @@ impl Adapter<'_, '_> {
             return Ok(None);
         }
         let now = self.line.now();
-        self.line.show(now, MaskedBytes::clear(&packet.emit()));
+        self.line.show(now, MaskedBytes::unmasked(&packet.emit()));
         match parsed {
             Ok(Message::Reply(reply)) if reply.operation() == operation => Ok(Some(reply)),
             Ok(Message::Reply(reply)) => Err(AdapterError::unexpected_reply(operation, &reply)),

@@ -173,7 +173,7 @@ fn item_list_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
                     own.status,
                     item.state
                 ));
-                lines.push(format!("answers at {}", socket_text(&item.socket)));
+                lines.push(format!("answers at {}", format_socket_address(&item.socket)));
             }
             Item::ConnectedAddress(connection) => lines.push(format!("connection 0x{connection:08X}")),
             Item::SequencedAddress { connection, sequence } => {
@@ -185,16 +185,16 @@ fn item_list_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
                 None => lines.push(format!("no CIP message: {}", hex(data))),
             },
             Item::SocketToTarget(address) => {
-                lines.push(format!("cyclic data to the target at {}", socket_text(address)))
+                lines.push(format!("cyclic data to the target at {}", format_socket_address(address)))
             }
             Item::SocketToOriginator(address) => {
-                lines.push(format!("cyclic data to the originator at {}", socket_text(address)));
+                lines.push(format!("cyclic data to the originator at {}", format_socket_address(address)));
             }
             Item::Unknown { kind, data } => lines.push(format!("item 0x{kind:04X}: {}", hex(data))),
         }
     }
 }
 
-fn socket_text(address: &SocketAddress) -> String {
+fn format_socket_address(address: &SocketAddress) -> String {
     format!("{}:{}", address.address, address.port)
 }

@@ -36,7 +36,7 @@ pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs)
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.parse_action(KIND, ACTIONS)?, words.as_slice()) {
         (BissAction::Check, []) => check_device(common, output),
-        (BissAction::LeadBack, []) => lead_back(common, output, act),
+        (BissAction::LeadBack, []) => return_to_operation(common, output, act),
         (BissAction::Calibrate, []) => {
             run_guided(common, output, act, MountingSteps { calibrate: true, ..MountingSteps::default() })
         }
@@ -67,7 +67,7 @@ fn check_device(common: &CommonArgs, output: &Output) -> Result {
     result_of!(Runner::open(common)?.run(BissJob::Check)?, BissOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
 }
 
-fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
+fn return_to_operation(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     // Returning to operation stores nothing, so no consent is needed without a terminal. On a terminal, the user may
     // have entered values that will be discarded.
     if !act.consent.yes
@@ -76,8 +76,8 @@ fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     {
         return Err(Failure::Failed(vec!["Not confirmed; the encoder was not changed.".to_owned()]));
     }
-    match Runner::open(common)?.run(BissJob::LeadBack)? {
-        BissOutput::LedBack(mode) => {
+    match Runner::open(common)?.run(BissJob::ReturnToOperation)? {
+        BissOutput::ReturnedToOperation(mode) => {
             let text = format!("in operation, password cleared; it was in mode {mode}\n");
             output.show(&json!({"done": "lead-back", "mode": mode.byte()}), &text)?;
             Ok(Success::Well)

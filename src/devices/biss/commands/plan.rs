@@ -103,7 +103,7 @@ fn operation_steps(op: &Op) -> Vec<PlanStep> {
             steps
         }
         Op::StorePreset { from, to } => step(Some(hex_compact(&from.emit())), Some(hex_compact(&to.emit()))),
-        Op::FirePreset { parts, value } => step(None, Some(preset_fired_text(*parts, *value))),
+        Op::FirePreset { parts, value } => step(None, Some(preset_trigger_text(*parts, *value))),
         Op::SelectFilter { from, to } => step(Some(byte(from.byte())), Some(byte(to.byte()))),
         Op::Calibrate => step(None, Some(CALIBRATION.to_owned())),
         Op::WiegandTest { save } => {
@@ -114,7 +114,7 @@ fn operation_steps(op: &Op) -> Vec<PlanStep> {
     }
 }
 
-fn preset_fired_text(parts: PresetParts, value: PresetValue) -> String {
+fn preset_trigger_text(parts: PresetParts, value: PresetValue) -> String {
     let (turns, steps) = (value.multiturn(), value.singleturn());
     match parts {
         PresetParts::Both => format!("turn {turns}, step {steps}"),

@@ -51,7 +51,7 @@ pub enum BissJob {
     Prepare(Change),
     Commit(Box<Commit>),
     /// Returns the encoder to operation and clears the password, even if another program changed the mode.
-    LeadBack,
+    ReturnToOperation,
 }
 
 #[derive(Clone, Debug)]
@@ -227,7 +227,7 @@ pub enum BissOutput {
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
     /// The encoder was returned to operation. Contains the previous device mode.
-    LedBack(DeviceMode),
+    ReturnedToOperation(DeviceMode),
 }
 
 pub type JobError = crate::worker::JobError<Error, PlanError, InterruptedWrite, ChangeKind>;

@@ -181,10 +181,10 @@ impl Device for Biss {
                 let steps = &mut |progress| tell(JobReport::Progress(progress));
                 BissOutput::Committed(Box::new(commit::commit_plan(self, context, *commit, steps)?))
             }
-            BissJob::LeadBack => {
-                let mode = procedure::lead_back(&mut self.create_master(context), &types)?;
+            BissJob::ReturnToOperation => {
+                let mode = procedure::return_to_operation(&mut self.create_master(context), &types)?;
                 self.station.unfinished = false;
-                BissOutput::LedBack(mode)
+                BissOutput::ReturnedToOperation(mode)
             }
         })
     }

@@ -271,8 +271,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request like [`request_with_retries`](Self::request_with_retries). If the line has damaged any data before, the same reply must arrive
-    /// twice.
+    /// Sends a request like [`request_with_retries`](Self::request_with_retries). If the line has damaged any data
+    /// before, the same reply must arrive twice.
     fn read_confirmed(
         &mut self,
         requested: RequestedItem,
@@ -280,7 +280,7 @@ impl<'a> Master<'a> {
     ) -> Result<u8, Error> {
         let mut value = self.request_with_retries(requested, &mut once)?;
         for _ in 0..MAX_ATTEMPTS {
-            if !self.station.needs_double_read() {
+            if !self.station.requires_double_read() {
                 return Ok(value);
             }
             let again = self.request_with_retries(requested, &mut once)?;

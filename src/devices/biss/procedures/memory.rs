@@ -172,9 +172,9 @@ fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let was_sure = master.station().needs_double_read();
+    let was_sure = master.station().requires_double_read();
     let value = read(master)?;
-    if was_sure || !master.station().needs_double_read() { Ok(value) } else { master.run_double_checked(read) }
+    if was_sure || !master.station().requires_double_read() { Ok(value) } else { master.run_double_checked(read) }
 }
 
 /// Creates the profile of an encoder. `unsaved` is the device mode during the reading, or `None` in operation.

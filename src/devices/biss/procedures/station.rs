@@ -249,7 +249,7 @@ impl Station {
     }
 
     /// Returns whether values must be read twice. A checksum misses some pairs of flipped bits.
-    pub(super) fn needs_double_read(&self) -> bool {
+    pub(super) fn requires_double_read(&self) -> bool {
         self.thorough || self.noisy
     }
 

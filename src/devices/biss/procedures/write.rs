@@ -77,7 +77,7 @@ impl<'w, 'm> EncoderWriter<'w, 'm> {
         Ok(EncoderWriter {
             guide: ProcedureContext::new(master, description, operator, tell),
             identity,
-            at: ProcedureStep::LeadBack,
+            at: ProcedureStep::ReturnToOperation,
         })
     }
 }
@@ -135,7 +135,7 @@ impl Write for EncoderWriter<'_, '_> {
         let ended = guide.execute(op);
         done.write_cycles = guide.write_cycles();
         self.at = guide.current_step();
-        let led = lead_back(guide, ended.as_ref().err());
+        let led = return_to_operation(guide, ended.as_ref().err());
         count(done, op, ended?);
         // The operation is done, and the encoder cannot be left in this state.
         self.at = guide.current_step();
@@ -152,10 +152,10 @@ impl Write for EncoderWriter<'_, '_> {
 }
 
 /// Returns the encoder to operation if the line still works.
-fn lead_back(guide: &mut ProcedureContext<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
+fn return_to_operation(guide: &mut ProcedureContext<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
         Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
-        _ => guide.lead_back(),
+        _ => guide.return_to_operation(),
     }
 }
 

@@ -31,7 +31,7 @@ pub struct UbicomPort {
     heard: Option<Moment>,
     work: Option<PendingRequest>,
     /// Time until which the encoder drives the line.
-    talks_until: Moment,
+    transmits_until: Moment,
     frames: u32,
 }
 
@@ -64,7 +64,7 @@ impl UbicomPort {
             to_host: TransitQueue::default(),
             heard: None,
             work: None,
-            talks_until: Moment::START,
+            transmits_until: Moment::START,
             frames: 0,
         }
     }
@@ -85,7 +85,7 @@ impl UbicomPort {
 
     fn handle_input(&mut self) {
         let Some((at, byte)) = self.to_encoder.pop() else { return };
-        if self.work.is_some() || at <= self.talks_until || !self.encoder.can_access_registers(at) {
+        if self.work.is_some() || at <= self.transmits_until || !self.encoder.can_access_registers(at) {
             (self.receiver, self.heard) = (Receiver::new(NODE), None);
             return;
         }
@@ -132,7 +132,7 @@ impl UbicomPort {
         };
         // The encoder does not reply to a write during which it loses power.
         if let Some(reply) = reply.filter(|_| self.encoder.has_power()) {
-            self.talks_until = self.drive(at, &reply.emit(), true);
+            self.transmits_until = self.drive(at, &reply.emit(), true);
         }
     }
 

@@ -52,7 +52,7 @@ impl Encoder {
             BissAction::Plan(change) => self.plan(*change, services),
             BissAction::Answer(task, answer) => self.answer_task(task, answer),
             BissAction::CloseGuide => self.close_procedure(),
-            BissAction::LeadBack => self.submit(BissJob::LeadBack, services),
+            BissAction::ReturnToOperation => self.submit(BissJob::ReturnToOperation, services),
             BissAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
                     motor.set_rpm(rpm);

@@ -41,7 +41,7 @@ pub enum BissAction {
     },
     Answer(OperatorTask, OperatorAnswer),
     CloseGuide,
-    LeadBack,
+    ReturnToOperation,
     /// Turns the shaft of the virtual encoder at a speed in revolutions per minute.
     Turn(f64),
     Save(PathBuf),

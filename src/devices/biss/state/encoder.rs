@@ -150,7 +150,7 @@ impl Encoder {
             self.load_draft(services);
         }
         if fresh {
-            self.log_answer(services);
+            self.log_first_reply(services);
         }
         self.list_backups(services);
     }

@@ -37,7 +37,7 @@ impl Kind for Biss {
     }
 
     fn writes_memory(job: &BissJob) -> bool {
-        matches!(job, BissJob::Commit(_) | BissJob::LeadBack)
+        matches!(job, BissJob::Commit(_) | BissJob::ReturnToOperation)
     }
 
     fn survey_job() -> BissJob {
@@ -127,7 +127,7 @@ impl SessionEvents for Encoder {
                 self.log_outcomes(&committed.written.outcomes, services);
                 self.handle_commit_end(*committed, services);
             }
-            BissOutput::LedBack(mode) => {
+            BissOutput::ReturnedToOperation(mode) => {
                 self.mark_returned_to_operation();
                 let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode_text(mode));
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));

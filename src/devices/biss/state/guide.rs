@@ -30,7 +30,7 @@ pub enum ProcedureEnd {
         /// Results of the operations that were completed before the interruption.
         before: Vec<Outcome>,
         /// Whether the encoder may have been left in a mode other than operation.
-        may_lead_back: bool,
+        may_return_to_operation: bool,
         cancelled: bool,
     },
 }
@@ -147,15 +147,15 @@ impl ProcedureRun {
         }?;
         // The encoder is returned to operation only if the device mode was entered.
         let entered = steps.iter().take(from).any(|step| matches!(step, ProcedureStep::Enter(_)));
-        let led_back = steps.iter().position(|step| *step == ProcedureStep::LeadBack).filter(|_| entered);
+        let led_back = steps.iter().position(|step| *step == ProcedureStep::ReturnToOperation).filter(|_| entered);
         Some(from..led_back.unwrap_or(steps.len()))
     }
 
     /// Returns whether the given step belongs to a return to operation that was completed after an interruption.
     fn was_returned_to_operation(&self, op: usize, step: ProcedureStep) -> bool {
         let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
-        let in_operation = matches!(self.end, Some(ProcedureEnd::Failed { may_lead_back: false, .. }));
-        step == ProcedureStep::LeadBack && was_reported && in_operation
+        let in_operation = matches!(self.end, Some(ProcedureEnd::Failed { may_return_to_operation: false, .. }));
+        step == ProcedureStep::ReturnToOperation && was_reported && in_operation
     }
 }
 
@@ -165,14 +165,22 @@ mod tests {
     use crate::devices::biss::procedures::procedure::MotorRun;
     use crate::devices::biss::protocol::DeviceMode;
 
-    fn step_status(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<StepStatus> {
+    fn step_status(
+        reported: &[ProcedureStep],
+        cut: Option<ProcedureStep>,
+        may_return_to_operation: bool,
+    ) -> Vec<StepStatus> {
         let mut guide = ProcedureRun::new(vec![Op::Calibrate]);
         reported
             .iter()
             .for_each(|step| guide.set_progress(ProcedureProgress { op: 0, step: *step, detail: StepDetail::Begins }));
         guide.cut = cut;
-        guide.end =
-            Some(ProcedureEnd::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
+        guide.end = Some(ProcedureEnd::Failed {
+            texts: Vec::new(),
+            before: Vec::new(),
+            may_return_to_operation,
+            cancelled: false,
+        });
         guide.steps().iter().map(|own| own.reached).collect()
     }
 
@@ -206,7 +214,7 @@ mod tests {
         let first = MotorRun::CalibrationCounterclockwise;
         let (turn, run) = (ProcedureStep::Await(OperatorTask::Turn(first)), ProcedureStep::Run(first));
         let told = [ProcedureStep::Conditions, turn, ProcedureStep::Enter(DeviceMode::CALIBRATION), run];
-        let led = [&told[..], &[ProcedureStep::LeadBack]].concat();
+        let led = [&told[..], &[ProcedureStep::ReturnToOperation]].concat();
         assert_eq!(step_status(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
         assert_eq!(step_status(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
         // With the link lost, no return to operation is reported.
@@ -215,7 +223,7 @@ mod tests {
         assert_eq!(step_status(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
         // The return to operation itself failed.
         assert_eq!(
-            step_status(&led, Some(ProcedureStep::LeadBack), true),
+            step_status(&led, Some(ProcedureStep::ReturnToOperation), true),
             [Done, Done, Done, Done, Done, Done, Failed]
         );
         assert_eq!(step_status(&[], None, false), [Ahead; 7]);
@@ -227,7 +235,7 @@ mod tests {
         guide.set_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: StepDetail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
-        guide.end = Some(ProcedureEnd::Failed { texts, before, may_lead_back: false, cancelled: true });
+        guide.end = Some(ProcedureEnd::Failed { texts, before, may_return_to_operation: false, cancelled: true });
         assert_eq!(guide.steps().first().map(|own| own.reached), Some(StepStatus::Cancelled));
     }
 }

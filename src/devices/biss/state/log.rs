@@ -14,9 +14,9 @@ use crate::devices::biss::state::explain as words;
 
 impl Encoder {
     /// Logs the first response on a newly opened link.
-    pub(super) fn log_answer(&self, services: &mut Services) {
+    pub(super) fn log_first_reply(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
-        self.session.log_answer(vec![transport_text(identity), identity_text(identity)], services);
+        self.session.log_first_reply(vec![transport_text(identity), identity_text(identity)], services);
     }
 
     /// Logs the start of a write with the old and new value of each change.

@@ -126,7 +126,7 @@ mod tests {
     use crate::units::Moment;
 
     fn decode(meaning: &mut FrameDecoder, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
-        let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
+        let bytes = MaskedBytes::unmasked(&parse_hex(text).unwrap());
         let said = meaning.explain(&TraceEntry { at: Moment::START, direction, bytes });
         let words: Vec<String> = said.meaning.iter().map(|text| text.to_string_in(Language::English)).collect();
         (said.fault, words.join(" "))

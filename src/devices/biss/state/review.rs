@@ -104,7 +104,7 @@ impl Reviewable for Biss {
         match prepared.plan.ops.iter().any(is_guided) {
             false => ExecutionMode::Writes,
             true if prepared.plan.write_cycles() == 0 => ExecutionMode::Tests,
-            true => ExecutionMode::Leads,
+            true => ExecutionMode::Guided,
         }
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn job_name(job: &BissJob) -> Text {
         BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
         BissJob::Commit(_) => Text::new("job.write"),
-        BissJob::LeadBack => Text::new("job.lead_back"),
+        BissJob::ReturnToOperation => Text::new("job.lead_back"),
     }
 }
 

@@ -36,8 +36,10 @@ impl Encoder {
 
     /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
     pub(super) fn mark_returned_to_operation(&mut self) {
-        if let Some(ProcedureRun { end: Some(ProcedureEnd::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
-            *may_lead_back = false;
+        if let Some(ProcedureRun { end: Some(ProcedureEnd::Failed { may_return_to_operation, .. }), .. }) =
+            &mut self.guide
+        {
+            *may_return_to_operation = false;
         }
     }
 
@@ -54,7 +56,7 @@ impl Encoder {
             self.schedule_rereads();
         }
         let Some(guide) = &mut self.guide else { return false };
-        let (before, may_lead_back) = match error {
+        let (before, may_return_to_operation) = match error {
             None => (Vec::new(), true),
             Some(JobError::Interrupted { interrupted, .. }) => {
                 guide.cut = Some(interrupted.end_state.at);
@@ -65,7 +67,7 @@ impl Encoder {
         };
         let cancelled = matches!(error, Some(JobError::Interrupted { interrupted, .. })
             if matches!(interrupted.cause, Failure::Device(Error::Cancelled)));
-        guide.end = Some(ProcedureEnd::Failed { texts: texts.to_vec(), before, may_lead_back, cancelled });
+        guide.end = Some(ProcedureEnd::Failed { texts: texts.to_vec(), before, may_return_to_operation, cancelled });
         true
     }
 }

@@ -87,7 +87,7 @@ fn unsaved_warning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
 fn return_to_operation_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.translate("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
-        actions.push(Action::device(encoder.session.id, Biss::LeadBack));
+        actions.push(Action::device(encoder.session.id, Biss::ReturnToOperation));
     }
 }
 

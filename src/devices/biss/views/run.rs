@@ -43,7 +43,7 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Pr
         let word = translate(
             theme,
             match demand.map(|own| own.task) {
-                Some(OperatorTask::Stand | OperatorTask::StandAtPlace) => "guide.go_on",
+                Some(OperatorTask::HoldStill | OperatorTask::HoldAtPresetAngle) => "guide.go_on",
                 _ => "guide.start",
             },
         );
@@ -192,7 +192,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &Proce
         }
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
-            if let ProcedureEnd::Failed { may_lead_back: true, .. } = end {
+            if let ProcedureEnd::Failed { may_return_to_operation: true, .. } = end {
                 super::return_to_operation_ui(ui, theme, encoder, actions);
             }
             if !lines.is_empty() && labelled_button(ui, icons::COPY, &translate(theme, "guide.copy_report")).clicked() {

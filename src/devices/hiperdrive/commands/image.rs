@@ -6,7 +6,7 @@ use super::meaning::{self, DecodeContext, WordMeaning, control_word_text, parame
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
     ActualValues, Answer, ControlWord, InputImage, Kind, Layout, OutputData, OutputImage, ParameterNumber,
-    ParameterRow, Pkw, Task, Value, split_turns,
+    ParameterRow, Pkw, Task, Value, to_turns_and_steps,
 };
 
 /// Decodes process data and returns one meaning for each layout of this length. If the direction is known, only layouts
@@ -123,7 +123,7 @@ fn actual_text(drive: &ActualValues) -> String {
 
 /// Formats a position in turns and degrees for a drive with default scaling.
 fn turns_text(position: i32) -> String {
-    let (turn, steps) = split_turns(position);
+    let (turn, steps) = to_turns_and_steps(position);
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
 

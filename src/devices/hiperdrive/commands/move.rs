@@ -81,7 +81,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
         return Ok(Success::Well);
     }
     let error = match came {
-        MotionOutcome::Ended(ActionEnd::Fault) => newest_error(&mut runner, drive),
+        MotionOutcome::Ended(ActionEnd::Fault) => read_newest_error(&mut runner, drive),
         _ => None,
     };
     if let (Some(error), Some(object)) = (error, json.as_object_mut()) {
@@ -94,7 +94,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
 }
 
 /// Reads the error that stopped the drive, if the drive still reports the error.
-fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
+fn read_newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     let newest = value(runner, ParameterNumber::for_drive(NEWEST_ERROR, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)

@@ -161,7 +161,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
         }
         let mut text = |base| {
             steps.next(drive_parameter(base, number)?);
-            drive_text(master, base, number)
+            read_drive_text(master, base, number)
         };
         let (name, article_number, serial_number, version) = (text(121)?, text(122)?, text(123)?, text(125)?);
         steps.next(drive_parameter(REQUESTED_BY_BUS, number)?);
@@ -178,7 +178,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
 
 /// Reads a string of a drive. Returns an empty string if the drive does not provide it, which may be the case while the
 /// drive is not requested (`U`: not documented).
-pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
+pub(super) fn read_drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(drive_parameter(base, drive)?) {
         Err(error) if error.is_unavailable() => Ok(String::new()),
         ended => ended,
@@ -189,7 +189,7 @@ pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber)
 fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(device_parameter(13)?) {
         Err(Error::Refused { .. }) => {
-            let product = master.identity_object()?.product_name;
+            let product = master.read_identity_object()?.product_name;
             Err(Error::NotHiperdrive { product })
         }
         ended => ended,
@@ -231,7 +231,7 @@ fn readable_parameters(identity: &Identity) -> impl Iterator<Item = ParameterNum
 }
 
 /// Number of parameters in a drive's status.
-const OF_STATUS: u64 = 15;
+const STATUS_PARAMETERS: u64 = 15;
 
 /// Reads the errors and states of all drives.
 ///
@@ -240,11 +240,12 @@ const OF_STATUS: u64 = 15;
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = read_topology(master)?;
     // For each port, one read shows whether a drive is present. The other reads are those of its status.
-    let mut steps = ProgressSteps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
+    let mut steps =
+        ProgressSteps { done: 0, total: (1 + STATUS_PARAMETERS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::all_for(topology) {
         if master.read_number(steps.next(drive_parameter(VARIANT, number)?))? == i64::from(Variant::NONE.number()) {
-            steps.advance(OF_STATUS);
+            steps.advance(STATUS_PARAMETERS);
         } else {
             drives.push(read_drive_status(master, number, &mut steps)?);
         }
@@ -255,7 +256,11 @@ pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> R
 }
 
 pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Result<DriveStatus, Error> {
-    read_drive_status(master, number, &mut ProgressSteps { done: 0, total: OF_STATUS, progress: &mut |_, _, _| {} })
+    read_drive_status(
+        master,
+        number,
+        &mut ProgressSteps { done: 0, total: STATUS_PARAMETERS, progress: &mut |_, _, _| {} },
+    )
 }
 
 fn read_drive_status(

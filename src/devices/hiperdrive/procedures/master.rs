@@ -119,7 +119,7 @@ impl<'a> Master<'a> {
         let requested = RequestedItem::Parameter(number);
         let request = Request::get(number.class(), 1, number.attribute());
         let data = match self.request(requested, &request, RetryPolicy::Always) {
-            Err(Error::Refused { refusal, .. }) => return Err(self.refusal_reason(requested, number, refusal)?),
+            Err(Error::Refused { refusal, .. }) => return Err(self.find_refusal_reason(requested, number, refusal)?),
             ended => ended?.data,
         };
         row.kind.parse(&data).map_err(|cause| match cause {
@@ -188,7 +188,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns [`Error::Refused`] if the device rejects the request, or another error if the exchange fails.
-    pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
+    pub fn read_identity_object(&mut self) -> Result<IdentityObject, Error> {
         let requested = RequestedItem::Identity;
         let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), RetryPolicy::Always)?;
         IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged {
@@ -282,7 +282,7 @@ impl<'a> Master<'a> {
         let Some(session) = self.station.session.take() else { return Ok(()) };
         let bytes = Frame::unregister_session(session).emit();
         let now = self.line.now();
-        Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
+        Ok(self.line.send(&bytes, MaskedBytes::unmasked(&bytes), now)?)
     }
 
     /// Sends a request, and repeats it if this is useful and harmless.
@@ -335,7 +335,7 @@ impl<'a> Master<'a> {
 
     fn trace_unparsed_bytes(&mut self) {
         let (now, rest) = (self.line.now(), self.station.receiver.take_unparsed_bytes());
-        self.line.show(now, MaskedBytes::clear(&rest));
+        self.line.show(now, MaskedBytes::unmasked(&rest));
     }
 
     /// Sends a frame under a new number, and waits for the reply with that number.
@@ -346,7 +346,7 @@ impl<'a> Master<'a> {
         frame.context = self.station.begin_request(sent_at, takes_long).to_le_bytes();
         let bytes = frame.emit();
         self.station.line.mark_sent(sent_at);
-        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
+        self.line.send(&bytes, MaskedBytes::unmasked(&bytes), sent_at)?;
         let deadline = sent_at + repeats.reply_timeout(self.station.link.timeout) + self.station.line.margin;
         let mut heard = Vec::new();
         loop {
@@ -354,7 +354,7 @@ impl<'a> Master<'a> {
                 match self.station.receiver.next_frame() {
                     Ok(Some(answer)) => {
                         let now = self.line.now();
-                        self.line.show(now, MaskedBytes::clear(&answer.emit()));
+                        self.line.show(now, MaskedBytes::unmasked(&answer.emit()));
                         self.station.record_reply(u64::from_le_bytes(answer.context), now);
                         let recorded = self.station.recorded && answer.command == frame.command;
                         if !recorded && !answer.is_reply_to(&frame) {

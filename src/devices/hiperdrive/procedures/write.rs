@@ -6,7 +6,7 @@ use std::time::Duration;
 pub use crate::profile::WrittenChanges;
 
 use super::error::RequestedItem;
-use super::identify::{device_parameter, drive_parameter, drive_status, drive_text, read_topology};
+use super::identify::{device_parameter, drive_parameter, drive_status, read_drive_text, read_topology};
 use super::network::settings;
 use super::{Error, Identity, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
@@ -56,7 +56,7 @@ impl Write for DeviceWriter<'_, '_> {
         }
         for drive in affected_drives(plan, identity) {
             if let Some(known) = identity.drive(drive)
-                && drive_text(master, 123, drive)? != known.serial_number
+                && read_drive_text(master, 123, drive)? != known.serial_number
             {
                 return changed(format!("drive {}", drive.get()));
             }

@@ -50,7 +50,7 @@ pub use process_data::{
 };
 pub use recipe::{ACKNOWLEDGE, ENABLE, Step, UNLOCK};
 pub use scaling::{
-    Family, Length, PositionScale, ScaleError, SpeedScale, effective_torque, nearest_reference, split_turns,
+    Family, Length, PositionScale, ScaleError, SpeedScale, effective_torque, nearest_reference, to_turns_and_steps,
 };
 pub use state::{State, TRANSITIONS, Transition, Trigger};
 pub use status_word::{StatusBit, StatusWord};

@@ -76,7 +76,7 @@ pub enum ParameterRange {
     /// A value between two numbers, inclusive.
     Within(i64, i64),
     /// A value between two numbers, or one further number with a special meaning.
-    WithinOr(i64, i64, i64),
+    WithinOrEqual(i64, i64, i64),
     /// One of the listed values, smallest first.
     OneOf(&'static [i64]),
 }
@@ -255,7 +255,7 @@ impl ParameterRange {
         match self {
             ParameterRange::Any => true,
             ParameterRange::Within(low, high) => (low..=high).contains(&value),
-            ParameterRange::WithinOr(low, high, also) => (low..=high).contains(&value) || value == also,
+            ParameterRange::WithinOrEqual(low, high, also) => (low..=high).contains(&value) || value == also,
             ParameterRange::OneOf(values) => values.contains(&value),
         }
     }
@@ -267,7 +267,7 @@ impl fmt::Display for ParameterRange {
             ParameterRange::Any => f.write_str("any number"),
             ParameterRange::Within(only, same) if only == same => write!(f, "only {only}"),
             ParameterRange::Within(low, high) => write!(f, "{low} to {high}"),
-            ParameterRange::WithinOr(low, high, also) => write!(f, "{low} to {high} or {also}"),
+            ParameterRange::WithinOrEqual(low, high, also) => write!(f, "{low} to {high} or {also}"),
             ParameterRange::OneOf(values) => {
                 let values: Vec<String> = values.iter().map(i64::to_string).collect();
                 f.write_str(&values.join(", "))

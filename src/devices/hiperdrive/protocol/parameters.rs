@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use Kind::{I8, I16, I32, Text, U8, U16, U32};
-use ParameterRange::{Any, OneOf, Within, WithinOr};
+use ParameterRange::{Any, OneOf, Within, WithinOrEqual};
 
 use super::drive_parameter::{
     ACKNOWLEDGE, DENOMINATOR, HAND_DRIVE_WAIT, LOWER_LIMIT, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NO_TIMEOUT, NUMERATOR,
@@ -190,7 +190,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
     read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").writable(Within(100, 10000), FactoryValue::Number(1000)),
-    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").saved(WithinOr(1, 100, NO_TIMEOUT), FactoryValue::Number(20)),
+    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").saved(WithinOrEqual(1, 100, NO_TIMEOUT), FactoryValue::Number(20)),
     read(RS485_ADDRESS, "RS-485 address", U8, "").saved(Within(0, 253), FactoryValue::Number(1)),
     read(RS485_BAUD, "RS-485 baud rate", U32, "baud")
         .saved(OneOf(&[9600, 19200, 38400]), FactoryValue::Number(38400))

@@ -187,7 +187,7 @@ impl Family {
 
 /// Splits a position with 65536 steps per turn into whole turns and steps within the turn. A position of −1 is in
 /// turn −1.
-pub const fn split_turns(position: i32) -> (i16, u16) {
+pub const fn to_turns_and_steps(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 

@@ -38,7 +38,7 @@ pub enum StatusBit {
     /// Level of control bit 6 of the last job.
     SetpointAcknowledged = 12,
     /// The drive is at standstill.
-    StandingStill = 13,
+    Standstill = 13,
     /// The current was too high.
     OverCurrent = 14,
     /// The position is outside the range.
@@ -61,7 +61,7 @@ impl StatusBit {
         StatusBit::TargetReached,
         StatusBit::ReferenceSet,
         StatusBit::SetpointAcknowledged,
-        StatusBit::StandingStill,
+        StatusBit::Standstill,
         StatusBit::OverCurrent,
         StatusBit::PositionLimit,
     ];
@@ -87,7 +87,7 @@ impl StatusBit {
             StatusBit::TargetReached => "target reached",
             StatusBit::ReferenceSet => "reference set",
             StatusBit::SetpointAcknowledged => "set-point acknowledged",
-            StatusBit::StandingStill => "standing still",
+            StatusBit::Standstill => "standing still",
             StatusBit::OverCurrent => "over-current",
             StatusBit::PositionLimit => "position limit",
         }
@@ -138,13 +138,13 @@ impl StatusWord {
     /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over all other states
     /// (`D`). Bits 0 to 2 during a fault are not documented (`U`).
     pub const fn state(self) -> State {
-        use StatusBit::{Fault, OperationEnabled, Operational, Ready, StandingStill, SwitchOnLock};
+        use StatusBit::{Fault, OperationEnabled, Operational, Ready, Standstill, SwitchOnLock};
         if self.is_set(Fault) {
             State::Fault
         } else if self.is_set(SwitchOnLock) {
             State::Locked
         } else if self.is_set(OperationEnabled) {
-            if self.is_set(StandingStill) { State::Enabled } else { State::Moving }
+            if self.is_set(Standstill) { State::Enabled } else { State::Moving }
         } else if self.is_set(Operational) {
             State::Operational
         } else if self.is_set(Ready) {

@@ -145,7 +145,7 @@ fn published_status_words_match() {
         assert_eq!(status(word).state(), state, "{word:04X}");
     }
     // Bits 4, 5, 9, 11 of a drive that was detected; 13 at standstill.
-    let standing = StatusWord::FOUND.with_bit(S::StandingStill, true);
+    let standing = StatusWord::FOUND.with_bit(S::Standstill, true);
     assert_eq!((standing.to_u16(), standing.is_present()), (0x2A30, true));
     let set: Vec<u8> = standing.set_bits().map(StatusBit::bit_number).collect();
     assert_eq!(set, [4, 5, 9, 11, 13]);
@@ -325,7 +325,7 @@ fn published_process_data_from_a_drive_match() {
     }
     let actual = InputImage::parse(&bytes(cases[0].0), WITHOUT_PKW).unwrap().drives[0];
     assert_eq!((actual.status.state(), SpeedScale::FACTORY.rpm(actual.speed)), (State::Moving, 80.0));
-    assert_eq!(split_turns(actual.position), (1, 34_464));
+    assert_eq!(to_turns_and_steps(actual.position), (1, 34_464));
 }
 
 /// Reference 2: 16 and 8 bytes for an adapter, 40 and 72 for the hubs, 8 less without parameter words, which are at 32

@@ -184,7 +184,7 @@ impl Drive {
             (StatusBit::Warning, self.faults > 0),
             (StatusBit::TargetReached, self.target_reached),
             (StatusBit::SetpointAcknowledged, self.acknowledged),
-            (StatusBit::StandingStill, self.is_at_rest()),
+            (StatusBit::Standstill, self.is_at_rest()),
             (StatusBit::OverCurrent, self.over_current),
             (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]

@@ -64,7 +64,7 @@ struct StationIdentity {
 struct Store {
     count: u32,
     /// Number of the save during which the supply is lost, counted from 1.
-    dies_in: Option<u32>,
+    failing_save: Option<u32>,
     dies_at: Option<Moment>,
     /// Whether the supply was lost.
     dead: bool,
@@ -125,14 +125,14 @@ impl Station {
             switch: config.switch,
             supply_tenths: config.supply_in_tenths_of_volt(),
         };
-        station.store.dies_in = config.faults.failing_store();
+        station.store.failing_save = config.faults.failing_store();
         station.resets = config.resets;
         for drive in station.present_drives() {
             drive.axis = Axis::at_position(config.position.into());
             config.requested.iter().for_each(|requested| drive.memory.preset(REQUESTED_BY_BUS, i64::from(*requested)));
             config.speed.iter().for_each(|speed| drive.memory.preset(MAXIMUM_SPEED, i64::from(*speed)));
         }
-        station.set_s3(Moment::START, config.s3);
+        station.set_drive_select_switch(Moment::START, config.s3);
         station
     }
 
@@ -152,8 +152,8 @@ impl Station {
     }
 
     /// Sets the number of the save, counted from 1, during which the supply is lost. `None` disables the loss.
-    pub const fn fail_in_store(&mut self, number: Option<u32>) {
-        self.store.dies_in = number;
+    pub const fn set_failing_save(&mut self, number: Option<u32>) {
+        self.store.failing_save = number;
     }
 
     /// Injects a fault into writes of a parameter. `None` removes the fault and repairs a lost line.
@@ -221,7 +221,7 @@ impl Station {
     }
 
     /// Sets switch S3. Drives can be moved over the bus only if the switch is at 0.
-    pub fn set_s3(&mut self, now: Moment, position: u8) {
+    pub fn set_drive_select_switch(&mut self, now: Moment, position: u8) {
         self.advance_to(now);
         self.present_drives().for_each(|drive| drive.set_motion_allowed(position == 0));
     }
@@ -321,7 +321,7 @@ impl Station {
         let mut save: fn(&mut Memory) = Memory::save;
         if matches!(value, 1 | -3) {
             self.store.count = self.store.count.saturating_add(1);
-            if self.store.dies_in == Some(self.store.count) {
+            if self.store.failing_save == Some(self.store.count) {
                 (self.store.dies_at, save) = (Some(now + SAVE_TIME / 2), Memory::save_partially);
             }
         }

@@ -92,7 +92,7 @@ impl HiperdriveDevice {
             MotorCommand::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
             MotorCommand::RunEffort(effort) => return self.moves.set_run_effort(drive, effort),
             MotorCommand::Expert(expert) => return self.moves.set_endless_allowed(drive, expert),
-            MotorCommand::FreeOutward(direction) => return self.enable_outward_jog(drive, direction, services),
+            MotorCommand::AllowOutward(direction) => return self.enable_outward_jog(drive, direction, services),
             MotorCommand::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;

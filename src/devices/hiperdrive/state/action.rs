@@ -48,7 +48,7 @@ pub enum MotorCommand {
         repeated: bool,
     },
     /// Allows the next jog in this direction, although it moves the drive further outside its limits.
-    FreeOutward(Direction),
+    AllowOutward(Direction),
     /// Confirms that the jog is still held. It is sent in every frame.
     JogHold,
     JogRelease,

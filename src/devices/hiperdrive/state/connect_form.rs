@@ -4,7 +4,9 @@ use super::discovery::DiscoveryFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
-use crate::app::connect::target::{host_and_default_port, required_entry, split_host_default_port, validated_link};
+use crate::app::connect::target::{
+    format_host_and_optional_port, required_entry, split_host_default_port, validated_link,
+};
 use crate::devices::hiperdrive::jobs::check_link;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
@@ -135,9 +137,10 @@ impl HiperdriveForm {
     fn target(&self) -> Result<(LinkScheme, String), Text> {
         Ok(match self.kind {
             HiperdriveLinkKind::Virtual => (LinkScheme::Sim, String::new()),
-            HiperdriveLinkKind::Network => {
-                (LinkScheme::Enip, host_and_default_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
-            }
+            HiperdriveLinkKind::Network => (
+                LinkScheme::Enip,
+                format_host_and_optional_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?,
+            ),
             HiperdriveLinkKind::Replay => (LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?),
         })
     }

@@ -44,7 +44,7 @@ impl HiperdriveDevice {
         }
         if first {
             self.load_draft(services);
-            self.log_answer(services);
+            self.log_first_reply(services);
         }
         self.list_backups(services);
         self.handle_axes_survey();
@@ -154,7 +154,7 @@ impl HiperdriveDevice {
         })
     }
 
-    fn log_answer(&self, services: &mut Services) {
+    fn log_first_reply(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
         let fact = TEXTS
             .text("log.hiperdrive")
@@ -162,7 +162,7 @@ impl HiperdriveDevice {
             .with("serial", &identity.serial_number)
             .with("version", &identity.version)
             .with("drives", identity.drives.len());
-        self.session.log_answer(vec![fact], services);
+        self.session.log_first_reply(vec![fact], services);
     }
 
     pub(super) fn forget_readings(&mut self) {

@@ -172,7 +172,7 @@ mod tests {
     }
 
     fn entry(direction: Direction, hex: &str) -> TraceEntry {
-        let bytes = MaskedBytes::clear(&parse_hex(hex).unwrap());
+        let bytes = MaskedBytes::unmasked(&parse_hex(hex).unwrap());
         TraceEntry { at: Moment::START, direction, bytes }
     }
 

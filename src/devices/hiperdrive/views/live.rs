@@ -5,7 +5,7 @@ use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 use super::outside::warning_badge;
 use crate::app::{Action, Rgb};
 use crate::devices::hiperdrive::procedures::Temperature;
-use crate::devices::hiperdrive::protocol::{PositionScale, State, split_turns};
+use crate::devices::hiperdrive::protocol::{PositionScale, State, to_turns_and_steps};
 use crate::devices::hiperdrive::state::{HiperdriveAction, HiperdriveDevice, PositionUnit, TEXTS, explain};
 use crate::devices::hiperdrive::views::translate;
 use crate::ui::controls::{icon_menu, paragraph, row};
@@ -67,7 +67,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
     let target = theme.monospace(target.unwrap_or_else(|| "–".to_owned()));
     row(ui, theme, &translate(theme, "hd_live.target"), target);
     if ruler.scale == PositionScale::FACTORY {
-        let (turn, step) = split_turns(actual.position);
+        let (turn, step) = to_turns_and_steps(actual.position);
         row(ui, theme, &theme.translate("live.turns"), theme.monospace(turn.to_string()));
         row(ui, theme, &theme.translate("live.step"), theme.monospace(step.to_string()));
     }

@@ -68,7 +68,7 @@ pub(super) fn card_ui(
                     Direction::Counterclockwise => "hd_outside.free_down",
                 };
                 if button_with_reason(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &translate(theme, free)).clicked() {
-                    actions.push(Action::device(id, Hiperdrive::Drive(MotorCommand::FreeOutward(way))));
+                    actions.push(Action::device(id, Hiperdrive::Drive(MotorCommand::AllowOutward(way))));
                 }
             }
         });

@@ -52,7 +52,7 @@ impl ProfileCommands for HiperfaceCommands {
             output.print_message(&words::other_type(types).terminal_text());
         }
         check_copy_decisions(output, &prepared, restore.dry_run)?;
-        if let Some(text) = words::remaining_created_fields_text(&prepared.created_left) {
+        if let Some(text) = words::undeleted_fields_text(&prepared.created_left) {
             output.print_message(&text.terminal_text());
         }
         for item in prepared.missing.iter().filter(|item| restore.concerns(&item.to_string())) {

@@ -131,7 +131,7 @@ pub fn read_range(
                 first = Some(again);
                 ExchangeFailure::Damage(ReplyDamage::Inconsistent)
             }
-            (Ok(once), None) if master.station().needs_double_read() => {
+            (Ok(once), None) if master.station().requires_double_read() => {
                 first = Some(once);
                 failures = 0;
                 continue;

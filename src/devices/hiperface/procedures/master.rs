@@ -108,7 +108,7 @@ impl<'a> Master<'a> {
     pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.request(request)?;
         for _ in 0..MAX_ATTEMPTS {
-            if !self.station.needs_double_read() {
+            if !self.station.requires_double_read() {
                 return Ok(reply);
             }
             let again = self.request(request)?;

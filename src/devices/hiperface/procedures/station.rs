@@ -160,7 +160,7 @@ impl Station {
     }
 
     /// Returns whether values must be read twice. This is needed because an XOR misses some pairs of flipped bits.
-    pub(super) fn needs_double_read(&self) -> bool {
+    pub(super) fn requires_double_read(&self) -> bool {
         self.thorough || self.line.damaged > 0
     }
 

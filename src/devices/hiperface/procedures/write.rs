@@ -91,7 +91,7 @@ impl Write for EncoderWriter<'_, '_> {
     }
 
     /// Restores the write protection of fields that were made writable, if the encoder still replies.
-    fn lead_back(
+    fn return_to_safe_state(
         &mut self,
         confirmed: &ConfirmedPlan<'_>,
         ended: Result<(), Error>,

@@ -79,7 +79,7 @@ impl Encoder {
         self.identity = Some(identity);
     }
 
-    fn log_answer(&self, services: &mut Services) {
+    fn log_first_reply(&self, services: &mut Services) {
         let Some(identity) = &self.identity else { return };
         let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
         let firmware =
@@ -90,7 +90,7 @@ impl Encoder {
             line.with_text("settings", words::line_settings(label.settings)),
             kind.with_text("firmware", firmware),
         ];
-        self.session.log_answer(facts, services);
+        self.session.log_first_reply(facts, services);
     }
 
     /// Returns whether there are edits that have not been written.
@@ -136,7 +136,7 @@ impl Encoder {
             self.load_draft(services);
         }
         if fresh {
-            self.log_answer(services);
+            self.log_first_reply(services);
         }
         self.report_code_result(services);
         self.list_backups(services);

@@ -27,7 +27,7 @@ impl DeviceType for Encoder {
         check_link(url)
     }
 
-    fn is_usual_link(url: &LinkUrl) -> bool {
+    fn is_typical_link(url: &LinkUrl) -> bool {
         // Adapters were made for clocked buses, and only some have a serial line.
         url.scheme != LinkScheme::Bridge
     }

@@ -17,7 +17,7 @@ impl FrameDecoder {
     pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
         match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), Direction::Sent) => self.explain_sent(&bytes),
-            (None, Direction::Sent) => self.explain_sent(&with_checksum(entry.bytes.with_stand_in(0))),
+            (None, Direction::Sent) => self.explain_sent(&with_checksum(entry.bytes.with_placeholder(0))),
             (Some(bytes), Direction::Received) => self.explain_received(&bytes),
             (None, Direction::Received) => {
                 self.request = None;
@@ -76,7 +76,7 @@ mod tests {
     use crate::units::Moment;
 
     fn entry(direction: Direction, bytes: &[u8]) -> TraceEntry {
-        TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::clear(bytes) }
+        TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::unmasked(bytes) }
     }
 
     /// Damaged replies are marked, and their explanation names the error (issue 22.11). The frames belong to commands

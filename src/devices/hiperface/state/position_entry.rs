@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_that_are_no_position_are_refused() {
+    fn invalid_positions_are_refused() {
         for (unit, turns, value) in [
             (Steps, "", ""),
             (Steps, "", "-1"),

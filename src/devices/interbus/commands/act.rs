@@ -27,7 +27,7 @@ pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs)
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.parse_action(KIND, ACTIONS)?, words.as_slice()) {
         (InterbusAction::Check, []) => check_device(common, output),
-        (InterbusAction::LeadBack, []) => lead_back(common, output),
+        (InterbusAction::LeadBack, []) => restore_mode(common, output),
         (InterbusAction::Default, []) => {
             output.print_message(&TEXTS.text("ib_disturbs.default").terminal_text());
             run_change(common, output, act, |_| Ok(Change::Default))
@@ -56,10 +56,10 @@ fn check_device(common: &CommonArgs, output: &Output) -> Result {
     result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
 }
 
-fn lead_back(common: &CommonArgs, output: &Output) -> Result {
+fn restore_mode(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    DisturbanceLevel::LeadingBack.print_effect(output);
-    let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
+    DisturbanceLevel::RestoringMode.print_effect(output);
+    let now = result_of!(runner.run(InterbusJob::RestoreMode)?, InterbusOutput::ModeRestored(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (words::startup_mode_text(now).terminal_text(), format!("0x{:08X}", reading.word));
     let json = json!({"done": "lead-back", "mode": mode(now), "word": word});

@@ -117,7 +117,7 @@ enum DisturbanceLevel {
     /// All cam programs are selected one after the other.
     Programs,
     /// The state that another program has left is ended, and its settings are stored.
-    LeadingBack,
+    RestoringMode,
 }
 
 impl DisturbanceLevel {
@@ -140,7 +140,7 @@ impl DisturbanceLevel {
         let id = match self {
             DisturbanceLevel::Reading => "ib_disturbs.reading",
             DisturbanceLevel::Programs => "ib_disturbs.programs",
-            DisturbanceLevel::LeadingBack => "ib_disturbs.lead_back",
+            DisturbanceLevel::RestoringMode => "ib_disturbs.lead_back",
         };
         output.print_message(&TEXTS.text(id).terminal_text());
     }

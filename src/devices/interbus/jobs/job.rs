@@ -60,7 +60,7 @@ pub enum InterbusJob {
     Commit(Box<Commit>),
     /// Ends an earlier parameterisation, error or read-out. Values that were set but not stored are now stored, which
     /// uses one store cycle.
-    LeadBack,
+    RestoreMode,
 }
 
 #[derive(Clone, Debug)]
@@ -213,7 +213,7 @@ pub enum InterbusOutput {
     Saved(Box<InterbusProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    LedBack(StartupMode),
+    ModeRestored(StartupMode),
 }
 
 pub type JobError = crate::worker::JobError<Error, PlanError, InterruptedWrite, ChangeKind>;

@@ -219,7 +219,7 @@ pub enum Error {
     Changed { item: String },
     /// The encoder could not be returned to its mode after the job.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
-    NotLedBack {
+    ModeNotRestored {
         /// The error of the job. If the job succeeded, this is the error that prevented the return to the mode.
         cause: Box<Error>,
         standing: LeftState,
@@ -258,7 +258,7 @@ impl Error {
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,
-            Error::NotLedBack { cause, .. } => cause.is_lost(),
+            Error::ModeNotRestored { cause, .. } => cause.is_lost(),
             _ => false,
         }
     }
@@ -266,7 +266,7 @@ impl Error {
     pub fn is_cancelled(&self) -> bool {
         match self {
             Error::Cancelled => true,
-            Error::NotLedBack { cause, .. } => cause.is_cancelled(),
+            Error::ModeNotRestored { cause, .. } => cause.is_cancelled(),
             _ => false,
         }
     }

@@ -126,14 +126,14 @@ impl<'a> Gateway<'a> {
         };
         let sent_at = self.line.now();
         self.state.line.mark_sent(sent_at);
-        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
+        self.line.send(&bytes, MaskedBytes::unmasked(&bytes), sent_at)?;
         let deadline = sent_at + self.link.timeout + self.state.line.margin;
         loop {
             loop {
                 match self.next_frame() {
                     Some(Ok(frame)) => {
                         let now = self.line.now();
-                        self.line.show(now, MaskedBytes::clear(&frame));
+                        self.line.show(now, MaskedBytes::unmasked(&frame));
                         if self.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
                             let judged = parse_reply(&request, requested, frame);
                             if !matches!(judged, Err(ExchangeError::Damage(_))) {
@@ -145,7 +145,7 @@ impl<'a> Gateway<'a> {
                     }
                     Some(Err((damage, bytes))) => {
                         let now = self.line.now();
-                        self.line.show(now, MaskedBytes::clear(&bytes));
+                        self.line.show(now, MaskedBytes::unmasked(&bytes));
                         self.line.wait_for_silence(self.state.line, RESYNC_SILENCE)?;
                         return Ok(Err(ExchangeError::Damage(damage)));
                     }

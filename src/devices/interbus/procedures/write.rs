@@ -62,7 +62,7 @@ impl Write for EncoderWriter<'_, '_> {
         Ok(())
     }
 
-    fn lead_back(
+    fn return_to_safe_state(
         &mut self,
         _: &ConfirmedPlan<'_, Base, Op>,
         ended: Result<(), Error>,
@@ -73,7 +73,7 @@ impl Write for EncoderWriter<'_, '_> {
 
     fn end_state(&mut self, cause: &Error) -> EndState {
         match cause {
-            Error::NotLedBack { standing, .. } => EndState::Unknown(*standing),
+            Error::ModeNotRestored { standing, .. } => EndState::Unknown(*standing),
             _ => EndState::AsFound,
         }
     }

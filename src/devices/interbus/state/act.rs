@@ -22,7 +22,7 @@ impl Encoder {
             InterbusAction::Check => self.submit(InterbusJob::Check, services),
             InterbusAction::Edit(edit) => self.apply_edit(&edit),
             InterbusAction::Plan(change) => self.plan(*change, services),
-            InterbusAction::LeadBack => self.submit(InterbusJob::LeadBack, services),
+            InterbusAction::RestoreMode => self.submit(InterbusJob::RestoreMode, services),
             InterbusAction::AskTable(program) => {
                 self.table_program = program;
                 let words = (TEXTS.text("file.open_cams_title"), TEXTS.text("file.tables"));

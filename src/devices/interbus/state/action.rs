@@ -21,7 +21,7 @@ pub enum InterbusAction {
     Edit(Box<Edit>),
     Plan(Box<Change>),
     /// Returns the encoder to its earlier mode, even if another program has changed it.
-    LeadBack,
+    RestoreMode,
     /// Asks the user for a cam table file. The given program applies to rows that do not name one.
     AskTable(ProgramNumber),
     OpenTable(PathBuf),

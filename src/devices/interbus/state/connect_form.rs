@@ -3,7 +3,9 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
-use crate::app::connect::target::{host_and_default_port, required_entry, split_host_default_port, validated_link};
+use crate::app::connect::target::{
+    format_host_and_optional_port, required_entry, split_host_default_port, validated_link,
+};
 use crate::devices::interbus::jobs::check_link;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
@@ -109,9 +111,10 @@ impl InterbusForm {
     fn target(&self) -> Result<(LinkScheme, String), Text> {
         Ok(match self.kind {
             InterbusLinkKind::Virtual => (LinkScheme::Sim, String::new()),
-            InterbusLinkKind::Gateway => {
-                (LinkScheme::Modbus, host_and_default_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
-            }
+            InterbusLinkKind::Gateway => (
+                LinkScheme::Modbus,
+                format_host_and_optional_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?,
+            ),
             InterbusLinkKind::Replay => (LinkScheme::Replay, required_entry(&self.file, "form.file_missing")?),
         })
     }

@@ -206,7 +206,7 @@ impl Encoder {
         self.trace.set_mode(mode);
         if first {
             self.load_draft(services);
-            self.log_answer(services);
+            self.log_first_reply(services);
         }
         self.list_backups(services);
     }
@@ -216,7 +216,7 @@ impl Encoder {
         self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
     }
 
-    fn log_answer(&self, services: &mut Services) {
+    fn log_first_reply(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
         let fact = TEXTS
             .text("log.interbus")

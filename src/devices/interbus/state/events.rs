@@ -96,7 +96,7 @@ impl SessionEvents for Encoder {
             InterbusOutput::Hello(reading) => {
                 if std::mem::take(&mut self.session.just_connected) {
                     let word = TEXTS.text("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
-                    self.session.log_answer(vec![word], services);
+                    self.session.log_first_reply(vec![word], services);
                 }
                 self.record.set_latest_reading(reading);
                 self.read_next_unread_part(services);
@@ -120,7 +120,7 @@ impl SessionEvents for Encoder {
             InterbusOutput::ReadOut(what, value) => {
                 self.read_outs.insert(what.to_u16(), value);
             }
-            InterbusOutput::Selected(mode) | InterbusOutput::LedBack(mode) => {
+            InterbusOutput::Selected(mode) | InterbusOutput::ModeRestored(mode) => {
                 if let Some(survey) = &mut self.survey {
                     survey.identity.mode = mode;
                 }

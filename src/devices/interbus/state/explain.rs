@@ -47,7 +47,7 @@ pub fn is_no_response(error: &JobError) -> bool {
 fn lost_link(error: &Error) -> Option<&LinkError> {
     match error {
         Error::Link(error) => Some(error),
-        Error::NotLedBack { cause, .. } => lost_link(cause),
+        Error::ModeNotRestored { cause, .. } => lost_link(cause),
         _ => None,
     }
 }
@@ -109,7 +109,7 @@ pub fn encoder_error_text(error: &Error) -> Text {
             TEXTS.text("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)
         }
         Error::Changed { item } => TEXTS.text("interbus.changed").with("item", item),
-        Error::NotLedBack { cause, standing } => TEXTS
+        Error::ModeNotRestored { cause, standing } => TEXTS
             .text("interbus.not_led_back")
             .with_text("cause", encoder_error_text(cause))
             .with_text("standing", self::left_state_text(standing)),

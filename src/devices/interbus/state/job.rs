@@ -18,7 +18,7 @@ pub(super) fn job_name(job: &InterbusJob) -> Text {
         InterbusJob::Save { .. } => Text::new("job.save"),
         InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
         InterbusJob::Commit(_) => Text::new("job.write"),
-        InterbusJob::LeadBack => Text::new("job.lead_back"),
+        InterbusJob::RestoreMode => Text::new("job.lead_back"),
     }
 }
 

@@ -121,7 +121,7 @@ mod tests {
         for (label, reply, fault) in cases {
             let mut meaning = FrameDecoder::new(WordOrder::HighFirst);
             let mut said = |direction, text| {
-                let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
+                let bytes = MaskedBytes::unmasked(&parse_hex(text).unwrap());
                 meaning.explain(&TraceEntry { at: Moment::START, direction, bytes })
             };
             assert_eq!(said(Direction::Sent, request).fault, None);

@@ -122,7 +122,7 @@ fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut 
             paragraph(ui, RichText::new(translate(theme, "ib_sends.left")).color(theme.palette.warn));
         }
         if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &theme.translate("lead_back_card.button")).clicked() {
-            actions.push(Action::device(encoder.session.id, Interbus::LeadBack));
+            actions.push(Action::device(encoder.session.id, Interbus::RestoreMode));
         }
         let Some(own) = encoder.mode() else {
             paragraph(ui, theme.caption(translate(theme, "ib_sends.mode_unknown")));

@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn bursts_that_are_not_whole_are_left_out_and_counted() {
+    fn incomplete_bursts_are_skipped_and_counted() {
         let mut levels = recording(&[GRAY, GRAY, "1010", GRAY], 1.25, 30.0);
         // The recording begins and ends in the middle of a burst.
         levels.drain(..20);
@@ -194,14 +194,14 @@ mod tests {
     }
 
     #[test]
-    fn an_exchanged_clock_pair_is_seen_by_its_rest() {
+    fn swapped_clock_wires_are_detected_by_the_idle_level() {
         let mut levels = recording(&[GRAY, INVERSE], 1.25, 60.0);
         levels.iter_mut().for_each(|own| own.clock = !own.clock);
         assert_eq!(extract_frames(&levels).unwrap().frames, [0x0D9_3EEC, 0x726_C113]);
     }
 
     #[test]
-    fn what_is_no_transfer_says_why() {
+    fn invalid_recordings_are_refused_with_a_reason() {
         let row = |at: f64, clock| LineLevels { at: at * 1e-6, clock, data: false };
         assert_eq!(extract_frames(&[]), Err(BurstError::NoClock));
         assert_eq!(extract_frames(&[row(0.0, true), row(9.0, true)]), Err(BurstError::NoClock));

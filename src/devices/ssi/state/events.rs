@@ -83,7 +83,7 @@ impl Encoder {
                 .with("name", &hello.name)
                 .with("firmware", &hello.firmware)
                 .with("serial", &hello.serial);
-            self.session.log_answer(vec![adapter], services);
+            self.session.log_first_reply(vec![adapter], services);
         }
         self.identity = Some(identity);
     }

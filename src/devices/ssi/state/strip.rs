@@ -236,7 +236,7 @@ pub fn bits_follow_position(layout: &Layout) -> bool {
 }
 
 /// Returns whether the frame has patterns of explicit bits, which depend on the length of the frame.
-fn has_bit_patterns(layout: &Layout) -> bool {
+fn has_explicit_bit_patterns(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
 

@@ -89,7 +89,7 @@ impl ServerAddress {
             Some("disable") => Encryption::Off,
             Some("require" | "verify-ca" | "verify-full") => Encryption::Verified(authorities),
             Some(found) => return Err(ServerAddressError::UnknownEncryption { found: found.to_owned() }),
-            None if authorities.is_none() && config.get_hosts().iter().all(is_this_computer) => Encryption::Off,
+            None if authorities.is_none() && config.get_hosts().iter().all(is_local_host) => Encryption::Off,
             None => Encryption::Verified(authorities),
         };
         let password = config.get_password().map(|bytes| Password(String::from_utf8_lossy(bytes).into_owned()));
@@ -157,7 +157,7 @@ impl fmt::Debug for Password {
 }
 
 /// Returns whether a host is this computer. Such a connection cannot be read from outside.
-fn is_this_computer(host: &Host) -> bool {
+fn is_local_host(host: &Host) -> bool {
     match host {
         Host::Tcp(name) => {
             name == "localhost" || name.parse().is_ok_and(|address: std::net::IpAddr| address.is_loopback())
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_connection_within_this_computer_may_be_unencrypted_without_saying_so() {
+    fn only_local_connections_are_unencrypted_by_default() {
         let encryption = |text: &str| ServerAddress::from_setting(text).map(|address| address.encryption);
         for near in
             ["postgres://localhost/x", "postgres://127.0.0.1:5433/x", "postgres://[::1]/x", "postgres://%2Frun/x"]
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_address_is_refused() {
+    fn invalid_addresses_are_refused() {
         for bad in ["", "db.plant", "host=db.plant password=x", "mysql://db.plant/x", "postgres://", "postgres:///x"] {
             assert_eq!(ServerAddress::from_setting(bad), Err(ServerAddressError::NotAnAddress), "{bad}");
         }

@@ -45,7 +45,7 @@ fn groups_between(from: usize, to: usize, field_bits: usize) -> usize {
 }
 
 /// Places the fields within a width, separated by `gap`. A field longer than a line is split.
-pub(super) fn place_fields(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
+pub(super) fn arrange_fields(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
     let fewest = CELLS.last().map_or(1, |least| place_with_cell(wants, width, gap, *least).lines);
     let fits =
         CELLS.iter().map(|cell| place_with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
@@ -108,7 +108,7 @@ mod tests {
     fn a_frame_is_placed_on_one_line_if_it_fits() {
         // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123
         // together, and seven gaps between fields.
-        let placing = place_fields(&kit(), 1100.0, GAP);
+        let placing = arrange_fields(&kit(), 1100.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 20.0));
         let expected = 42.0 * 20.0 + 8.0 * 3.0 + 123.0 + 7.0 * 8.0;
         assert!((placing.width - expected).abs() < 0.01, "{}", placing.width);
@@ -117,15 +117,15 @@ mod tests {
     #[test]
     fn cells_shrink_before_the_frame_wraps() {
         // 42 · 13 + 24 + 123 + 56 = 749.
-        let placing = place_fields(&kit(), 749.0, GAP);
+        let placing = arrange_fields(&kit(), 749.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 13.0));
-        let placing = place_fields(&kit(), 748.0, GAP);
+        let placing = arrange_fields(&kit(), 748.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 12.0));
     }
 
     #[test]
     fn fields_stay_together_on_their_lines() {
-        let placing = place_fields(&kit(), 420.0, GAP);
+        let placing = arrange_fields(&kit(), 420.0, GAP);
         assert_eq!(lines(&placing), [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
         assert!(placing.pieces.iter().all(|own| own.left + own.width <= 420.0));
         // With cells one point narrower the lines would be as many: they are as wide as possible.
@@ -136,11 +136,11 @@ mod tests {
     #[test]
     fn a_field_longer_than_a_line_is_split_at_bytes() {
         let wants = [RequiredSpace { bits: 64, words: 50.0 }];
-        let placing = place_fields(&wants, 400.0, GAP);
+        let placing = arrange_fields(&wants, 400.0, GAP);
         // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
         let parts: Vec<(usize, usize)> = placing.pieces.iter().map(|own| (own.first, own.bits)).collect();
         assert_eq!(parts, [(0, 32), (32, 32)]);
-        assert_eq!(place_fields(&wants, 10.0, GAP).pieces.len(), 8, "eight bits in any case");
+        assert_eq!(arrange_fields(&wants, 10.0, GAP).pieces.len(), 8, "eight bits in any case");
     }
 
     #[test]
@@ -153,9 +153,9 @@ mod tests {
 
     #[test]
     fn an_empty_frame_takes_no_space() {
-        assert_eq!(place_fields(&[], 100.0, GAP).lines, 0);
+        assert_eq!(arrange_fields(&[], 100.0, GAP).lines, 0);
         let none = [RequiredSpace { bits: 0, words: 10.0 }];
-        assert!(place_fields(&none, f32::NAN, GAP).pieces.is_empty());
-        assert!(!place_fields(&kit(), 0.0, GAP).pieces.is_empty());
+        assert!(arrange_fields(&none, f32::NAN, GAP).pieces.is_empty());
+        assert!(!arrange_fields(&kit(), 0.0, GAP).pieces.is_empty());
     }
 }

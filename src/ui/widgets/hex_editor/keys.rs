@@ -155,7 +155,7 @@ fn apply_change(
 fn clipboard_text(bytes: &[u8], column: Column) -> String {
     match column {
         Column::Hex => bits::hex(bytes),
-        Column::Text => bytes.iter().map(|byte| bits::ascii(*byte).unwrap_or(bits::NOT_PRINTABLE)).collect(),
+        Column::Text => bytes.iter().map(|byte| bits::ascii(*byte).unwrap_or(bits::UNPRINTABLE)).collect(),
     }
 }
 

@@ -121,7 +121,7 @@ impl HexPainter<'_> {
         painter.text(hex.center(), Align2::CENTER_CENTER, digits, self.grid.font.clone(), ink);
         let character = bits::ascii(byte);
         let ink = if character.is_none() && !changed { palette.muted.into() } else { colour };
-        let character = character.unwrap_or(bits::NOT_PRINTABLE);
+        let character = character.unwrap_or(bits::UNPRINTABLE);
         painter.text(text.center(), Align2::CENTER_CENTER, character, self.grid.font.clone(), ink);
         if changed && pending.is_none() {
             for (cell, half) in [(hex, self.grid.glyph), (text, self.grid.glyph / 2.0)] {

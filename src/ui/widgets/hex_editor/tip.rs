@@ -20,7 +20,7 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) 
         row(ui, theme.translate("widget.hex_tip_address"), theme.monospace(address));
         row(ui, theme.translate("widget.hex_tip_hex"), theme.monospace(format!("{byte:02X}")));
         row(ui, theme.translate("widget.hex_tip_decimal"), theme.monospace(byte.to_string()));
-        row(ui, theme.translate("widget.hex_tip_binary"), theme.monospace(bits::binary_text(byte)));
+        row(ui, theme.translate("widget.hex_tip_binary"), theme.monospace(bits::format_binary(byte)));
         if let Some(character) = bits::ascii(byte) {
             // The quotation marks show a blank.
             row(ui, theme.translate("widget.hex_tip_character"), theme.monospace(format!("'{character}'")));

@@ -222,8 +222,8 @@ fn one_click_edits_a_number_box() {
         [(RegisterKind::Numbers, Some("00:00 register 0")), (RegisterKind::Bytes { widest: 1 }, None)]
     {
         let mut harness = table_harness(kind);
-        // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 after it
-        // 689.6. The name has 45 % of the rest.
+        // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 after
+        // it 689.6. The name has 45 % of the rest.
         let spare = (harness.get_by_label("00:00 register 0").rect().width() - 689.6).max(0.0);
         let value = 232.0 + (spare * 0.45).floor() + 30.0;
         click(&mut harness, "00:00 register 0", value, 1);
@@ -279,7 +279,7 @@ fn typed_text_stays_with_its_register_when_lines_change() {
 /// Issue 26.4: a window that draws slowly gets several keys at once, at 10 ms a key. None is lost, whether the keyboard
 /// is still with the table or goes back to it, and each is heard once.
 #[test]
-fn what_is_typed_in_one_frame_is_typed_whole() {
+fn text_typed_in_a_single_frame_is_complete() {
     let mut harness = table();
     click(&mut harness, "00:05 register 5", 200.0, 1);
     let key = |key| {

@@ -98,7 +98,7 @@ impl Master<'_> {
         let frame = request.emit(order);
         let sent_at = self.now();
         self.station.line.mark_sent(sent_at);
-        self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
+        self.line.send(&frame, MaskedBytes::unmasked(&frame), sent_at)?;
         let deadline = sent_at + self.max_pin_exchange_duration();
         let received = ReceivedBytes {
             receiver: Receiver::new(NODE),
@@ -143,7 +143,7 @@ impl Master<'_> {
                 if let Some(reply) = self.match_reply(request, &frame, &mut received) {
                     let at = last_at - self.time_of_characters(frame.len());
                     self.record_reply(&received, &frame, at);
-                    self.line.show(at, MaskedBytes::clear(&frame));
+                    self.line.show(at, MaskedBytes::unmasked(&frame));
                     return Ok(Ok(TimedReply { reply, at }));
                 }
             }
@@ -172,7 +172,7 @@ impl Master<'_> {
         let state = &mut self.station.line;
         state.mark_replied();
         state.record_answer_start(at);
-        state.echo.store_heard(received.echo_heard);
+        state.echo.record_echo(received.echo_heard);
         if received.receiver.skipped_count() > 0 || received.damage.is_some() {
             // This reply has a correct checksum, but the line has damaged other bytes.
             state.damaged += 1;
@@ -180,7 +180,7 @@ impl Master<'_> {
             self.station.noisy = true;
             let before = received.raw.windows(reply.len()).position(|window| window == reply);
             let before = received.raw.get(..before.unwrap_or(received.raw.len())).unwrap_or_default();
-            self.line.show(at, MaskedBytes::clear(before.strip_prefix(&*received.sent).unwrap_or(before)));
+            self.line.show(at, MaskedBytes::unmasked(before.strip_prefix(&*received.sent).unwrap_or(before)));
         }
     }
 
@@ -189,7 +189,7 @@ impl Master<'_> {
         let echo = if received.echo_heard { received.sent.len() } else { 0 };
         let bytes = received.bytes.saturating_sub(echo);
         let now = self.now();
-        self.line.show(now, MaskedBytes::clear(broken));
+        self.line.show(now, MaskedBytes::unmasked(broken));
         match received.damage {
             Some(damage) => ExchangeError::Damage(damage),
             None if bytes > 0 => ExchangeError::Damage(ReplyDamage::NoFrame { bytes }),

@@ -13,7 +13,7 @@ impl ProcedureContext<'_, '_> {
         let procedure = self.find_procedure(ProcedureKind::DataWrite)?;
         let open = area.open.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         // The motor must not run (manual 6.5).
-        let OperatorDecision::Go(_) = self.run_operator_task(OperatorTask::Stand)? else {
+        let OperatorDecision::Go(_) = self.run_operator_task(OperatorTask::HoldStill)? else {
             return Ok(Outcome::Skipped { after: None });
         };
         self.enter(&procedure)?;
@@ -37,7 +37,7 @@ impl ProcedureContext<'_, '_> {
 
     fn save_written_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
         self.await_status(procedure, DataStatus::Closed.byte())?;
-        self.lead_back()?;
+        self.return_to_operation()?;
         self.begin_step(ProcedureStep::ReadBack);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {

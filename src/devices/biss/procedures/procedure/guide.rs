@@ -84,7 +84,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
             tell,
             standing,
             op: 0,
-            step: ProcedureStep::LeadBack,
+            step: ProcedureStep::ReturnToOperation,
             cycles: 0,
         }
     }
@@ -142,17 +142,18 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
 
     /// Returns the encoder to operation and clears the password. Does not send anything if the encoder is already in
     /// operation.
-    pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
+    pub(in crate::devices::biss::procedures) fn return_to_operation(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
-        self.begin_step(ProcedureStep::LeadBack);
+        self.begin_step(ProcedureStep::ReturnToOperation);
         let description = self.description.clone();
         let (master, standing) = (&mut *self.master, &mut self.standing);
         let ended = master.run_uncancellable(|master| {
             if matches!(standing.activity, Activity::Running(run) if run.is_calibration()) {
-                return master
-                    .with_reply_timeout(SILENCE_LIMIT, |master| lead_back(master, &description, lock, standing));
+                return master.with_reply_timeout(SILENCE_LIMIT, |master| {
+                    return_to_operation(master, &description, lock, standing)
+                });
             }
-            lead_back(master, &description, lock, standing)
+            return_to_operation(master, &description, lock, standing)
         });
         ended.map(drop)
     }
@@ -383,7 +384,7 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
 
 /// Returns the encoder from any mode to operation and clears the password. The result is the previous mode. A running
 /// calibration is allowed to finish, because leaving it would lose the table.
-pub(super) fn lead_back(
+pub(super) fn return_to_operation(
     master: &mut Master<'_>,
     description: &Description,
     lock: Lock,

@@ -1,7 +1,7 @@
 //! The guided procedures (manual 6.3 to 6.7). Each is straight-line code from entering its device mode to returning to
 //! operation. A procedure instructs the operator at the motor through an [`Operator`], reports every [`ProcedureStep`],
 //! and always ends in operation mode with the password cleared. If the encoder is out of reach, the known [`LeftState`]
-//! is reported instead, and [`lead_back`] completes the return later.
+//! is reported instead, and [`return_to_operation`] completes the return later.
 //!
 //! | file | content |
 //! |---|---|
@@ -97,7 +97,7 @@ impl ProcedureContext<'_, '_> {
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder does not return to operation.
-pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
+pub fn return_to_operation(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
     if master.station().description.is_none() {
         master.with_reply_timeout(guide::SILENCE_LIMIT, |master| master.read(RegisterAddress::BANK_SELECT))?;
         identify(master, types)?;
@@ -105,6 +105,6 @@ pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<Device
     let description = master.description()?;
     let Some(lock) = description.lock() else { return Ok(DeviceMode::OPERATION) };
     let mut standing = LeftState::in_operation(false);
-    let back = |master: &mut Master<'_>| guide::lead_back(master, &description, lock, &mut standing);
+    let back = |master: &mut Master<'_>| guide::return_to_operation(master, &description, lock, &mut standing);
     master.run_uncancellable(|master| master.with_reply_timeout(guide::SILENCE_LIMIT, back))
 }

@@ -89,9 +89,9 @@ impl MotorRun {
 pub enum OperatorTask {
     Turn(MotorRun),
     /// Keep the shaft at rest, because the data area is not accessed while the shaft turns.
-    Stand,
+    HoldStill,
     /// Keep the shaft at rest at the angle to which the preset value will be assigned.
-    StandAtPlace,
+    HoldAtPresetAngle,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +99,7 @@ pub enum StartBlocker {
     Measuring,
     NoPosition,
     /// The shaft is at rest but must turn.
-    Standing,
+    NotTurning,
     /// The shaft is turning but must be at rest.
     Turning {
         /// Speed in revolutions per minute, positive clockwise.
@@ -160,7 +160,7 @@ impl OperatorPrompt {
             _ if unreadable => blockers.push(StartBlocker::NoPosition),
             (None, _) => blockers.push(StartBlocker::Measuring),
             (Some(motion), OperatorTask::Turn(run)) => blockers.extend(Self::motion_blocker(run, motion)),
-            (Some(motion), OperatorTask::Stand | OperatorTask::StandAtPlace) => {
+            (Some(motion), OperatorTask::HoldStill | OperatorTask::HoldAtPresetAngle) => {
                 blockers.extend((!motion.is_still()).then_some(StartBlocker::Turning { rpm: motion.rpm }));
             }
         }
@@ -183,7 +183,7 @@ impl OperatorPrompt {
     fn motion_blocker(run: MotorRun, motion: ShaftMotion) -> Option<StartBlocker> {
         let (rpm, allowed) = (motion.rpm.abs(), run.allowed_speeds());
         if rpm < Self::MIN_TURNING_RPM {
-            Some(StartBlocker::Standing)
+            Some(StartBlocker::NotTurning)
         } else if (motion.rpm > 0.0) != run.is_clockwise() {
             Some(StartBlocker::WrongDirection)
         } else if !allowed.with_tolerance().contains(rpm) {
@@ -312,7 +312,7 @@ mod tests {
             (second, -500.0, 0.0, vec![StartBlocker::WrongDirection]),
             (first, -290.0, 0.0, vec![StartBlocker::Speed { rpm: 290.0, allowed }]),
             (first, -710.0, 0.0, vec![StartBlocker::Speed { rpm: 710.0, allowed }]),
-            (first, 0.5, 0.0, vec![StartBlocker::Standing]),
+            (first, 0.5, 0.0, vec![StartBlocker::NotTurning]),
             (first, -500.0, 6.9, vec![]),
             (first, -500.0, 7.1, vec![StartBlocker::Unsteady { spread: 7.1 }]),
             (MotorRun::WiegandClockwise, 500.0, 26.0, vec![StartBlocker::Unsteady { spread: 26.0 }]),
@@ -367,7 +367,7 @@ mod tests {
 
     #[test]
     fn a_turning_shaft_blocks_a_standstill_step() {
-        for task in [OperatorTask::Stand, OperatorTask::StandAtPlace] {
+        for task in [OperatorTask::HoldStill, OperatorTask::HoldAtPresetAngle] {
             assert_eq!(operator_prompt(task, turning(3.0, 0.0)).blockers, [StartBlocker::Turning { rpm: 3.0 }]);
             assert!(operator_prompt(task, turning(0.0, 0.0)).is_ready());
         }

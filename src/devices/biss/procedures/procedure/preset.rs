@@ -40,7 +40,7 @@ impl ProcedureContext<'_, '_> {
 
     pub(super) fn trigger_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
         let procedure = self.find_procedure(ProcedureKind::Preset)?;
-        let OperatorDecision::Go(_) = self.run_operator_task(OperatorTask::StandAtPlace)? else {
+        let OperatorDecision::Go(_) = self.run_operator_task(OperatorTask::HoldAtPresetAngle)? else {
             return Ok(Outcome::Skipped { after: None });
         };
         let from = self.master.position()?;

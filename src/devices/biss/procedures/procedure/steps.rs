@@ -19,7 +19,7 @@ pub enum ProcedureStep {
     Save,
     Fire,
     Restart,
-    LeadBack,
+    ReturnToOperation,
     ReadBack,
 }
 
@@ -60,10 +60,10 @@ pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
                 ProcedureStep::Open,
                 ProcedureStep::Write,
                 ProcedureStep::Save,
-                ProcedureStep::LeadBack,
+                ProcedureStep::ReturnToOperation,
                 ProcedureStep::ReadBack,
             ];
-            let mut steps = vec![ProcedureStep::Await(OperatorTask::Stand)];
+            let mut steps = vec![ProcedureStep::Await(OperatorTask::HoldStill)];
             steps.extend(entered(DeviceMode::DATA_WRITE, &own));
             steps
         }
@@ -78,7 +78,7 @@ pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
             ],
         ),
         Op::FirePreset { .. } => {
-            let mut steps = vec![ProcedureStep::Await(OperatorTask::StandAtPlace)];
+            let mut steps = vec![ProcedureStep::Await(OperatorTask::HoldAtPresetAngle)];
             steps.extend(entered(
                 DeviceMode::PRESET,
                 &[ProcedureStep::Fire, ProcedureStep::Restart, ProcedureStep::ReadBack],
@@ -104,7 +104,7 @@ pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
                 ProcedureStep::Run(first),
                 ProcedureStep::Await(OperatorTask::Turn(second)),
                 ProcedureStep::Run(second),
-                ProcedureStep::LeadBack,
+                ProcedureStep::ReturnToOperation,
             ]
         }
         Op::WiegandTest { save } => {
@@ -118,7 +118,7 @@ pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
                 ProcedureStep::Results,
             ];
             steps.extend(save.then_some(ProcedureStep::Save));
-            steps.push(ProcedureStep::LeadBack);
+            steps.push(ProcedureStep::ReturnToOperation);
             steps
         }
         Op::WriteRegister { .. } => vec![ProcedureStep::Write, ProcedureStep::ReadBack],

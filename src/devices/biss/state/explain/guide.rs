@@ -38,7 +38,7 @@ pub fn procedure_step_text(step: ProcedureStep) -> Text {
         ProcedureStep::Save => TEXTS.text("guide.save"),
         ProcedureStep::Fire => TEXTS.text("guide.fire"),
         ProcedureStep::Restart => TEXTS.text("guide.restart"),
-        ProcedureStep::LeadBack => TEXTS.text("guide.lead_back"),
+        ProcedureStep::ReturnToOperation => TEXTS.text("guide.lead_back"),
         ProcedureStep::ReadBack => TEXTS.text("guide.read_back"),
     }
 }
@@ -71,8 +71,8 @@ pub fn task_text(task: OperatorTask) -> Text {
                 0,
             )
         }
-        OperatorTask::Stand => TEXTS.text("guide.stand"),
-        OperatorTask::StandAtPlace => TEXTS.text("guide.stand_at_place"),
+        OperatorTask::HoldStill => TEXTS.text("guide.stand"),
+        OperatorTask::HoldAtPresetAngle => TEXTS.text("guide.stand_at_place"),
     }
 }
 
@@ -80,7 +80,7 @@ pub fn blocker_text(blocker: StartBlocker) -> Text {
     match blocker {
         StartBlocker::Measuring => TEXTS.text("guide.measuring"),
         StartBlocker::NoPosition => TEXTS.text("guide.no_position"),
-        StartBlocker::Standing => TEXTS.text("guide.standing"),
+        StartBlocker::NotTurning => TEXTS.text("guide.standing"),
         // With fewer decimals, such a speed would be shown as zero.
         StartBlocker::Turning { rpm } if rpm.abs() < 0.05 => TEXTS.text("guide.creeping"),
         StartBlocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
@@ -278,7 +278,7 @@ mod tests {
 
     /// A speed that rounds to zero is not shown as the reason for a shaft that is not at rest.
     #[test]
-    fn a_creeping_shaft_is_not_said_to_turn_at_zero() {
+    fn a_creeping_shaft_is_not_reported_at_zero_rpm() {
         let words = |rpm| blocker_text(StartBlocker::Turning { rpm }).to_string_in(German);
         assert!(words(0.06).contains("0,1 1/min") && words(-3.0).contains("-3,0 1/min"));
         for rpm in [0.049, -0.03, 0.0] {

@@ -319,7 +319,7 @@ mod tests {
 
     /// Issue 22.5: the remedy applies only after the encoder has returned to operation.
     #[test]
-    fn completing_a_write_is_advised_after_leading_back() {
+    fn completing_a_write_is_advised_after_the_return_to_operation() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
             let last = |left| {
                 let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
@@ -410,11 +410,14 @@ mod tests {
             (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
             (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
             (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
-            (Failure::NotReady { task: OperatorTask::Turn(first), blockers: vec![StartBlocker::Standing] }, "at rest"),
+            (
+                Failure::NotReady { task: OperatorTask::Turn(first), blockers: vec![StartBlocker::NotTurning] },
+                "at rest",
+            ),
             (
                 Failure::NotReady {
-                    task: OperatorTask::Stand,
-                    blockers: vec![StartBlocker::Standing, StartBlocker::Temperature { celsius: 20 }],
+                    task: OperatorTask::HoldStill,
+                    blockers: vec![StartBlocker::NotTurning, StartBlocker::Temperature { celsius: 20 }],
                 },
                 "is at rest. The encoder temperature is 20 °C",
             ),

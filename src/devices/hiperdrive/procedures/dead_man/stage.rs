@@ -116,7 +116,7 @@ impl DeadMan {
                 }
             }
             Stage::Go { since, acknowledged, standing_since: stands } => {
-                let stands = has(StatusBit::StandingStill).then(|| stands.unwrap_or(mark));
+                let stands = has(StatusBit::Standstill).then(|| stands.unwrap_or(mark));
                 self.stage = Stage::Go { since, acknowledged, standing_since: stands };
                 if let Some(stands) = stands {
                     self.check_motion_end(mark, actual, stands);
@@ -166,7 +166,7 @@ impl DeadMan {
         if level == StopLevel::Close {
             return;
         }
-        if mark.has_elapsed_since(begun, MAX_REPORT_DELAY) && actual.status.is_set(StatusBit::StandingStill) {
+        if mark.has_elapsed_since(begun, MAX_REPORT_DELAY) && actual.status.is_set(StatusBit::Standstill) {
             // The held state is never above the state of the word sent last.
             self.hold_state(actual.status.state());
         } else if mark.at.duration_since(since) >= LEVEL_TIME {

@@ -262,7 +262,7 @@ fn steps_convert_to_turns_and_millimetres() {
 #[test]
 fn turns_reference_torque_and_speed_convert() {
     for (position, expected) in [(-1, (-1, 65_535)), (0, (0, 0)), (163_840, (2, 32_768)), (i32::MIN, (-32_768, 0))] {
-        assert_eq!(split_turns(position), expected);
+        assert_eq!(to_turns_and_steps(position), expected);
     }
     for (position, reference) in [(31, 0), (32, 64), (33, 64), (100, 128), (-33, -64), (163_840, 163_840)] {
         assert_eq!(nearest_reference(position), Some(reference), "{position}");

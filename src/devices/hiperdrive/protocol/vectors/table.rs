@@ -202,7 +202,7 @@ fn every_row_is_answered_within_the_manuals_time() {
 /// Issue 21.10: for each family and scale, limit ranges are turns · 256 · numerator / denominator steps, rounded
 /// towards 0 and within 32 bits.
 #[test]
-fn limit_ranges_are_the_familys_turns_in_scaled_units() {
+fn limit_ranges_match_the_turns_of_the_family() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];
     let mut families = families();
     assert_eq!(families.len(), names.len());

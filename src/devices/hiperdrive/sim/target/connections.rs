@@ -48,7 +48,7 @@ const NOT_FOUND: ExtendedStatus = 0x0107;
 const NETWORK_TYPE: ExtendedStatus = 0x0108;
 const INTERVAL: ExtendedStatus = 0x0111;
 const NO_MORE_CONNECTIONS: ExtendedStatus = 0x0113;
-const WRONG_MAKER: ExtendedStatus = 0x0114;
+const WRONG_VENDOR: ExtendedStatus = 0x0114;
 const WRONG_TYPE: ExtendedStatus = 0x0115;
 const WRONG_REVISION: ExtendedStatus = 0x0116;
 const ASSEMBLY: ExtendedStatus = 0x0117;
@@ -221,7 +221,7 @@ impl TargetDevice {
             false => fits(key.minor.into(), own.revision.minor.into()),
         };
         if !fits(key.vendor, own.vendor) || !fits(key.product_code, own.product_code) {
-            Err(WRONG_MAKER)
+            Err(WRONG_VENDOR)
         } else if !fits(key.device_type, own.device_type) {
             Err(WRONG_TYPE)
         } else if !fits(major.into(), own.revision.major.into()) || !minor {

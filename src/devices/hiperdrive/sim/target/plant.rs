@@ -72,7 +72,7 @@ impl TargetDevice {
     }
 
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.station.fail_in_store(faults.failing_store());
+        self.station.set_failing_save(faults.failing_store());
         self.faults = faults.clone();
     }
 

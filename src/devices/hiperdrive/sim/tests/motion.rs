@@ -167,7 +167,7 @@ fn a_hub_moves_only_requested_drives() {
     bench.run(3000);
     assert_eq!([0, 1].map(|drive| bench.actual(drive).position), [0, 65_536]);
     // S3 at a drive: nothing starts.
-    bench.station.set_s3(bench.now, 2);
+    bench.station.set_drive_select_switch(bench.now, 2);
     bench.out[1].target = 0;
     both(&mut bench, 0x0439);
     bench.run(500);

@@ -120,7 +120,7 @@ impl Axis {
     pub(crate) fn mark_written(&mut self) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) => {
-                self.record_agreed_limits(&values, true);
+                self.record_confirmed_limits(&values, true);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The value that marks the restart is never saved.
                 self.saved &= self.step == AxisStep::PowerCycle;
@@ -142,7 +142,7 @@ impl Axis {
     }
 
     /// Records that the user confirmed the limits by approving their plan.
-    fn record_agreed_limits(&mut self, values: &[(u16, i64)], whole: bool) {
+    fn record_confirmed_limits(&mut self, values: &[(u16, i64)], whole: bool) {
         let value = |own: u16| {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
             i32::try_from(*value).ok()
@@ -161,7 +161,7 @@ impl Axis {
     pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
-                self.record_agreed_limits(&values, false);
+                self.record_confirmed_limits(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The value that marks the restart is never saved. All other values are as saved.
                 if self.step != AxisStep::PowerCycle {

@@ -105,7 +105,7 @@ impl Axis {
                 Ok(DriveRequest::SetPosition(reference.becomes))
             }
             AxisStep::Upper => {
-                let (low, high) = self.taught_limits(seen)?;
+                let (low, high) = self.teach_in_limits(seen)?;
                 if seen.limits == Some((low, high)) {
                     return Err(TEXTS.text("hd_axis.already"));
                 }
@@ -125,7 +125,7 @@ impl Axis {
     }
 
     /// Returns both limits set by teach-in, after checking that the axis is between them.
-    fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
+    fn teach_in_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper_limit(ruler)?);
         let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
@@ -240,7 +240,7 @@ impl Axis {
             }
             AxisStep::Lower => self.entries.lower_limit(seen.ruler()).map(|_| ()),
             AxisStep::Upper => {
-                let taught = self.taught_limits(seen)?;
+                let taught = self.teach_in_limits(seen)?;
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
             }
             AxisStep::Test => {

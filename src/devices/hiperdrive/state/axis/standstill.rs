@@ -61,7 +61,7 @@ impl StandstillMonitor {
         if at.is_none() && !self.interrupted {
             return None;
         }
-        let stands = !seen.moves && actual.status.is_set(StatusBit::StandingStill) && actual.speed == 0;
+        let stands = !seen.moves && actual.status.is_set(StatusBit::Standstill) && actual.speed == 0;
         let now = StandstillReading { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
         let is_interrupted = std::mem::take(&mut self.interrupted);
         // A change of position after a motion proves nothing.

@@ -29,7 +29,7 @@ pub enum RestartEvidence {
     Read,
     Switched,
     /// The restart is claimed by the user and not proven by a reading.
-    Said,
+    ClaimedByUser,
     /// The restart is not proven. The connection was lost, but this can have other causes.
     Unproven,
     /// The restart is disproved, because parameter 182 still has a value that any restart would remove.
@@ -115,7 +115,7 @@ impl Power {
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Unproven } => {
-                Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Said }
+                Power::Back { before, kept, moved, allowed, restart: RestartEvidence::ClaimedByUser }
             }
             own => own,
         }
@@ -124,7 +124,7 @@ impl Power {
     /// Returns whether the saved values are present, the axis has not moved, and the supply was off.
     pub(super) fn has_survived_power_cycle(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
-            if moved.abs() <= allowed && matches!(restart, RestartEvidence::Read | RestartEvidence::Switched | RestartEvidence::Said))
+            if moved.abs() <= allowed && matches!(restart, RestartEvidence::Read | RestartEvidence::Switched | RestartEvidence::ClaimedByUser))
     }
 }
 

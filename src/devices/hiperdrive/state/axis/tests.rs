@@ -306,7 +306,7 @@ fn impossible_steps_are_refused_with_a_reason() {
 }
 
 #[test]
-fn taught_limits_must_contain_the_position() {
+fn limits_must_enclose_the_axis_position() {
     let (mut axis, mut seen) = at_test_step();
     axis.go_back(&seen);
     let typed = |lower: &str, upper: &str, axis: &Axis| LengthEntries {

@@ -126,7 +126,7 @@ fn power_text(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     let proof = TEXTS.text(match restart {
         RestartEvidence::Read => "hd_axis.restart_read",
         RestartEvidence::Switched => "hd_axis.restart_switched",
-        RestartEvidence::Said => "hd_axis.restart_said",
+        RestartEvidence::ClaimedByUser => "hd_axis.restart_said",
         RestartEvidence::Unproven => "hd_axis.restart_unproven",
         RestartEvidence::Disproved => "hd_axis.not_restarted",
     });

@@ -97,7 +97,7 @@ pub fn range_text(range: ParameterRange) -> Text {
         ParameterRange::Any => TEXTS.text("hd_range.any"),
         ParameterRange::Within(low, high) if low == high => TEXTS.text("hd_range.only").with("low", low),
         ParameterRange::Within(low, high) => TEXTS.text("hd_range.within").with("low", low).with("high", high),
-        ParameterRange::WithinOr(low, high, also) => {
+        ParameterRange::WithinOrEqual(low, high, also) => {
             TEXTS.text("hd_range.within_or").with("low", low).with("high", high).with("also", also)
         }
         ParameterRange::OneOf(values) => Text::new("plain.words").with_list("words", values.iter().map(literal_text)),

@@ -33,7 +33,7 @@ pub fn status_bit(bit: StatusBit) -> Text {
         StatusBit::TargetReached => "hd_bit.target_reached",
         StatusBit::ReferenceSet => "hd_bit.reference_set",
         StatusBit::SetpointAcknowledged => "hd_bit.setpoint_acknowledged",
-        StatusBit::StandingStill => "hd_bit.standing_still",
+        StatusBit::Standstill => "hd_bit.standing_still",
         StatusBit::OverCurrent => "hd_bit.over_current",
         StatusBit::PositionLimit => "hd_bit.position_limit",
     })

@@ -82,7 +82,7 @@ fn errors_name_cause_and_remedy() {
         Error::NoNumber(900),
         Error::NoPlace { drive: ONE, topology: Topology::Hub4 },
         Error::NoDrive { drive: ONE },
-        Error::OutOfRange(ranged(ParameterRange::WithinOr(1, 100, 255))),
+        Error::OutOfRange(ranged(ParameterRange::WithinOrEqual(1, 100, 255))),
         Error::Refuses(ranged(ParameterRange::OneOf(&[9600, 19200, 38400]))),
         Error::Value { number: number(158), cause: ValueError::TextForNumber },
         length.into(),

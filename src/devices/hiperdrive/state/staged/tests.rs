@@ -52,7 +52,7 @@ fn invalid_edits_are_refused_with_a_reason() {
     };
     // Reference 4: 5 to 350, and 1 to 100 or 255.
     assert_eq!(out(&mut staged, 166, 351), (351, ParameterRange::Within(5, 350)));
-    assert_eq!(out(&mut staged, 186, 101), (101, ParameterRange::WithinOr(1, 100, 255)));
+    assert_eq!(out(&mut staged, 186, 101), (101, ParameterRange::WithinOrEqual(1, 100, 255)));
     assert_eq!(staged.apply_edit(&Edit::Set(number(107), 0)), Err(EditError::NotAValue(number(107))), "it is read");
     assert_eq!(
         staged.apply_edit(&Edit::Set(number(198), 0)),

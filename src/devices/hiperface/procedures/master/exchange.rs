@@ -60,7 +60,7 @@ impl Master<'_> {
         let judgement = self.match_reply(request, heard);
         // A damaged reply to a frame with an access code may be the echo of the frame, so none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
-        let shown = if secret { MaskedBytes::fully_masked(reply.len()) } else { MaskedBytes::clear(&reply) };
+        let shown = if secret { MaskedBytes::fully_masked(reply.len()) } else { MaskedBytes::unmasked(&reply) };
         self.line.show(first_at, shown);
         // Damaged bytes may contain a complete reply. Late or extra bytes were kept while listening, and an echo is not
         // a reply.
@@ -210,7 +210,7 @@ impl Master<'_> {
         }
         self.station.line.mark_replied();
         self.station.line.record_answer_start(heard.first_at);
-        self.station.line.echo.store_heard(heard.echo_heard);
+        self.station.line.echo.record_echo(heard.echo_heard);
         let sender = heard.reply.first().copied().unwrap_or(self.station.address);
         Ok(ReceivedAnswer { answer, sender, at: heard.first_at - self.station.timing().character })
     }

@@ -21,8 +21,8 @@ impl Master<'_> {
     /// Runs `work` and then returns the encoder to its previous mode, even after an error.
     ///
     /// # Errors
-    /// Returns the error of `work`, [`Error::NotRunning`] if the work cannot begin, or [`Error::NotLedBack`] if the
-    /// mode cannot be restored.
+    /// Returns the error of `work`, [`Error::NotRunning`] if the work cannot begin, or [`Error::ModeNotRestored`] if
+    /// the mode cannot be restored.
     pub fn run_guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
         let ended = self.enter().and_then(|()| work(self));
         self.finish(ended)
@@ -31,12 +31,12 @@ impl Master<'_> {
     /// Returns the encoder to its state before [`enter`](Self::enter), even if the work has failed.
     ///
     /// # Errors
-    /// Returns the error of the work, or [`Error::NotLedBack`] if the state cannot be restored.
+    /// Returns the error of the work, or [`Error::ModeNotRestored`] if the state cannot be restored.
     pub(in crate::devices::interbus::procedures) fn finish<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
         let led = match &ended {
             // The link is lost, so nothing more can be sent.
             Err(error @ Error::Link(_)) => Err(error.clone()),
-            _ => self.run_uncancellable(Self::lead_back),
+            _ => self.run_uncancellable(Self::return_to_original_mode),
         };
         let is_back = led.is_ok() || self.is_in_initial_state();
         self.record_step_end(is_back);
@@ -48,7 +48,7 @@ impl Master<'_> {
         if self.is_in_initial_state() {
             return Err(cause);
         }
-        Err(Error::NotLedBack { cause: Box::new(cause), standing: self.left_state() })
+        Err(Error::ModeNotRestored { cause: Box::new(cause), standing: self.left_state() })
     }
 
     /// Ends a parameterisation, an error or a read-out of another program, and returns the resulting mode. Values that
@@ -56,7 +56,7 @@ impl Master<'_> {
     /// the encoder can still be read and set.
     ///
     /// # Errors
-    /// Returns [`Error::NotLedBack`] with the cause if the encoder cannot be returned to operation.
+    /// Returns [`Error::ModeNotRestored`] with the cause if the encoder cannot be returned to operation.
     pub fn end_foreign_operation(&mut self) -> Result<StartupMode, Error> {
         let ended = self.run_uncancellable(|master| {
             master.clear_run_command()?;
@@ -74,11 +74,11 @@ impl Master<'_> {
                 master.note_foreign_store()?;
             }
             master.resume(mode)?;
-            master.lead_back()?;
+            master.return_to_original_mode()?;
             Ok(master.is.unwrap_or(mode))
         });
         self.record_step_end(ended.is_ok());
-        ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.left_state() })
+        ended.map_err(|cause: Error| Error::ModeNotRestored { cause: Box::new(cause), standing: self.left_state() })
     }
 
     /// Switches the encoder to a mode and checks the result.
@@ -207,7 +207,7 @@ impl Master<'_> {
     }
 
     /// Returns the encoder to its original mode.
-    fn lead_back(&mut self) -> Result<(), Error> {
+    fn return_to_original_mode(&mut self) -> Result<(), Error> {
         if self.out.is_none() {
             return Ok(());
         }

@@ -224,7 +224,7 @@ fn unread_values_are_not_changed() {
 }
 
 #[test]
-fn a_preset_is_programmed_whenever_it_is_fired() {
+fn a_preset_is_programmed_before_each_trigger() {
     let parameters = image().parameters;
     let plan = plan_preset(&parameters, 500).unwrap();
     let again = ParameterChange { parameter: Parameter::Preset, from: 500, to: 500 };

@@ -68,8 +68,8 @@ fn decimal_commas_are_accepted_if_no_delimiter() {
 
 #[test]
 fn rounding_of_an_edge_is_reported() {
-    // 8192 steps per turn, the machine's 0 at 1000: 10° are 227.56 steps and 228 are 10.0195°; 350° are 7964.44, and 7964
-    // 349.9805°.
+    // 8192 steps per turn, the machine's 0 at 1000: 10° are 227.56 steps and 228 are 10.0195°; 350° are 7964.44, and
+    // 7964 349.9805°.
     let table = options(Scale::in_degrees(8192.0, 1000).unwrap(), 8192).read("feed;350;10\nplain;0;90");
     assert_eq!(rows(&table), [(1, 0, "feed", 772, 1228), (1, 1, "plain", 1000, 3048)]);
     let row = &table.rows[0];
@@ -172,7 +172,7 @@ fn empty_tables_are_reported() {
 }
 
 #[test]
-fn a_header_with_another_unit_is_noted() {
+fn a_header_with_another_unit_is_reported() {
     let table = options(Scale::in_degrees(1000.0, 0).unwrap(), 1000).read("name;start [mm];stop [mm]\nfeed;36;72\n");
     assert_eq!(rows(&table), [(1, 0, "feed", 100, 200)]);
     assert_eq!(table.notes, [TableNote::OtherUnit { header: Unit::Millimetres, used: Unit::Degrees }]);

@@ -115,7 +115,7 @@ fn only_the_edge_of_run_ends_a_parameterisation() {
 }
 
 #[test]
-fn each_set_preset_fires_once() {
+fn each_programmed_preset_triggers_once() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096&preset=7");
     master.exchange(&[(0x4000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0000), (0, 180)]);
     master.exchange(&[(0x0800_0064, 0xC800_0064), (0x8000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0001), (0, 180)]);

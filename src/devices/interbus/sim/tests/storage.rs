@@ -24,7 +24,7 @@ fn the_masters_word_is_processed_when_power_returns() {
 }
 
 #[test]
-fn mode_zero_point_and_a_fired_preset_survive_without_a_store() {
+fn mode_zero_point_and_an_executed_preset_survive_without_a_store() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0800_0005, 0x8000_0000, 0, 0x4000_0000, 0, 0x2080_0004, 0x8000_0000]);
     master.power_cycle();

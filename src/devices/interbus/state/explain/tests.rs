@@ -84,13 +84,16 @@ fn encoder_errors_name_a_remedy() {
         (Error::NotTaken { item: "steps".to_owned(), wanted: 255, reads: 256 }, vec!["steps", "255", "256"]),
         (Error::Changed { item: "shift".to_owned() }, vec!["shift"]),
         (
-            Error::NotLedBack {
+            Error::ModeNotRestored {
                 cause: Box::new(Error::NoReply { requested, tries: 3 }),
                 standing: standing(Some(program(3)), Some(StartupMode::K3)),
             },
             vec!["16", "0x20800003", "3", "K3"],
         ),
-        (Error::NotLedBack { cause: Box::new(Error::NeverSilent), standing: standing(None, None) }, vec!["0x20800003"]),
+        (
+            Error::ModeNotRestored { cause: Box::new(Error::NeverSilent), standing: standing(None, None) },
+            vec!["0x20800003"],
+        ),
     ];
     for (error, facts) in cases {
         assert_explains(&encoder_error_text(&error), &facts);
@@ -188,7 +191,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
 
 /// Issue 22.5: the remedy comes after returning the encoder to its mode.
 #[test]
-fn completing_a_write_is_advised_after_leading_back() {
+fn completing_a_write_is_advised_after_the_return_to_operation() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
         let done = WrittenChanges { ops: 1, write_cycles: 1, written: 1, verified: 1 };
@@ -257,7 +260,7 @@ fn operations_are_described_one_by_one() {
 fn only_a_lost_wire_counts_as_a_lost_connection() {
     let gone = || Error::Link(LinkError::new("plc:502", LinkErrorKind::Lost));
     let standing = LeftState { out: 0, parameterising: false, found: None, is: None };
-    for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {
+    for error in [gone(), Error::ModeNotRestored { cause: Box::new(gone()), standing }] {
         assert_eq!(connection_loss_text(&JobError::Device(error)).unwrap().id(), "link.lost");
     }
     let silent = JobError::Device(Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });

@@ -211,7 +211,7 @@ fn edits_and_undo_survive_a_fresh_reading() {
 }
 
 #[test]
-fn values_not_read_again_stay_as_known() {
+fn values_that_are_not_reread_are_kept() {
     let mut staged = staged();
     staged.refresh_programs(&[(number(2), Program { mask: 0x93, ..program() })], None);
     staged.refresh_parameters(parameters(500, 1));

@@ -84,11 +84,11 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
         for (label, value) in settings {
             let label = match label {
                 SheetLabel::Own(label) => label.to_owned(),
-                SheetLabel::Said(label) => say(&label),
+                SheetLabel::Text(label) => say(&label),
             };
             let value = match value {
                 Setting::Plain(value) => value,
-                Setting::Said(value) => say(&value),
+                Setting::Text(value) => say(&value),
             };
             let _ = writeln!(text, "  {label:32}{value}");
         }
@@ -103,13 +103,13 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
 enum SheetLabel {
     /// Term from the module manual, which is the same in every language.
     Own(&'static str),
-    Said(ExportText),
+    Text(ExportText),
 }
 
 enum Setting {
     /// Text that is the same in every language.
     Plain(String),
-    Said(ExportText),
+    Text(ExportText),
 }
 
 /// Returns the property of the frame that no module can decode, if any.
@@ -132,7 +132,7 @@ fn is_gray(layout: &Layout) -> bool {
 /// Returns the code setting: 1 for Gray, 0 for binary.
 fn code_setting(layout: &Layout) -> Setting {
     let (number, value) = if is_gray(layout) { (1, SettingMeaning::Gray) } else { (0, SettingMeaning::Binary) };
-    Setting::Said(ExportText::Setting(number, value))
+    Setting::Text(ExportText::Setting(number, value))
 }
 
 fn siemens_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
@@ -143,15 +143,15 @@ fn siemens_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, 
     let code = if is_gray(layout) { "Gray" } else { "Dual" };
     vec![
         (
-            SheetLabel::Said(ExportText::FrameLength),
-            Setting::Said(ExportText::FrameBits { bits, fits: (10..=40).contains(&bits) }),
+            SheetLabel::Text(ExportText::FrameLength),
+            Setting::Text(ExportText::FrameBits { bits, fits: (10..=40).contains(&bits) }),
         ),
-        (SheetLabel::Said(ExportText::CodeType), Setting::Plain(code.to_owned())),
-        (SheetLabel::Said(ExportText::Parity), Setting::Said(parity)),
-        (SheetLabel::Said(ExportText::BitNumberLowest), Setting::Plain(places.lowest.to_string())),
+        (SheetLabel::Text(ExportText::CodeType), Setting::Plain(code.to_owned())),
+        (SheetLabel::Text(ExportText::Parity), Setting::Text(parity)),
+        (SheetLabel::Text(ExportText::BitNumberLowest), Setting::Plain(places.lowest.to_string())),
         (
-            SheetLabel::Said(ExportText::BitNumberHighest),
-            Setting::Said(ExportText::HighestNumber { bit, fits: width <= 32 }),
+            SheetLabel::Text(ExportText::BitNumberHighest),
+            Setting::Text(ExportText::HighestNumber { bit, fits: width <= 32 }),
         ),
     ]
 }
@@ -167,24 +167,24 @@ fn beckhoff_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel,
     let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
     let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
     let bits = places.lowest_bit() - fails;
-    let error = if fails == 1 { Setting::Said(ExportText::LastIsError) } else { Setting::Plain("0".to_owned()) };
+    let error = if fails == 1 { Setting::Text(ExportText::LastIsError) } else { Setting::Plain("0".to_owned()) };
     let mut settings = vec![
         (SheetLabel::Own(":06 SSI coding"), code_setting(layout)),
-        (SheetLabel::Own(":0F SSI frame type"), Setting::Said(frame_type)),
+        (SheetLabel::Own(":0F SSI frame type"), Setting::Text(frame_type)),
         (SheetLabel::Own(":11 SSI frame size"), Setting::Plain(places.frame.to_string())),
         (SheetLabel::Own(":12 SSI data length"), Setting::Plain((places.frame - fails).to_string())),
         (SheetLabel::Own(":02 Enable power failure bit"), error),
     ];
     if bits > 0 {
         let divide = ExportText::Divide { by: 1_u64 << bits, bits };
-        settings.push((SheetLabel::Said(ExportText::InTheProgram), Setting::Said(divide)));
+        settings.push((SheetLabel::Text(ExportText::InTheProgram), Setting::Text(divide)));
     }
     settings
 }
 
 fn delta_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     let field = |ends: Option<(u8, u8)>| {
-        Setting::Said(match ends {
+        Setting::Text(match ends {
             Some((low, highest)) => ExportText::Field { bits: highest - low + 1, highest },
             None => ExportText::NoField,
         })
@@ -199,7 +199,7 @@ fn delta_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Se
         (SheetLabel::Own("Multi-turn data"), field(places.turns)),
         (SheetLabel::Own("Single-turn data"), field(steps)),
         (SheetLabel::Own("Status data"), field(ends)),
-        (SheetLabel::Own("Code"), Setting::Said(code)),
+        (SheetLabel::Own("Code"), Setting::Text(code)),
     ]
 }
 
@@ -220,7 +220,7 @@ fn synapticon_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabe
         (SheetLabel::Own(":11 Multiturn first bit"), first(places.turns)),
         (SheetLabel::Own("Singleturn bits"), count(steps)),
         (SheetLabel::Own(":9 Singleturn first bit"), first(steps)),
-        (SheetLabel::Own(":12 Parity type"), Setting::Said(ExportText::Setting(number, parity))),
+        (SheetLabel::Own(":12 Parity type"), Setting::Text(ExportText::Setting(number, parity))),
         (SheetLabel::Own(":14 Data ordering"), code_setting(layout)),
     ]
 }

@@ -176,7 +176,7 @@ pub(super) fn build_layout(descriptor: FrameDescriptor) -> Result<Layout, Layout
     }
 
     let mut taken = Clocks { clocks: word, taken: Vec::new() };
-    let position = place_bits(&parts, low_bits_mask(coding.bits()));
+    let position = code_bits_to_word(&parts, low_bits_mask(coding.bits()));
     for clock in (1..=word).filter(|clock| position >> (word - clock) & 1 == 1) {
         taken.claim(clock, ClockUse::Position)?;
     }
@@ -276,7 +276,7 @@ fn word_parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[Bi
 }
 
 /// Moves the bits of a code word to their places in a frame.
-fn place_bits(parts: &[BitPart; 2], code: u64) -> u64 {
+fn code_bits_to_word(parts: &[BitPart; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }
 

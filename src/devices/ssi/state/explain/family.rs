@@ -1,6 +1,6 @@
 //! Texts from family files, and messages about family files that cannot be used.
 
-use super::refused::settings_reason;
+use super::refused::settings_error_reason;
 use crate::app::Text;
 use crate::app::explain::{self as general, literal_text, syntax_error_text};
 use crate::devices::ssi::protocol::{Family, FamilyError, FamilyProblem};
@@ -29,7 +29,9 @@ fn family_problem_text(problem: &FamilyProblem) -> Text {
         FamilyProblem::Parser(words) => literal_text(words),
         FamilyProblem::Key(key) => TEXTS.text("ssi_family.key").with("key", format!("{key:?}")),
         FamilyProblem::German(english) => TEXTS.text("ssi_family.german").with("english", format!("{english:?}")),
-        FamilyProblem::Delivered(error) => TEXTS.text("ssi_family.delivered").with_text("why", settings_reason(error)),
+        FamilyProblem::Delivered(error) => {
+            TEXTS.text("ssi_family.delivered").with_text("why", settings_error_reason(error))
+        }
     }
 }
 

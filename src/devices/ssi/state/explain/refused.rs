@@ -11,15 +11,15 @@ use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
 pub fn layout_error_text(error: &LayoutError) -> Text {
-    rejection_text(layout_reason(error))
+    rejection_text(layout_error_reason(error))
 }
 
 pub fn settings_error_text(error: &SettingsError) -> Text {
-    rejection_text(settings_reason(error))
+    rejection_text(settings_error_reason(error))
 }
 
 /// Returns the reason why settings are impossible, as a part of a sentence.
-pub(super) fn settings_reason(error: &SettingsError) -> Text {
+pub(super) fn settings_error_reason(error: &SettingsError) -> Text {
     match error {
         SettingsError::None { family, field } => {
             TEXTS.text("ssi.lacks").with("family", family).with_text("field", field_name(*field))
@@ -46,9 +46,9 @@ pub(super) fn settings_reason(error: &SettingsError) -> Text {
         SettingsError::Clocks { family, most, clocks } => {
             TEXTS.text("ssi.clocks_refused").with("family", family).with("most", most).with("clocks", clocks)
         }
-        SettingsError::Layout(error) => layout_reason(error),
-        SettingsError::Range(error) => range_reason(error),
-        SettingsError::Code(error) => code_reason(error),
+        SettingsError::Layout(error) => layout_error_reason(error),
+        SettingsError::Range(error) => range_error_reason(error),
+        SettingsError::Code(error) => code_error_reason(error),
     }
 }
 
@@ -69,7 +69,7 @@ pub fn format_error_text(error: &FormatError) -> Text {
         FormatError::Two(one, other) => TEXTS.text("ssi_lc.two").with("one", one).with("other", other),
         FormatError::None => TEXTS.text("ssi_lc.none"),
         FormatError::Long => TEXTS.text("ssi_lc.long"),
-        FormatError::Layout(error) => layout_reason(error),
+        FormatError::Layout(error) => layout_error_reason(error),
     };
     rejection_text(why)
 }
@@ -133,11 +133,11 @@ fn field_name(field: SettingName) -> Text {
 }
 
 /// Returns the reason why a frame is impossible, as a part of a sentence.
-pub(super) fn layout_reason(error: &LayoutError) -> Text {
+pub(super) fn layout_error_reason(error: &LayoutError) -> Text {
     match error {
         LayoutError::Clocks(clocks) => TEXTS.text("ssi_reason.clocks").with("clocks", clocks),
-        LayoutError::Range(error) => range_reason(error),
-        LayoutError::Code(error) => code_reason(error),
+        LayoutError::Range(error) => range_error_reason(error),
+        LayoutError::Code(error) => code_error_reason(error),
         LayoutError::Area { area, clocks } => TEXTS.text("ssi_reason.area").with("area", area).with("clocks", clocks),
         LayoutError::Wide { bits, lead, needed, area } => TEXTS
             .text("ssi_reason.wide")
@@ -181,7 +181,7 @@ pub(super) fn layout_reason(error: &LayoutError) -> Text {
     }
 }
 
-fn range_reason(error: &RangeError) -> Text {
+fn range_error_reason(error: &RangeError) -> Text {
     match error {
         RangeError::Wide { field, bits, limit } => {
             TEXTS.text("ssi_reason.field_bits").with("field", field).with("limit", limit).with("bits", bits)
@@ -193,7 +193,7 @@ fn range_reason(error: &RangeError) -> Text {
     }
 }
 
-fn code_reason(error: &CodeError) -> Text {
+fn code_error_reason(error: &CodeError) -> Text {
     match error {
         CodeError::Odd(steps) => TEXTS.text("ssi_reason.odd").with("steps", steps),
         CodeError::Digits(digits) => TEXTS.text("ssi_reason.digits").with("digits", digits),
@@ -210,7 +210,7 @@ fn clock_use_text(taker: &ClockUse) -> Text {
 
 pub fn entry_error_text(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
-        EntryError::Layout(error) => layout_reason(error),
+        EntryError::Layout(error) => layout_error_reason(error),
         EntryError::Preset { preset, last } => TEXTS.text("ssi_entry.preset").with("preset", preset).with("last", last),
         EntryError::NotWith(other) => TEXTS.text("ssi_entry.not_with").with("other", other),
         EntryError::NoPositions => TEXTS.text("ssi_entry.no_positions"),

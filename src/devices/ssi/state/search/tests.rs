@@ -33,7 +33,7 @@ fn clock_counts_parse_or_are_refused() {
 }
 
 #[test]
-fn a_line_that_is_no_frame_is_reported() {
+fn an_invalid_line_is_reported() {
     let said = |text: &str| parse_frames(text, 8).unwrap_err();
     let line = said("1010\n10\n");
     assert_eq!(line.id(), "ssi_find.line");
@@ -131,7 +131,7 @@ fn edges_of_logic_analysers_are_frames() {
 }
 
 #[test]
-fn what_is_no_recording_of_clock_and_data_says_why_and_what_to_do() {
+fn invalid_recordings_are_refused_with_a_remedy() {
     let good = saleae_csv("Time [s],Channel 0,Channel 1", ',', '.');
     let cases = [
         ("Time [s],Channel 0\n0,1\n1,0\n".to_owned(), "ssi_capture.one_channel"),
@@ -164,7 +164,7 @@ fn what_is_no_recording_of_clock_and_data_says_why_and_what_to_do() {
 }
 
 #[test]
-fn a_huge_file_is_refused_with_a_way_out() {
+fn a_huge_file_is_refused_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("capture.csv");
     std::fs::File::create(&path).unwrap().set_len(crate::store::MAX_TEXT + 1).unwrap();

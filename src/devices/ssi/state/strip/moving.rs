@@ -1,7 +1,7 @@
 //! Moving parts of a frame. The result is always a possible frame. If the requested clock is not possible, the nearest
 //! possible clock on the side of the current one is used.
 
-use super::{Handle, PositionParts, has_bit_patterns};
+use super::{Handle, PositionParts, has_explicit_bit_patterns};
 use crate::devices::ssi::protocol::{FrameDescriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
 
 /// Returns the frame after a part was moved to a clock, or as close to it as possible.
@@ -37,7 +37,7 @@ pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
     }
     handles.extend((0..descriptor.errors.len()).map(Handle::Error));
     handles.extend(descriptor.parity.map(|_| Handle::Parity));
-    if descriptor.repeat.is_some() && !has_bit_patterns(layout) {
+    if descriptor.repeat.is_some() && !has_explicit_bit_patterns(layout) {
         handles.extend([Handle::WordEnd, Handle::GapEnd]);
     }
     handles.push(Handle::FrameEnd);

@@ -117,7 +117,7 @@ fn times_have_four_significant_figures() {
 }
 
 #[test]
-fn frequencies_are_said_and_read_in_their_unit() {
+fn frequencies_are_formatted_and_parsed_with_units() {
     for (hertz, english, german) in [
         (0.0, "0 Hz", "0 Hz"),
         (999.0, "999 Hz", "999 Hz"),

@@ -37,7 +37,7 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
 
 /// Issue 21.6 (i): an earlier fact becomes void, and the page stays until the user goes back.
 #[test]
-fn setup_restarts_at_the_first_step_with_lost_values() {
+fn setup_returns_to_the_first_step_with_lost_values() {
     let (mut axis, mut seen) = at_test_step();
     // Everything is discarded.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };

@@ -46,7 +46,7 @@ struct OverflowingName {
 
 impl OverflowingName {
     /// Places the name in a free space beside the names that have already been placed.
-    fn place_beside(self, tags: &[NameTag]) -> NameTag {
+    fn place_next_to(self, tags: &[NameTag]) -> NameTag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
         let is_in = (-NAME_SPACING..=self.room + NAME_SPACING - width).contains(&middle);
@@ -166,7 +166,7 @@ pub(super) fn name_tags(
     }
     let (begin, end): (Vec<OverflowingName>, Vec<OverflowingName>) = narrow.into_iter().partition(|own| own.begins);
     for narrow in end.into_iter().chain(begin.into_iter().rev()) {
-        tags.push(narrow.place_beside(&tags));
+        tags.push(narrow.place_next_to(&tags));
     }
     let levels = (0..rows.count(strip.layout().clock_count())).map(|line| {
         let own = tags.iter().filter(|tag| tag.line == line);
