@@ -4,7 +4,6 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, ConnectAttempt, OpenFailure, OpenedConnection, TaskResult};
-use super::given::LinkOpener;
 use super::question::{FollowUpAction, Question};
 use super::services::{JobState, Services, StudioEnvironment};
 use super::session::{Kind, PendingOpen, Phase, Source};
@@ -12,6 +11,7 @@ use super::shutdown::is_same_connection;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
+use super::type_map::LinkOpener;
 use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkScheme, LinkUrl, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};

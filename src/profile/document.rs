@@ -7,9 +7,9 @@ use ron::Value;
 use ron::error::SpannedError;
 
 use super::body::{Body, ProfileFormats};
+use super::entry_location::find_location;
 use super::error::{ProfileError, SyntaxErrorKind};
 use super::misspelt::Reading;
-use super::place::find_location;
 use super::ron_text::{Entries, UnknownValues, Writer};
 use super::unique_names::UniqueNames;
 use crate::expected::AllowedValues;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::live_pace::processor_time;
 use super::renderer::renderers_to_try;
-use super::{TabViews, Window, end, install_fonts};
+use super::{TabViews, Window, install_fonts, termination};
 use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
@@ -42,7 +42,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         Studio::new(StudioEnvironment { given: start.given, ..StudioEnvironment::production(store, kinds) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.start_with(start.link, start.profile);
-    end::install_handlers(&studio);
+    termination::install_handlers(&studio);
     let options = |renderer| eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("encoder-studio")

@@ -80,7 +80,7 @@ mod tests {
     use crossbeam_channel::bounded;
 
     use super::*;
-    use crate::worker::invented::TestDevice;
+    use crate::worker::test_device::TestDevice;
     use crate::worker::{JobId, Progress};
 
     fn progress(job: u64) -> Event<TestDevice> {

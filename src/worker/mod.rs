@@ -12,8 +12,6 @@
 pub mod commit;
 mod event_sender;
 mod interruption;
-#[cfg(test)]
-mod invented;
 mod live;
 pub mod open;
 mod poll_scheduler;
@@ -21,6 +19,8 @@ mod ring;
 mod session;
 mod session_log;
 pub mod stream;
+#[cfg(test)]
+mod test_device;
 mod thread;
 
 use std::fmt;

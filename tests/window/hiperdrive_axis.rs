@@ -15,7 +15,7 @@ use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
 use encoder_studio::devices::hiperdrive::state::axis::{
-    AxisAction as Run, AxisButton, AxisStep, Power, RestartEvidence, SetupEnd, StepStatus, TestTarget, words,
+    AxisAction as Run, AxisButton, AxisStep, Power, RestartEvidence, SetupEnd, StepStatus, TestTarget, labels,
 };
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 use encoder_studio::sim::SimulatedFaults;
@@ -115,9 +115,9 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     let turned = 33_488_896;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 256, 1, -turned, turned]);
     assert_eq!(unit(&desk).session.cycles, Some(encoder_studio::worker::commit::CycleCount::complete(0)));
-    let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
+    let told = labels::write_back_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(
-        told.contains("restored to their previous values: 5 of 5") && words::differences(&seen(&desk)).is_none(),
+        told.contains("restored to their previous values: 5 of 5") && labels::differences(&seen(&desk)).is_none(),
         "{told}"
     );
     let report = unit(&desk).axis_report(Language::English).unwrap();
@@ -132,7 +132,7 @@ fn a_recall_does_not_change_the_drive() {
     act(&mut desk, Hiperdrive::Plan(Box::new(Change::Do(Service::Recall))));
     write(&mut desk);
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
-    let told = words::differences(&seen(&desk)).unwrap().to_string_in(Language::English);
+    let told = labels::differences(&seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(told.contains("parameter 154 is 400 instead of 256") && !told.contains("152"), "{told}");
     // The request is lost: the shown step remains, and names the one that must be repeated.
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
@@ -187,7 +187,7 @@ fn a_pitch_applies_only_after_confirmation() {
 #[test]
 fn a_new_run_lists_changes_left_by_an_aborted_one() {
     let mut desk = at_jog_step();
-    let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.to_string_in(Language::English));
+    let differences = |desk: &Desk| labels::differences(&seen(desk)).map(|own| own.to_string_in(Language::English));
     let told = differences(&desk).unwrap();
     assert!(
         told.contains("parameter 154 is 400 instead of 256") && told.contains("parameter 152 is 1 instead of 0"),
@@ -261,7 +261,7 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
         .with_station(|own| own.drive(drive).unwrap().inject_error(clock, ErrorCode::BLOCK_FORWARD));
     desk.until("its code is there", |studio| {
         let own = studio.hiperdrive().unwrap();
-        words::fault_text(&own.drive_facts(own.drive()))
+        labels::fault_text(&own.drive_facts(own.drive()))
             .is_some_and(|text| text.to_string_in(Language::English).starts_with("Fault 8301"))
     });
     assert_eq!(
@@ -283,7 +283,7 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
             !seen.has_failed() && own.axis().unwrap().request(AxisButton::Go(TestTarget::Lower), &seen).is_ok()
         },
     );
-    assert!(words::fault_text(&seen(&desk)).is_none());
+    assert!(labels::fault_text(&seen(&desk)).is_none());
 }
 
 /// Issue 21.6 (j): the end is saved as text, in millimetres, in a file that the user chooses.

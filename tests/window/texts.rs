@@ -10,7 +10,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{COMMON, Catalogue};
 use encoder_studio::app::{JobState, Language, Notice, Studio, Text};
 use encoder_studio::buses::bridge;
-use encoder_studio::devices::hiperface::state::explain as words;
+use encoder_studio::devices::hiperface::state::explain;
 use encoder_studio::devices::hiperface::state::{Encoder, ReviewState};
 use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
 use encoder_studio::signals;
@@ -108,9 +108,9 @@ fn check_encoder(encoder: &Encoder) {
         check(why);
     }
     for field in encoder.staged.device() {
-        check(&words::field_status(field.status));
+        check(&explain::field_status(field.status));
     }
-    encoder.codes.iter().flatten().for_each(|code| check(&words::status_code_name(*code)));
+    encoder.codes.iter().flatten().for_each(|code| check(&explain::status_code_name(*code)));
     if let Some(Err(why)) = &encoder.session.backups {
         check(why);
     }

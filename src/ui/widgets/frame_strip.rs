@@ -9,7 +9,7 @@
 //! * **Painting**: the bits of a field in the colour of its series, ones stronger than zeros, groups of four counted from
 //!   its last bit; a field that is lit is filled with the colour of its verdict and carries its icon.
 
-mod place;
+mod layout;
 
 use egui::accesskit::Role;
 use egui::{Color32, FontId, Galley, Painter, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
@@ -20,7 +20,7 @@ use super::series_colour;
 use crate::analysis::quality::Verdict;
 use crate::ui::{Theme, controls};
 
-use place::{PlacedPiece, RequiredSpace, arrange_fields};
+use layout::{PlacedPiece, RequiredSpace, arrange_fields};
 
 #[derive(Clone, Debug, Default)]
 pub struct StripField {

@@ -14,7 +14,7 @@ mod addresses;
 mod grid;
 mod keys;
 mod paint;
-mod tip;
+mod tooltip;
 mod view;
 
 use std::ops::Range;
@@ -155,7 +155,7 @@ fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>
             // The tooltip is beside the byte.
             let cell = grid.cell_rect(rect.min, column, at);
             Response { rect: cell, interact_rect: cell, ..response.clone() }
-                .on_hover_ui(|ui| tip::byte(ui, theme, model, at));
+                .on_hover_ui(|ui| tooltip::byte(ui, theme, model, at));
         }
         response
     });

@@ -54,10 +54,10 @@ fn a_position_change_while_disconnected_is_reported() {
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is told", |studio| {
         let own = studio.hiperdrive().unwrap();
-        words::unexplained_change_text(own.axis().unwrap(), &own.drive_facts(own.drive())).is_some()
+        labels::unexplained_change_text(own.axis().unwrap(), &own.drive_facts(own.drive())).is_some()
     });
     assert_eq!(axis(&desk).invalidated_step(), None);
-    let told = words::unexplained_change_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
+    let told = labels::unexplained_change_text(axis(&desk), &seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(
         told.starts_with("The position changed by -0.")
             && told.contains("Either the axis was moved or its reference was set again"),

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value as Json, json};
 
+use super::register_text;
 use super::run::{Runner, crc_errors, identity, read_registers, registers};
-use super::words;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::{Lines, Output, write_stderr};
@@ -56,7 +56,7 @@ fn manufacturer_text(identity: &Identity) -> String {
 fn temperature(runner: &mut Runner, identity: &Identity) -> Result<Option<f64>> {
     let Some(register) = identity.description.register_with_role(Role::Temperature) else { return Ok(None) };
     let Some(range) = RegisterRange::new(register.address, register.width) else { return Ok(None) };
-    Ok(words::register_quantity(register, &registers(runner, range)?))
+    Ok(register_text::register_quantity(register, &registers(runner, range)?))
 }
 
 fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
@@ -113,7 +113,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "position_warning": status.position.and_then(|reading| reading.warning),
         "mode": status.mode.map(|mode| mode.byte()),
         "temperature_c": status.celsius,
-        "filter": status.filter.map(words::filter),
+        "filter": status.filter.map(register_text::filter),
     });
     output.show(&json, &status_text(&status))?;
     Ok(Success::Well)
@@ -149,7 +149,7 @@ fn status_text(status: &EncoderStatus) -> String {
         lines.add_line("temperature", format!("{celsius} °C"));
     }
     if let Some(filter) = status.filter {
-        lines.add_line("filter", words::filter(filter));
+        lines.add_line("filter", register_text::filter(filter));
     }
     match &status.position {
         None => lines.add_line("position", "none can be read"),
@@ -270,7 +270,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let meaning = identity
         .description
         .register_at(range.start())
-        .and_then(|register| words::describe_register(register, range, &bytes));
+        .and_then(|register| register_text::describe_register(register, range, &bytes));
     let (value, shown) = match bytes.as_slice() {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
         bytes => (json!(hex_compact(bytes)), hex(bytes)),

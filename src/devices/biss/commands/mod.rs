@@ -6,8 +6,8 @@ mod decode;
 mod inspect;
 mod plan;
 mod profiles;
+mod register_text;
 mod run;
-mod words;
 mod write;
 
 use std::time::Duration;

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use serde_json::{Value as Json, json};
 
+use super::register_text;
 use super::run::Runner;
-use super::words;
 use crate::bits::hex_compact;
 use crate::cli::Result;
 use crate::cli::args::ConsentArgs;
@@ -137,7 +137,7 @@ pub(super) fn results_json(outcomes: &[Outcome]) -> Vec<Json> {
             let place = |reading: &crate::devices::biss::procedures::PositionReading| json!({"turns": reading.turns, "steps": reading.steps});
             json!({"result": "preset", "from": place(from), "to": place(to)})
         }
-        Outcome::FilterSelected(filter) => json!({"result": "filter", "filter": words::filter(*filter)}),
+        Outcome::FilterSelected(filter) => json!({"result": "filter", "filter": register_text::filter(*filter)}),
         Outcome::Calibrated(report) => json!({
             "result": "calibrated",
             "temperature_c": report.celsius,

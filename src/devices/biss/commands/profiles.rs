@@ -18,7 +18,7 @@ use crate::cli::{Result, Success};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::DeviceMode;
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::devices::biss::state::status_lines;
 use crate::profile::{Body, KeptItem, Redo};
 use crate::result_of;
@@ -26,7 +26,7 @@ use crate::result_of;
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = read_saved_profile(common, BissJob::Save)?;
     let banks = profile.banks().count();
-    let (mode, unsaved) = (profile.recorded.device_mode, words::unsaved_profile_warning(&profile));
+    let (mode, unsaved) = (profile.recorded.device_mode, explain::unsaved_profile_warning(&profile));
     save_profile(common, &save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
         output.print_message(&words.terminal_text());
@@ -43,7 +43,7 @@ impl ProfileCommands for BissCommands {
         let mut runner = Runner::open(common)?;
         let prepared = prepare_plan(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = &prepared.other_type {
-            output.print_message(&words::other_type(types).terminal_text());
+            output.print_message(&explain::other_type(types).terminal_text());
         }
         print_missing(output, &prepared.missing);
         print_skipped_mounting(output, &prepared.mounting_left);
@@ -79,7 +79,7 @@ impl ProfileCommands for BissCommands {
 
     /// Returns the message that a profile was read in a device mode.
     fn profile_note(&self, profile: &Body) -> Option<Text> {
-        words::profile_unsaved(profile.get()?)
+        explain::profile_unsaved(profile.get()?)
     }
 
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {

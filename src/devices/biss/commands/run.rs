@@ -10,7 +10,7 @@ use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobSt
 use crate::devices::biss::procedures::procedure::{ProcedureProgress, StepDetail};
 use crate::devices::biss::procedures::{Identity, Transport};
 use crate::devices::biss::profile::RegisterRange;
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::result_of;
 use crate::worker::Session;
 
@@ -28,7 +28,7 @@ impl CliDevice for Biss {
         match remark {
             // These messages are counted and reported at the end.
             DeviceMessage::CrcErrors(_) => {}
-            remark => words::message_texts(remark)
+            remark => explain::message_texts(remark)
                 .iter()
                 .for_each(|text| write_stderr(&format!("{}\n", text.terminal_text()))),
         }
@@ -44,7 +44,7 @@ impl CliDevice for Biss {
     fn step_message(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, progress: news } => {
-                Some(format!("{item}: {}", words::procedure_step_text(news.step).terminal_text()))
+                Some(format!("{item}: {}", explain::procedure_step_text(news.step).terminal_text()))
             }
             JobStep::Register(_) | JobStep::Bank(_) => None,
         }
@@ -61,7 +61,7 @@ fn describe_detail(news: &ProcedureProgress) -> String {
         }
         StepDetail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
         StepDetail::Demand(demand) => {
-            let against = demand.blockers.iter().map(|blocker| words::blocker_text(*blocker).terminal_text());
+            let against = demand.blockers.iter().map(|blocker| explain::blocker_text(*blocker).terminal_text());
             let turning = demand.motion.map(|motion| format!("{:.1} 1/min", motion.rpm));
             turning.into_iter().chain(against).collect::<Vec<_>>().join("; ")
         }

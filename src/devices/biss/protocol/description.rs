@@ -2,8 +2,8 @@
 //! registers, data areas and procedures of one type of encoder. This module handles the data only and opens no files.
 
 mod codes;
+mod description_error;
 mod file;
-mod flaw;
 mod german;
 mod name;
 mod register;
@@ -12,7 +12,7 @@ mod tests;
 
 use std::fmt;
 
-pub use flaw::{DescriptionErrorKind, UniqueItem};
+pub use description_error::{DescriptionErrorKind, UniqueItem};
 pub use name::Name;
 pub use register::{Access, Area, DecodedValue, Register, Role, ValueDecoding};
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::action::BissAction;
 use super::encoder::Encoder;
-use super::words;
+use super::format;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, SessionEvents};
 use crate::app::{ActionContext, PendingEdits, Severity, Text};
@@ -123,7 +123,7 @@ impl Encoder {
         }
         let Some(description) = self.description.clone() else { return };
         if let Err(error) = self.memory.edit_bytes(&description, start, bytes) {
-            self.session.report_rejection(words::edit_error_text(error), services);
+            self.session.report_rejection(format::edit_error_text(error), services);
         }
     }
 

@@ -2,8 +2,8 @@
 //! registers with a role.
 
 use super::encoder::Encoder;
+use super::format;
 use super::table::RegisterEntry;
-use super::words;
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::number::decimal_places;
@@ -78,7 +78,7 @@ impl Encoder {
         let field = bank.fields().iter().find(|field| field.offset == offset)?;
         let mut own = [0; 64];
         own.get_mut(usize::from(offset)..usize::from(offset) + bytes.len())?.copy_from_slice(bytes);
-        words::explained_value_text(field.value(&own))
+        format::explained_value_text(field.value(&own))
     }
 }
 

@@ -16,7 +16,7 @@ use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::procedures::{EncoderStatus, Identity, Survey};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::{Description, DeviceMode, Eds, EdsBank, EdsError};
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::sim::Motor;
 
 pub struct Encoder {
@@ -166,10 +166,10 @@ impl Encoder {
     /// was in one when the profile was read.
     pub fn unsaved_warning(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
-            return words::profile_unsaved(profile);
+            return explain::profile_unsaved(profile);
         }
         let mode = self.status.as_ref()?.mode.filter(|mode| *mode != DeviceMode::OPERATION)?;
-        Some(words::unsaved_warning(mode))
+        Some(explain::unsaved_warning(mode))
     }
 
     /// Returns whether the identity differs from that of the previously read encoder.

@@ -2,7 +2,7 @@
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
-use super::words;
+use super::format;
 use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobState, Services};
@@ -33,7 +33,7 @@ impl Kind for Biss {
     }
 
     fn job_text(job: &BissJob) -> Text {
-        words::job_name(job)
+        format::job_name(job)
     }
 
     fn writes_memory(job: &BissJob) -> bool {

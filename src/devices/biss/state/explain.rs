@@ -2,8 +2,8 @@
 
 mod check;
 mod damage;
+mod description_error;
 mod entry;
-mod flaw;
 mod guide;
 #[cfg(test)]
 mod phrases;
@@ -207,7 +207,7 @@ fn description_error_text(error: &StoreError) -> Text {
         Some(DescriptionError { file, line, column, problem: what }) => TEXTS
             .text("store.description")
             .with("path", file)
-            .with_text("why", syntax_error_text(*line, *column, flaw::description_problem_text(what))),
+            .with_text("why", syntax_error_text(*line, *column, description_error::description_problem_text(what))),
         None => general::store_error_text(error),
     }
 }

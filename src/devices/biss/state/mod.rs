@@ -8,6 +8,7 @@ mod drafts;
 mod encoder;
 mod events;
 pub mod explain;
+pub mod format;
 pub mod forms;
 mod guide;
 mod kind;
@@ -23,7 +24,6 @@ mod report;
 mod review;
 mod table;
 mod texts;
-pub mod words;
 mod write;
 
 pub use texts::TEXTS;

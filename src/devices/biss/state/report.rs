@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::explain as explained;
-use super::{Encoder, TEXTS, words};
+use super::{Encoder, TEXTS, format};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::report::{ReportContent, ReportContext, StatusLine, byte_table};
@@ -76,7 +76,7 @@ fn identity_section(context: &ReportContext<'_>, profile: &BissProfile) -> Secti
 fn settings_section(context: &ReportContext<'_>, profile: &BissProfile) -> Section {
     let mut facts = Vec::new();
     if let Some(filter) = profile.filter {
-        facts.push(context.fact(TEXTS.text("biss_status.filter"), words::filter(filter)));
+        facts.push(context.fact(TEXTS.text("biss_status.filter"), format::filter(filter)));
     }
     if let Some(preset) = &profile.preset {
         let bits = profile.identity.singleturn_bits.unwrap_or_default();

@@ -14,7 +14,7 @@ use crate::devices::biss::procedures::procedure::{Failure, OperatorAnswer, Opera
 use crate::devices::biss::procedures::{Error, create_profile};
 use crate::devices::biss::profile::{Bank, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type};
 use crate::devices::biss::protocol::RegisterAddress;
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::JobInterruption;
 
@@ -162,7 +162,7 @@ impl HasProfile for Encoder {
             };
             match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
                 Some(banks) => data.push(DataImage::new(area, banks)),
-                None => missing.push(words::name_text(&area.name)),
+                None => missing.push(explain::name_text(&area.name)),
             }
         }
         if !missing.is_empty() {
@@ -171,7 +171,7 @@ impl HasProfile for Encoder {
         let profile = create_profile(survey, data, survey.status.non_operational_mode());
         let remarks = unsaved_edits_remark(self.memory.count())
             .into_iter()
-            .chain(words::unsaved_profile_warning(&profile))
+            .chain(explain::unsaved_profile_warning(&profile))
             .collect();
         Some(Ok((Body::new(profile), remarks)))
     }

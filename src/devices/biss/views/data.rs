@@ -4,7 +4,7 @@ use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio};
 use crate::devices::biss::protocol::{Area, RegisterAddress};
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, area_addresses};
 use crate::devices::biss::views::translate;
 use crate::ui::controls::{empty_placeholder, enabled_button, name, paragraph};
@@ -38,7 +38,7 @@ pub(super) fn page_ui(
     let shown = encoder.visible_area_part(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
-            let word = theme.format_text(&words::name_text(&own.name));
+            let word = theme.format_text(&explain::name_text(&own.name));
             let response = ui.add(egui::Button::selectable(own == area, &word));
             if name(response, true, &word).clicked() && at != view.area {
                 *view = DataUiState { area: at, ..DataUiState::default() };
@@ -94,7 +94,7 @@ fn area_bytes_ui(
     let addresses = HexAddresses::Banked { first: area.first.into(), size: RegisterAddress::BANK_SIZE.into() };
     let model = HexModel { read_only: read_only.as_ref(), lines, addresses, ..HexModel::new(read, wanted) };
     let mut edits = Vec::new();
-    let label = theme.format_text(&words::name_text(&area.name));
+    let label = theme.format_text(&explain::name_text(&area.name));
     if beside {
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| edits = hex_editor(ui, theme, &label, &model, &mut view.hex));

@@ -7,7 +7,7 @@ use crate::app::{Action, DeviceCommand};
 use crate::devices::biss::procedures::{FlagRegister, FrameSource, Identity};
 use crate::devices::biss::profile::ProfileIdentity;
 use crate::devices::biss::state::explain as explained;
-use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, words};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, format};
 use crate::devices::biss::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with_trailing, empty_placeholder, enabled_button, encoder_page, paragraph, row};
@@ -125,7 +125,7 @@ fn profile_identity_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: 
     }
     let Some(profile) = encoder.profile() else { return };
     if let Some(filter) = profile.filter {
-        row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
+        row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&format::filter(filter)));
     }
 }
 
@@ -164,7 +164,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             row(ui, theme, &translate(theme, "biss_status.mode"), theme.format_text(&explained::mode_text(mode)));
         }
         if let Some(filter) = status.filter {
-            row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&words::filter(filter)));
+            row(ui, theme, &translate(theme, "biss_status.filter"), theme.format_text(&format::filter(filter)));
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {

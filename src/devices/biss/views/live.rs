@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Rgb};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Register, Role};
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, ValidityMark};
 use crate::devices::biss::views::translate;
 use crate::ui::controls::{icon_menu, paragraph, row};
@@ -75,7 +75,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions:
             let name = if register.name.is_empty() {
                 register.address.to_string()
             } else {
-                theme.format_text(&words::name_text(&register.name))
+                theme.format_text(&explain::name_text(&register.name))
             };
             if ui.checkbox(&mut on, name).changed() {
                 actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(register), on)));

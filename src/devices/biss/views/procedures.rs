@@ -10,7 +10,7 @@ use crate::devices::biss::jobs::Change;
 use crate::devices::biss::profile::{MotorSource, MountingSteps, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PositionFilter, ProcedureKind};
 use crate::devices::biss::state::explain as explained;
-use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, format, forms::PresetForm};
 use crate::devices::biss::views::translate;
 use crate::ui::controls::{
     button_with_reason, card, empty_placeholder, enabled_button, folding_card, labelled_number_entry, options,
@@ -281,7 +281,7 @@ fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             [(PositionFilter::Balanced, "filter_card.balanced"), (PositionFilter::Dynamic, "filter_card.dynamic")]
         {
             ui.horizontal_wrapped(|ui| {
-                let word = theme.format_text(&words::filter(filter));
+                let word = theme.format_text(&format::filter(filter));
                 let is_own = own == Some(filter);
                 let ready = encoder.session.is_ready() && !is_own;
                 if is_own {

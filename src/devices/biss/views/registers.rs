@@ -4,7 +4,7 @@ use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::{Action, DeviceCommand, PendingEdits, Text};
 use crate::devices::biss::protocol::{Access, Name, ValueDecoding};
-use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::explain;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Group, RegisterEntry, TEXTS};
 use crate::devices::biss::views::translate;
 use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_menu};
@@ -123,7 +123,7 @@ fn watch_selection_ui(
         let word = TEXTS.text(if on { "registers.unwatch" } else { "registers.watch" });
         let word = theme.format_text(&word.with("address", row.register.address));
         let button = enabled_button(ui, row.register.access.is_readable() && !row.is_data, icons::EYE, &word);
-        if button.on_hover_text(theme.format_text(&words::name_text(&row.register.name))).clicked() {
+        if button.on_hover_text(theme.format_text(&explain::name_text(&row.register.name))).clicked() {
             let register = Box::new(row.register.clone());
             actions.push(Action::device(encoder.session.id, Biss::Watch(register, !on)));
         }
@@ -133,7 +133,7 @@ fn watch_selection_ui(
         icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
             ui.label(theme.heading(&word));
             for own in watched {
-                let name = format!("{}  {}", own.address, theme.format_text(&words::name_text(&own.name)));
+                let name = format!("{}  {}", own.address, theme.format_text(&explain::name_text(&own.name)));
                 if ui.button(format!("{}  {name}", icons::X)).clicked() {
                     actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(own), false)));
                 }
@@ -207,7 +207,7 @@ fn register_group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGrou
     let title = match (own.bank, &own.name) {
         (None, _) => translate(theme, "registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
-        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", theme.format_text(&words::name_text(name))),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", theme.format_text(&explain::name_text(name))),
     };
     let note = if own.is_read(&encoder.memory) { String::new() } else { translate(theme, "registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
@@ -218,7 +218,7 @@ fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, els
     let name = if register.name.is_empty() {
         translate(theme, "registers.byte")
     } else {
-        theme.format_text(&words::name_text(&register.name))
+        theme.format_text(&explain::name_text(&register.name))
     };
     // A code is not a physical quantity.
     let is_quantity = matches!(register.decoding, ValueDecoding::Number | ValueDecoding::Scaled { .. });
@@ -252,7 +252,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
         let is_set = number.map(|number| number >> bit & 1 == 1);
         RegisterBits {
             bits: format!("b{bit}"),
-            name: theme.format_text(&words::name_text(name)),
+            name: theme.format_text(&explain::name_text(name)),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
                 .map(|set| translate(theme, if set { "registers.set" } else { "registers.clear" }))

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::devices::biss::protocol::{Eds, EdsBank, EdsError};
-use crate::devices::biss::state::{Encoder, TEXTS, words};
+use crate::devices::biss::state::{Encoder, TEXTS, format};
 use crate::devices::biss::views::translate;
 use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::{Theme, icons};
@@ -33,7 +33,7 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
         Err(why) => {
             paragraph(
                 ui,
-                RichText::new(theme.format_text(&words::data_sheet_error_text(why))).color(theme.palette.bad),
+                RichText::new(theme.format_text(&format::data_sheet_error_text(why))).color(theme.palette.bad),
             );
             return;
         }
@@ -47,9 +47,9 @@ fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<
             let room = (ui.available_width() * 0.58).floor();
             ui.allocate_ui_with_layout(egui::vec2(room, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_min_width(room);
-                paragraph(ui, theme.label(theme.format_text(&words::eds_field_name(bank, field))));
+                paragraph(ui, theme.label(theme.format_text(&format::eds_field_name(bank, field))));
             });
-            paragraph(ui, theme.format_text(&words::eds_value_text(value)));
+            paragraph(ui, theme.format_text(&format::eds_value_text(value)));
         });
     }
     ui.horizontal(|ui| {

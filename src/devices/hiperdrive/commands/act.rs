@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::procedures::DriveIdentity;
 use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::result_of;
 
 const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
@@ -118,5 +118,5 @@ fn set_position(of: &DriveOption, text: &str) -> Result<Change> {
 
 fn check_device(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    result_of!(runner.run(HiperdriveJob::Check)?, HiperdriveOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
+    result_of!(runner.run(HiperdriveJob::Check)?, HiperdriveOutput::Check(lines) => check::show(output, &explain::check_lines(&lines)))
 }

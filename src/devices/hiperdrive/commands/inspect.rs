@@ -21,7 +21,7 @@ use crate::devices::hiperdrive::protocol::{
     nominal_value,
 };
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::result_of;
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
@@ -172,7 +172,7 @@ fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
 }
 
 pub(super) fn error_text(code: ErrorCode) -> String {
-    let words = words::error_code_explanation(code);
+    let words = explain::error_code_explanation(code);
     format!("{}: {} {}", words.name.terminal_text(), words.cause.terminal_text(), words.remedy.terminal_text())
 }
 
@@ -214,7 +214,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     for drive in &status.drives {
         let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
         let (word, celsius) = (drive.status.to_u16(), drive.temperature);
-        let state = words::state_text(drive.status.state()).terminal_text();
+        let state = explain::state_text(drive.status.state()).terminal_text();
         lines.add_line(
             format!("drive {}", drive.number.get()),
             format!("{state} (0x{word:04X}), {celsius} °C{requested}"),
@@ -229,14 +229,14 @@ fn number_text(item: Item, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (base, word, unit.strip_prefix("0.1 ")) {
         (STATUS, Some(word), _) => {
-            let state = words::state_text(StatusWord::new(word).state());
+            let state = explain::state_text(StatusWord::new(word).state());
             format!("0x{word:04X} ({})", state.terminal_text())
         }
         (NEWEST_ERROR..=OLDEST_ERROR, Some(0), _) => "0x0000 (no error)".to_owned(),
         (NEWEST_ERROR..=OLDEST_ERROR, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
         (CONTROL | 116..=118, Some(word), _) => format!("0x{word:04X}"),
         (VARIANT, Some(word), _) => {
-            format!("{number} ({})", words::variant_text(Variant::new(word)).terminal_text())
+            format!("{number} ({})", explain::variant_text(Variant::new(word)).terminal_text())
         }
         (TIMEOUT, Some(word), _) if i64::from(word) == NO_TIMEOUT => "255 (no time-out)".to_owned(),
         // The number fits into 32 bits.

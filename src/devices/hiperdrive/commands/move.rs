@@ -27,7 +27,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
 use crate::devices::hiperdrive::state::PositionUnit;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::result_of;
 use crate::units::Moment;
 
@@ -117,7 +117,7 @@ fn read_permit(
     drive: DriveNumber,
 ) -> Result<(Permit, Option<PositionScale>)> {
     let variant =
-        identity.drive_identity(drive).map_err(|error| to_failure(&words::device_error_text(&error)))?.variant;
+        identity.drive_identity(drive).map_err(|error| to_failure(&explain::device_error_text(&error)))?.variant;
     let mut values = Vec::new();
     for base in [REQUESTED_BY_BUS, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT] {
         let Some(number) = ParameterNumber::for_drive(base, drive) else { continue };
@@ -149,7 +149,7 @@ fn steps_text(steps: impl Into<i64>) -> Text {
 }
 
 fn refusal_failure(refusal: MotionRefusal) -> Failure {
-    to_failure(&words::refusal_text(refusal, steps_text))
+    to_failure(&explain::refusal_text(refusal, steps_text))
 }
 
 /// Refreshes the motion request until the motion ends, is interrupted, or times out.
@@ -206,7 +206,7 @@ fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnaps
 
 fn stop_reasons(came: &MotionOutcome, stood: Option<DriveSnapshot>, seconds: u16) -> Vec<String> {
     let first = match came {
-        MotionOutcome::Ended(ended) => words::end_text(*ended, steps_text).terminal_text(),
+        MotionOutcome::Ended(ended) => explain::end_text(*ended, steps_text).terminal_text(),
         MotionOutcome::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
         MotionOutcome::Late => format!(
             "The drive did not reach its target within {seconds} s and was stopped. Use --timeout to allow more \

@@ -11,7 +11,7 @@ use crate::cli::plan::{self, PlanReport, WriteSummary};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
 use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, plan_warnings};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::profile::Operation as _;
 use crate::result_of;
 
@@ -29,7 +29,7 @@ pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change)
         output.print_message(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal_text());
     }
     for warning in plan_warnings(&prepared.plan) {
-        output.print_message(&words::warning_text(&warning).terminal_text());
+        output.print_message(&explain::warning_text(&warning).terminal_text());
     }
     if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
         output.print_message(&TEXTS.text("hd_cli.address_lost").terminal_text());
@@ -65,7 +65,7 @@ pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();
     for op in &plan.ops {
-        let words = words::operation_texts(op);
+        let words = explain::operation_texts(op);
         for change in &words.changes {
             lines.add_line(
                 words.item.terminal_text(),
@@ -79,7 +79,7 @@ pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
 
 pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
-    for words in plan.ops.iter().map(words::operation_texts) {
+    for words in plan.ops.iter().map(explain::operation_texts) {
         for change in &words.changes {
             let (item, old, new) = (words.item.terminal_text(), change.old.terminal_text(), change.new.terminal_text());
             text.push_str(&format!("{item}: {old} → {new}\n"));

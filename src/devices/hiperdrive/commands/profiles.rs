@@ -14,7 +14,7 @@ use crate::cli::{Result, Success};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::devices::hiperdrive::state::status_lines;
 use crate::profile::{Body, KeptItem, Redo};
 use crate::result_of;
@@ -36,7 +36,7 @@ impl ProfileCommands for HiperdriveCommands {
         let mut runner = Runner::open(common)?;
         let prepared = prepare_plan(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         for types in &prepared.other_types {
-            output.print_message(&words::other_type(types).terminal_text());
+            output.print_message(&explain::other_type(types).terminal_text());
         }
         for words in missing_items(&prepared) {
             output.print_message(&words);

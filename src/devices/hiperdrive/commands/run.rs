@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::jobs::{DeviceMessage, Hiperdrive, HiperdriveJob,
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::result_of;
 use crate::worker::Session;
 
@@ -42,7 +42,7 @@ impl CliDevice for Hiperdrive {
                 write_stderr(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal_text()))
             }
             DeviceMessage::RulesUnread(error) => {
-                let why = words::device_error_text(error).terminal_text();
+                let why = explain::device_error_text(error).terminal_text();
                 write_stderr(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal_text()));
             }
             DeviceMessage::RulesRead => {}

@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, CONTROL, REFERENCE, RESET, SERVICE, TARGET};
 use crate::devices::hiperdrive::protocol::{ParameterAccess, Travel};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
     let item = parse_item(&write.item, &write.own.read()?)?;
@@ -24,7 +24,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     require_consent(&write.consent)?;
     // The number alone does not tell the user what the write does.
     if let Change::Do(_) = change {
-        output.print_message(&words::change_text(&change).terminal_text());
+        output.print_message(&explain::change_text(&change).terminal_text());
     }
     let mut runner = Runner::open(common)?;
     let drive = match change {
@@ -47,7 +47,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
 /// Parses a new parameter value. Values that no device accepts are rejected before a connection is opened.
 fn parse_change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
-    let refused = |error: PlanError| to_failure(&words::plan_error_text(&error));
+    let refused = |error: PlanError| to_failure(&explain::plan_error_text(&error));
     let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
     match (row.number, row.access) {
         (CONTROL..=TARGET, ..) => return Err(refused(PlanError::Moves { item })),

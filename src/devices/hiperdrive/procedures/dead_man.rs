@@ -16,8 +16,8 @@
 
 mod act;
 mod cause;
-mod lead;
 mod stage;
+mod state_sequence;
 #[cfg(test)]
 mod table;
 #[cfg(test)]
@@ -32,8 +32,8 @@ pub use act::{
 };
 pub use watch::{LimitSide, OutsideLimits};
 
-use lead::StateSequencer;
 use stage::{ReportMark, Stage};
+use state_sequence::StateSequencer;
 use watch::ActionMonitor;
 
 use crate::devices::hiperdrive::protocol::{

@@ -5,7 +5,7 @@
 //! stream keeps the order, so the device answers this read after the lost request.
 
 mod connection;
-mod refused;
+mod refusal;
 
 use std::time::Duration;
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::action::{HiperdriveAction, MotorCommand};
 use super::staged::Edit;
 use super::unit::HiperdriveDevice;
-use super::{explain, words};
+use super::{explain, format};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile};
 use crate::app::{PendingEdits, Severity, Text};
@@ -145,7 +145,7 @@ impl HiperdriveDevice {
     pub(super) fn apply_edit(&mut self, edit: &Edit) {
         self.refusal = match self.session.is_writing() {
             true => Some(Text::new("session.busy")),
-            false => self.staged.apply_edit(edit).err().map(|error| words::edit_error_text(&error)),
+            false => self.staged.apply_edit(edit).err().map(|error| format::edit_error_text(&error)),
         };
     }
 

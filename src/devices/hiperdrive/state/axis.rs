@@ -15,12 +15,12 @@ mod drive_facts;
 mod entries;
 mod follow;
 mod gate;
+pub mod labels;
 mod report;
 mod standstill;
 mod step_outcomes;
 mod supply;
 mod test_targets;
-pub mod words;
 
 #[cfg(test)]
 mod tests;

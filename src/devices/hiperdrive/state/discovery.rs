@@ -13,7 +13,7 @@ use crate::app::services::Services;
 use crate::app::{DeviceModel, Text};
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
 use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::link::{CancelToken, Clock, RealClock, UdpBroadcast};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,7 +117,7 @@ impl Finder for DiscoveryFinder {
                 services.tasks.run("discover", move || {
                     let found = given.map_or_else(broadcast_discovery, |discover| (discover.0)());
                     let found = found.map(|found| found.iter().map(FoundDevice::from_reply).collect());
-                    let found = found.map_err(|error| words::device_error_text(&error));
+                    let found = found.map_err(|error| explain::device_error_text(&error));
                     Action::Done(TaskResult::from_finder::<DiscoveryFinder>(
                         HiperdriveDevice::TAB,
                         DiscoveryReplies { number, found },

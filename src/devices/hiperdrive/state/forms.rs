@@ -7,7 +7,7 @@ use super::unit::HiperdriveDevice;
 use crate::app::{Text, parse_decimal};
 use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 
 /// Parses the distance of a step. `sign` is −1 for backward.
 ///
@@ -87,7 +87,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     };
     let value = value.ok_or_else(|| TEXTS.text("hd_entry.whole").with("entry", text.trim()))?;
     let checked = row.kind.check_value(row.number, value, row.travel);
-    checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
+    checked.map(|value| Edit::Set(row.number, value)).map_err(|error| explain::out_of_range(&error))
 }
 
 /// Parses a length in millimetres, exact to the nanometre. The length must be above 0.

@@ -11,6 +11,7 @@ mod drafts;
 mod endless_run;
 mod events;
 pub mod explain;
+pub mod format;
 pub mod forms;
 mod job;
 mod kind;
@@ -35,7 +36,6 @@ mod texts;
 mod trace;
 mod unit;
 mod unsaved;
-pub mod words;
 mod write;
 
 pub use texts::TEXTS;

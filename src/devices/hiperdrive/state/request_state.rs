@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{MotionLock, MotionRequest
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEED;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestState {
@@ -31,7 +31,7 @@ impl HiperdriveDevice {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.moves.is_open() => Err(TEXTS.text("hd_said.in_control")),
-            None if self.survey.is_none() => Err(words::lock_text(MotionLock::Unread)),
+            None if self.survey.is_none() => Err(explain::lock_text(MotionLock::Unread)),
             None => Ok(()),
         }
     }
@@ -63,7 +63,7 @@ impl HiperdriveDevice {
             return Err(why);
         }
         if let Some(lock) = self.moves.motion_locks(drive).first() {
-            return Err(words::lock_text(*lock));
+            return Err(explain::lock_text(*lock));
         }
         match self.state(drive) {
             Some(State::Fault) => Err(TEXTS.text("hd_refused.fault")),
@@ -134,7 +134,7 @@ impl HiperdriveDevice {
         let place = |steps| self.position_text(drive, steps);
         let here =
             self.moves.actual_values(drive).map_or(Ok(()), |actual| permit.check_position_limits(request, actual));
-        permit.check_request(request, asks_target).and(here).map_err(|refusal| words::refusal_text(refusal, place))
+        permit.check_request(request, asks_target).and(here).map_err(|refusal| explain::refusal_text(refusal, place))
     }
 
     /// Checks whether a request may end the current motion. A stop and a jog of the same drive may. Other requests may
@@ -250,17 +250,17 @@ impl HiperdriveDevice {
     pub fn current_or_last_request(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
-            return Some(RequestState { words: words::phase_text(view.phase), is_well: true });
+            return Some(RequestState { words: explain::phase_text(view.phase), is_well: true });
         }
         let (_, ended) = view.ended?;
-        let words = words::end_text(ended, |steps| self.position_text(drive, steps));
-        Some(RequestState { words, is_well: words::end_severity(ended) == Severity::Note })
+        let words = explain::end_text(ended, |steps| self.position_text(drive, steps));
+        Some(RequestState { words, is_well: explain::end_severity(ended) == Severity::Note })
     }
 
     /// Explains why control was lost, or returns `None` if control is present, was released or was never taken.
     pub fn loss_reason(&self) -> Option<Text> {
         let view = self.moves.snapshot();
-        view.lost.as_ref().filter(|_| !view.open).map(|lost| words::cyclic_loss_text(Some(lost)))
+        view.lost.as_ref().filter(|_| !view.open).map(|lost| explain::cyclic_loss_text(Some(lost)))
     }
 
     /// Formats the speed for a percentage, based on parameter 166.

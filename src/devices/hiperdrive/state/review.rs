@@ -1,9 +1,9 @@
 //! Review of a write to a HIPERDRIVE: permits, warnings and cost of its plan.
 
-use super::axis::words::millimetres_text;
+use super::axis::labels::millimetres_text;
+use super::format;
 use super::network::PowerUpAddress;
 use super::ruler::{PositionUnit, Ruler};
-use super::words;
 use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::number::decimals_of;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
@@ -130,7 +130,7 @@ fn value_meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Opti
             let text = TEXTS.text("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
             Some(text.with_text("unit", TEXTS.text(PositionUnit::Turns.unit())))
         }
-        _ => words::value_meaning(number, value),
+        _ => format::value_meaning(number, value),
     }
 }
 

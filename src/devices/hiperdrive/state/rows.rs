@@ -1,9 +1,9 @@
 //! Parameters as table rows, each with its value, allowed range, factory setting and edit.
 
+use super::format;
 use super::ruler::PositionUnit;
 use super::staged::is_editable;
 use super::unit::HiperdriveDevice;
-use super::words;
 use crate::app::Text;
 use crate::app::number::decimals_of;
 use crate::devices::hiperdrive::profile::Image;
@@ -93,9 +93,9 @@ impl HiperdriveDevice {
             number,
             name: explained::parameter_name_text(number),
             kind,
-            shown: value.as_ref().map(|value| words::value_text(number, value)).unwrap_or_default(),
+            shown: value.as_ref().map(|value| format::value_text(number, value)).unwrap_or_default(),
             meaning: meant.and_then(|value| self.value_meaning(number, &value)),
-            unit: words::unit(kind),
+            unit: format::unit(kind),
             range: kind.allowed_values(travel).filter(|_| is_editable).map(explained::range_text),
             travel,
             factory: self.factory_value(number, kind).map(|own| own.to_string()).unwrap_or_default(),
@@ -151,7 +151,7 @@ impl HiperdriveDevice {
     fn value_meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,
-            Value::Text(text) => return words::nominal_value(number, text),
+            Value::Text(text) => return format::nominal_value(number, text),
         };
         let drive = number.drive();
         match (number.drive1_number(), drive) {
@@ -175,7 +175,7 @@ impl HiperdriveDevice {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);
                 Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
             }
-            _ => words::value_meaning(number, *value),
+            _ => format::value_meaning(number, *value),
         }
     }
 }

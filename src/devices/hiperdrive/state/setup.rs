@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{NUMERATOR, REFERENCE, REQUESTED_BY_BUS};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::store::write_atomically;
 
 /// Parameters of a drive that the set-up uses, by their numbers for drive 1.
@@ -166,7 +166,7 @@ impl HiperdriveDevice {
         let own = self.drive_identity(axis.drive());
         let device = Device {
             name: self.session.name(),
-            variant: own.map(|own| words::variant_text(own.variant)),
+            variant: own.map(|own| explain::variant_text(own.variant)),
             serial_number: own.map_or_else(String::new, |own| own.serial_number.clone()),
         };
         write_report(axis, &self.drive_facts(axis.drive()), &device, language)

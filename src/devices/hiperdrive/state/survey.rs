@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, NUMERATOR, REFERENCE};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, Value};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 
 impl HiperdriveDevice {
     /// Adopts a reading of the device. Edits are kept unless they belong to another device.
@@ -26,7 +26,7 @@ impl HiperdriveDevice {
         self.unsaved.read(&survey.values);
         let known = self.survey.as_ref().map(|own| own.wrong_lengths.as_slice()).unwrap_or_default();
         for error in survey.wrong_lengths.iter().filter(|error| !known.contains(error)) {
-            let text = words::wrong_length(error);
+            let text = explain::wrong_length(error);
             services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
         }
         let drives = survey.identity.drives.iter();
@@ -93,11 +93,11 @@ impl HiperdriveDevice {
     /// sufficient.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
-            Some(words::lock_text(MotionLock::Unread))
+            Some(explain::lock_text(MotionLock::Unread))
         } else if self.moves.is_open() && self.marks != SettingsReadState::Read {
             Some(TEXTS.text("hd_lock.settings"))
         } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
-            Some(words::lock_text(MotionLock::Outdated))
+            Some(explain::lock_text(MotionLock::Outdated))
         } else {
             None
         }
@@ -116,7 +116,7 @@ impl HiperdriveDevice {
     fn displayed_limits_to_confirm(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::displayed_limits);
-        seen.ok_or_else(|| words::lock_text(MotionLock::Unread))
+        seen.ok_or_else(|| explain::lock_text(MotionLock::Unread))
     }
 
     /// Confirms the displayed limits and returns whether they were confirmed. Otherwise, a message is reported.
@@ -127,7 +127,7 @@ impl HiperdriveDevice {
         self.handle_limit_change();
         let counts = self.displayed_limits_to_confirm(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
-            counts.then_some(()).ok_or_else(|| words::lock_text(MotionLock::Unread))
+            counts.then_some(()).ok_or_else(|| explain::lock_text(MotionLock::Unread))
         });
         if let Err(why) = &counts {
             self.report_drive_message(drive, Severity::Warning, vec![why.clone()], services);

@@ -11,7 +11,7 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::devices::hiperdrive::procedures::ReplyDamage;
 use crate::devices::hiperdrive::protocol::{ParameterNumber, Value, ValueError};
 use crate::devices::hiperdrive::state::explain as explained;
-use crate::devices::hiperdrive::state::{TEXTS, words};
+use crate::devices::hiperdrive::state::{TEXTS, format};
 use crate::link::{Direction, TraceEntry};
 
 /// Decoder that explains frames. It stores the requests without a reply, because a reply does not name the parameter.
@@ -123,15 +123,15 @@ fn value_texts(number: ParameterNumber, data: &[u8]) -> Option<Result<Vec<Text>,
         Value::Number(tenths) if row.unit == "0.1 rpm" => {
             Some(TEXTS.text("hd_entry.rpm").with_number("rpm", tenths as f64 / 10.0, 1))
         }
-        Value::Number(value) => words::value_meaning(number, value),
+        Value::Number(value) => format::value_meaning(number, value),
         Value::Text(_) => None,
     };
     // If the meaning is given in whole units, it replaces the number of tenths.
     if let Some(meaning) = meaning.as_ref().filter(|_| row.unit.starts_with("0.1 ")) {
         return Some(Ok(vec![meaning.clone()]));
     }
-    let shown = words::value_text(number, &value);
-    let shown = match words::unit(row) {
+    let shown = format::value_text(number, &value);
+    let shown = match format::unit(row) {
         Some(unit) => TEXTS.text("hd_entry.place").with("value", shown).with_text("unit", unit),
         None => literal_text(shown),
     };

@@ -1,11 +1,11 @@
 //! Writing to a device: edits or a profile as a request, and its jobs.
 
+use super::format;
 use super::record::Record;
 use super::review::{Review, operation_texts};
 use super::ruler::PositionUnit;
 use super::unit::HiperdriveDevice;
 use super::unsaved::UnsavedChanges;
-use super::words;
 use crate::app::review::OperationTexts;
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
@@ -85,7 +85,7 @@ impl HasProfile for HiperdriveDevice {
     }
 
     fn save_remarks(&self) -> Vec<Text> {
-        truncated_list(&self.findings(), words::finding_text)
+        truncated_list(&self.findings(), format::finding_text)
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {

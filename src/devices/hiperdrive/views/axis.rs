@@ -13,7 +13,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, LengthEntries, SetupEnd, StepStatus, words,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, LengthEntries, SetupEnd, StepStatus, labels,
     write_outcome_lines,
 };
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, TEXTS, explain};
@@ -143,7 +143,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut V
                 let size = egui::vec2(NUMBER_WIDTH, ui.spacing().interact_size.y);
                 let layout = egui::Layout::right_to_left(egui::Align::Center);
                 ui.allocate_ui_with_layout(size, layout, |ui| ui.label(theme.label(number.to_string())));
-                ui.label(theme.label(theme.format_text(&words::title(step))));
+                ui.label(theme.label(theme.format_text(&labels::title(step))));
             });
         }
     });
@@ -162,12 +162,12 @@ fn step_list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
         let has_result = matches!(reached, StepStatus::Done | StepStatus::Failed);
         let found = match (step, reached) {
             (AxisStep::Reference, StepStatus::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
-            _ => words::finding_text(shown.axis, step, shown.axis.displayed_facts(shown.seen)).filter(|_| has_result),
+            _ => labels::finding_text(shown.axis, step, shown.axis.displayed_facts(shown.seen)).filter(|_| has_result),
         };
         Line {
-            title: theme.format_text(&words::title(step)),
+            title: theme.format_text(&labels::title(step)),
             state,
-            word: theme.format_text(&words::step_status(reached)),
+            word: theme.format_text(&labels::step_status(reached)),
             note: found.map(|text| with_nonbreaking_spaces(theme.format_text(&text))).unwrap_or_default(),
             ..Line::default()
         }
@@ -193,8 +193,8 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
             ui.label(theme.caption(theme.format_text(&drive)));
         }
     };
-    card_with_trailing(ui, theme, words::title(step), aside, |ui| {
-        paragraph(ui, with_nonbreaking_spaces(theme.format_text(&words::step_instructions(step, seen))));
+    card_with_trailing(ui, theme, labels::title(step), aside, |ui| {
+        paragraph(ui, with_nonbreaking_spaces(theme.format_text(&labels::step_instructions(step, seen))));
         ui.add_space(theme.space.between);
         live_ui(ui, theme, shown);
         ui.add_space(theme.space.between);
@@ -213,14 +213,14 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
 /// Draws the messages that change: a fault, invalidated results, missing conditions, and findings.
 fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     let (axis, seen) = (shown.axis, shown.seen);
-    let fallen = axis.invalidated_step().map(words::invalidated_step);
-    if let Some(why) = words::fault_text(seen) {
+    let fallen = axis.invalidated_step().map(labels::invalidated_step);
+    if let Some(why) = labels::fault_text(seen) {
         line_ui(ui, theme, Severity::Error, &why);
     }
     if let Some(why) = &fallen {
         line_ui(ui, theme, Severity::Error, why);
     }
-    if let Some(why) = words::unexplained_change_text(axis, seen) {
+    if let Some(why) = labels::unexplained_change_text(axis, seen) {
         warning_ui(ui, theme, &why);
     }
     if let (Err(why), None) = (axis.check_can_continue(seen), &fallen) {
@@ -228,11 +228,11 @@ fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Leng
     }
     content::messages_ui(ui, theme, shown, entries);
     // The limits to be checked are shown large above.
-    if let Some(found) = words::finding_text(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
+    if let Some(found) = labels::finding_text(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
         ui.add_space(theme.space.inside);
         row(ui, theme, &translate(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.format_text(&found)));
     }
-    if let (AxisStep::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
+    if let (AxisStep::Request, Some(differences)) = (axis.step(), labels::differences(seen)) {
         warning_ui(ui, theme, &differences);
     }
 }
@@ -242,7 +242,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
         crate::ui::controls::fill_width(ui);
         let position = shown.seen.position.map_or_else(
             || translate(theme, "hd_axis.none"),
-            |position| theme.format_text(&words::millimetres_text(shown.seen.ruler(), position.into())),
+            |position| theme.format_text(&labels::millimetres_text(shown.seen.ruler(), position.into())),
         );
         row(ui, theme, &translate(theme, "hd_axis.position"), theme.value(position));
         let state = shown.seen.actual.map_or_else(

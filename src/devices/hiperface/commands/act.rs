@@ -15,7 +15,7 @@ use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult, Verdict};
 use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, KIND};
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::result_of;
 
 const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
@@ -167,5 +167,5 @@ fn check_device(common: &CommonArgs, output: &Output, restart: bool) -> Result {
     // A good line is not listed as a step. Scripts find its values in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
         lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
-    check::show_check(output, &words::check_lines(&shown), quality)
+    check::show_check(output, &explain::check_lines(&shown), quality)
 }

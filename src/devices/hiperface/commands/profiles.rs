@@ -17,7 +17,7 @@ use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownMeaningField};
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::devices::hiperface::state::status_lines;
 use crate::profile::{Body, KeptItem, Redo};
 use crate::result_of;
@@ -49,10 +49,10 @@ impl ProfileCommands for HiperfaceCommands {
         let prepared =
             result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
         if let Some(types) = prepared.other_type {
-            output.print_message(&words::other_type(types).terminal_text());
+            output.print_message(&explain::other_type(types).terminal_text());
         }
         check_copy_decisions(output, &prepared, restore.dry_run)?;
-        if let Some(text) = words::undeleted_fields_text(&prepared.created_left) {
+        if let Some(text) = explain::undeleted_fields_text(&prepared.created_left) {
             output.print_message(&text.terminal_text());
         }
         for item in prepared.missing.iter().filter(|item| restore.concerns(&item.to_string())) {
@@ -141,7 +141,7 @@ fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
 /// Reports the data fields with bytes of unknown meaning. Returns an error if the command line gives no decision for
 /// one of them. A dry run leaves such a field unchanged instead.
 fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
-    let words = |own: &UnknownMeaningField| words::unknown_field(own).terminal_text();
+    let words = |own: &UnknownMeaningField| explain::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;
     let open: Vec<&UnknownMeaningField> = fields.iter().filter(|own| own.answer.is_none()).collect();
     if !dry_run && !open.is_empty() {

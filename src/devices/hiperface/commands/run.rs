@@ -9,7 +9,7 @@ use crate::cli::runner::{self, CliDevice};
 use crate::devices::hiperface::jobs::{DeviceMessage, Hiperface, JobStep, may_have_other_master};
 use crate::devices::hiperface::procedures::InitialAccessCodes;
 use crate::devices::hiperface::protocol::StatusCode;
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::link::LinkUrl;
 use crate::units::CharacterFormat;
 use crate::worker::Session;
@@ -36,7 +36,7 @@ impl CliDevice for Hiperface {
     /// Prints each announced status code on its own line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
-            write_stderr(&format!("{}\n", words::unanswered_codes(*count).terminal_text()));
+            write_stderr(&format!("{}\n", explain::unanswered_codes(*count).terminal_text()));
         }
         for code in codes_in_message(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };

@@ -15,7 +15,7 @@ use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared};
 use crate::devices::hiperface::profile::{HiperfacePlan, Item, Op};
 use crate::devices::hiperface::protocol::{DataFieldStatus, DeviceAddress, LineSettings};
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::result_of;
 
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
@@ -173,7 +173,7 @@ fn old_and_new_text(op: &Op) -> (String, String) {
         }
         Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
         op => {
-            let changes = words::operation_texts(op, None).changes.into_iter();
+            let changes = explain::operation_texts(op, None).changes.into_iter();
             changes.map(|own| (own.old.terminal_text(), own.new.terminal_text())).next().unwrap_or_default()
         }
     }

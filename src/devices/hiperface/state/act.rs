@@ -13,7 +13,7 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::WatchedQuantity;
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 
 /// Interval at which watched values are read. They change slowly, and reading them delays the position.
 const WATCH_INTERVAL: Duration = Duration::from_millis(500);
@@ -95,7 +95,7 @@ impl Encoder {
         };
         let allowed = allowed.and_then(|()| {
             let put = self.staged.edit_bytes(field, address, bytes);
-            put.map_err(|error| words::edit_error_text(&error, bytes.len(), address))
+            put.map_err(|error| explain::edit_error_text(&error, bytes.len(), address))
         });
         if let Err(text) = allowed {
             self.session.report_rejection(text, services);

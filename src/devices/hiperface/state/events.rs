@@ -2,8 +2,8 @@
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
+use super::job;
 use super::review::Review;
-use super::words;
 use crate::app::FrameExplanation;
 use crate::app::review::written_texts;
 use crate::app::services::{JobState, Services};
@@ -38,7 +38,7 @@ impl Kind for Hiperface {
     }
 
     fn job_text(job: &HiperfaceJob) -> Text {
-        words::job_name(job)
+        job::job_name(job)
     }
 
     fn writes_memory(job: &HiperfaceJob) -> bool {

@@ -4,6 +4,7 @@ mod change;
 mod check;
 mod command;
 mod damage;
+mod format;
 mod frame;
 mod items;
 mod job_step;
@@ -12,7 +13,6 @@ mod op;
 #[cfg(test)]
 mod phrases;
 mod types;
-mod words;
 
 use std::path::Path;
 
@@ -22,16 +22,16 @@ pub use change::{change_text, edit_error_text};
 pub use check::{check_lines, line_quality};
 pub use command::command_text;
 pub use damage::damage_text;
+pub use format::{
+    field_access, field_code_required, field_status, geometry_text, line_settings, position_text, raw_position_text,
+    status_code_name, status_with_number,
+};
 pub use frame::detail_text;
 pub use items::{field_range, item_text, plan_item_text, read_back, rejection_text};
 pub use job_step::step_text;
 pub use label::{LabelRow, label_rows};
 pub use op::operation_texts;
 pub use types::{open_error_text, table_error_text};
-pub use words::{
-    field_access, field_code_required, field_status, geometry_text, line_settings, position_text, raw_position_text,
-    status_code_name, status_with_number,
-};
 
 use crate::app::Text;
 use crate::app::explain::{link_error_text, not_started_text};

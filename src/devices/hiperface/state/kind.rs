@@ -10,7 +10,7 @@ use crate::devices::hiperface::procedures::{LinkParameters, recorded_identity};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::ParameterGroup as _;
 use crate::profile::{Cause, ProfileDocument};
@@ -37,7 +37,7 @@ impl DeviceType for Encoder {
     }
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
-        words::rejection_text(cause)
+        explain::rejection_text(cause)
     }
 
     fn report(
@@ -60,7 +60,7 @@ impl DeviceType for Encoder {
         let mut encoder = Encoder::from_session(session);
         if let Some((profile, tables)) = profile {
             let types = tables.unwrap_or_else(|error| {
-                services.notify(Severity::Warning, vec![words::table_error_text(&error)], None);
+                services.notify(Severity::Warning, vec![explain::table_error_text(&error)], None);
                 EncoderTypes::built_in()
             });
             encoder.identify(recorded_identity(profile, &types));

@@ -9,6 +9,7 @@ mod encoder;
 mod events;
 pub mod explain;
 pub mod forms;
+mod job;
 mod kind;
 mod meaning;
 mod model;
@@ -24,7 +25,6 @@ pub mod rules;
 mod search;
 mod staged;
 mod texts;
-mod words;
 mod write;
 
 pub use texts::TEXTS;

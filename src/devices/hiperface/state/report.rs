@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::TEXTS;
-use super::explain as words;
+use super::explain;
 use crate::app::Text;
 use crate::app::report::{ReportContent, ReportContext, StatusLine, byte_table};
 use crate::devices::hiperface::jobs::{device_key, encoder_types};
@@ -30,7 +30,7 @@ pub(super) fn content(
     _document: &ProfileDocument,
     context: &ReportContext<'_>,
 ) -> Result<ReportContent, Text> {
-    let types = encoder_types(context.store).map_err(|error| words::table_error_text(&error))?;
+    let types = encoder_types(context.store).map_err(|error| explain::table_error_text(&error))?;
     let identity = recorded_identity(profile, &types);
     let serial = &identity.serial.serial_number;
     let parts = [identity.name.as_str(), serial.as_str()];
@@ -46,7 +46,7 @@ pub fn status_lines(codes: &[StatusCode]) -> Vec<StatusLine> {
     let line = |code: &StatusCode| StatusLine {
         mark: if code.is_warning() { Mark::Warning } else { Mark::Bad },
         code: format!("{:02X}h", code.byte()),
-        text: words::status_code_name(*code),
+        text: explain::status_code_name(*code),
         advice: Vec::new(),
     };
     codes.iter().map(line).collect()
@@ -54,7 +54,7 @@ pub fn status_lines(codes: &[StatusCode]) -> Vec<StatusLine> {
 
 fn identity_section(context: &ReportContext<'_>, identity: &Identity) -> Section {
     let serial = &identity.serial;
-    let resolution = identity.geometry.map_or_else(|| TEXTS.text("encoder_card.no_geometry"), words::geometry_text);
+    let resolution = identity.geometry.map_or_else(|| TEXTS.text("encoder_card.no_geometry"), explain::geometry_text);
     Section::new(context.say("report.identity")).with(Block::Facts(vec![
         Fact::new(context.say("encoder_card.title"), identity.name.as_str()),
         context.code("encoder_card.serial", &serial.serial_number),
@@ -68,11 +68,11 @@ fn identity_section(context: &ReportContext<'_>, identity: &Identity) -> Section
 fn interface_section(context: &ReportContext<'_>, profile: &HiperfaceProfile, identity: &Identity) -> Section {
     let mut facts = vec![
         context.code(TEXTS.text("encoder_card.address"), format!("{:02X}h", identity.address)),
-        context.fact(TEXTS.text("encoder_card.settings"), words::line_settings(identity.label.settings)),
+        context.fact(TEXTS.text("encoder_card.settings"), explain::line_settings(identity.label.settings)),
     ];
     let position = profile.recorded.position.map(|position| {
-        let place = identity.geometry.map(|geometry| words::position_text(geometry.position(position)));
-        let value = place.unwrap_or_else(|| words::raw_position_text(position));
+        let place = identity.geometry.map(|geometry| explain::position_text(geometry.position(position)));
+        let value = place.unwrap_or_else(|| explain::raw_position_text(position));
         context.fact(TEXTS.text("report.hf_position"), value)
     });
     let counter = profile.recorded.counter;
@@ -82,7 +82,7 @@ fn interface_section(context: &ReportContext<'_>, profile: &HiperfaceProfile, id
 }
 
 fn label_section(context: &ReportContext<'_>, identity: &Identity) -> Option<Section> {
-    let rows = words::label_rows(identity.extended_label.as_deref()?);
+    let rows = explain::label_rows(identity.extended_label.as_deref()?);
     let mut table = context.table([
         (TEXTS.text("encoder_card.address"), CellStyle::Code),
         ("report.bytes".into(), CellStyle::Code),
@@ -113,7 +113,7 @@ fn memory_section(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Se
         let name = context.say(TEXTS.text("memory.field").with("number", field.number));
         section = section
             .with(Block::Heading(name))
-            .with(Block::Paragraph(context.say(words::field_status(field.status))))
+            .with(Block::Paragraph(context.say(explain::field_status(field.status))))
             .with(field_block(context, profile, field));
     }
     section

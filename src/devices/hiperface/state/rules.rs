@@ -9,7 +9,7 @@ use crate::devices::hiperface::profile::{
 };
 use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::TEXTS;
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 
 /// Permission for an action. The error is the reason why the action is not allowed.
 pub type ActionPermission = Result<(), Text>;
@@ -88,10 +88,10 @@ fn check_edits_preserved(staged: &StagedEdits, field: u8, bytes: usize) -> Actio
 pub fn check_edit(field: &FieldImage) -> ActionPermission {
     if field.bytes.is_none() {
         let error = PlanError::CodeUnknown { field: field.number, code: field.status.code() };
-        return Err(words::plan_error_text(&error));
+        return Err(explain::plan_error_text(&error));
     }
     if !field.status.is_writable() {
-        return Err(words::plan_error_text(&PlanError::WriteProtected { field: field.number }));
+        return Err(explain::plan_error_text(&PlanError::WriteProtected { field: field.number }));
     }
     Ok(())
 }
@@ -103,7 +103,7 @@ pub fn largest_size(memory: FreeMemory, field: &FieldImage) -> FieldSize {
 }
 
 fn plan_permission(plan: Result<HiperfacePlan, PlanError>) -> ActionPermission {
-    plan.map(|_| ()).map_err(|error| words::plan_error_text(&error))
+    plan.map(|_| ()).map_err(|error| explain::plan_error_text(&error))
 }
 
 #[cfg(test)]

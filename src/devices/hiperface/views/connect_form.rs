@@ -11,7 +11,7 @@ use crate::app::Action;
 use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::devices::hiperface::state::{EncoderSearchForm, LinkForm, LinkKind, Search, SearchAction};
 use crate::ui::controls::{
     button_with_reason, dropdown, entry, fill_width, labelled_button, paragraph, spinner, text_entry,
@@ -160,7 +160,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState,
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
                 ui.label(
-                    theme.monospace(theme.format_text(&words::step_text(&progress.step))).color(theme.palette.muted),
+                    theme.monospace(theme.format_text(&explain::step_text(&progress.step))).color(theme.palette.muted),
                 );
             }
         });
@@ -182,7 +182,7 @@ fn search_results_ui(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut 
                 actions.push(find(SearchAction::Choose(at)));
             }
             let talking = TEXTS.text("find.talking").with("format", found.format);
-            let stored = TEXTS.text("find.stored").with_text("settings", words::line_settings(found.label.settings));
+            let stored = TEXTS.text("find.stored").with_text("settings", explain::line_settings(found.label.settings));
             ui.label(theme.format_text(&talking));
             ui.label(theme.label(theme.format_text(&stored)));
         });

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::wiring;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperface::procedures::Identity;
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::translate;
 use crate::ui::check::lines_ui;
@@ -69,7 +69,7 @@ fn line_quality_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         return;
     }
     let quality = &encoder.line_quality;
-    let words = RichText::new(theme.format_text(&words::line_quality(quality)));
+    let words = RichText::new(theme.format_text(&explain::line_quality(quality)));
     let words = if quality.has_errors() { words.color(theme.palette.warn) } else { words };
     row(ui, theme, &translate(theme, "encoder_card.line"), words);
 }
@@ -86,7 +86,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
         theme.monospace(format!("{:02X}h", identity.label.encoder_type)),
     );
     let resolution = match identity.geometry {
-        Some(geometry) => theme.format_text(&words::geometry_text(geometry)),
+        Some(geometry) => theme.format_text(&explain::geometry_text(geometry)),
         None => translate(theme, "encoder_card.no_geometry"),
     };
     row(ui, theme, &translate(theme, "encoder_card.resolution"), resolution);
@@ -97,7 +97,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
         ui,
         theme,
         &translate(theme, "encoder_card.settings"),
-        theme.format_text(&words::line_settings(identity.label.settings)),
+        theme.format_text(&explain::line_settings(identity.label.settings)),
     );
     row(
         ui,
@@ -134,7 +134,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                     ui.label(RichText::new(icon).color(colour));
                     ui.label(theme.monospace(format!("{:02X}h", code.byte())));
                     ui.add(
-                        egui::Label::new(theme.format_text(&words::status_code_name(*code))).wrap().selectable(true),
+                        egui::Label::new(theme.format_text(&explain::status_code_name(*code))).wrap().selectable(true),
                     );
                 });
             }
@@ -145,7 +145,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
 
 fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
     card(ui, theme, "check_card.title", |ui| {
-        let lines = encoder.check.as_deref().map(words::check_lines);
+        let lines = encoder.check.as_deref().map(explain::check_lines);
         lines_ui(ui, theme, lines.as_deref(), TEXTS.text("check_card.nothing"));
         ui.add_space(theme.space.between);
         ui.checkbox(restart, translate(theme, "check_card.restart"));
@@ -161,7 +161,7 @@ fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
     theme.add_gap(ui);
     folding_card(ui, theme, TEXTS.text("label_card.title"), |ui| {
-        for part in words::label_rows(bytes) {
+        for part in explain::label_rows(bytes) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().interact_size.y = 18.0;
                 let addresses = ui.label(theme.monospace(&part.addresses).color(theme.palette.muted));

@@ -8,7 +8,7 @@ use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, FreeMemory};
-use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::explain;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, StagedEdits, TEXTS, forms, rules};
 use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{button_with_reason, dropdown, empty_placeholder, name, paragraph};
@@ -85,7 +85,7 @@ fn memory_map_ui(
     let fields: Vec<MapField> = wanted
         .iter()
         .map(|field| {
-            let status = theme.format_text(&words::field_status(field.status));
+            let status = theme.format_text(&explain::field_status(field.status));
             let label = TEXTS.text("memory.field").with("number", field.number);
             MapField {
                 number: field.number,
@@ -227,7 +227,7 @@ fn field_header_ui(
     let mut change = None;
     ui.horizontal(|ui| {
         ui.label(theme.heading(theme.format_text(&TEXTS.text("memory.field").with("number", field.number))));
-        ui.label(theme.label(theme.format_text(&words::field_status(field.status))));
+        ui.label(theme.label(theme.format_text(&explain::field_status(field.status))));
     });
     let Some(memory) = memory else { return };
     ui.horizontal_wrapped(|ui| {

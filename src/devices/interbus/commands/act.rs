@@ -17,7 +17,7 @@ use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{Item, ItemValue};
 use crate::devices::interbus::protocol::{KIND, Reply};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::explain as words;
+use crate::devices::interbus::state::explain;
 use crate::result_of;
 
 const ACTIONS: &str = "check, preset, default and lead-back";
@@ -53,7 +53,7 @@ fn preset(runner: &mut Runner) -> Result<u32> {
 fn check_device(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     DisturbanceLevel::Reading.print_effect(output);
-    result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check_lines(&lines)))
+    result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &explain::check_lines(&lines)))
 }
 
 fn restore_mode(common: &CommonArgs, output: &Output) -> Result {
@@ -61,14 +61,14 @@ fn restore_mode(common: &CommonArgs, output: &Output) -> Result {
     DisturbanceLevel::RestoringMode.print_effect(output);
     let now = result_of!(runner.run(InterbusJob::RestoreMode)?, InterbusOutput::ModeRestored(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
-    let (is, word) = (words::startup_mode_text(now).terminal_text(), format!("0x{:08X}", reading.word));
+    let (is, word) = (explain::startup_mode_text(now).terminal_text(), format!("0x{:08X}", reading.word));
     let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
     let Reply::Error(error) = reading.reply() else {
         output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
         return Ok(Success::Well);
     };
     output.show(&json, &format!("the encoder is in mode {is}\n"))?;
-    let why = words::error_word_text(error).terminal_text();
+    let why = explain::error_word_text(error).terminal_text();
     Err(Failure::Failed(vec![format!("The encoder was returned to operation, but sends {word}: {why}")]))
 }
 

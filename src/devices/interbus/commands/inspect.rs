@@ -11,7 +11,7 @@ use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::{Identity, Status};
 use crate::devices::interbus::profile::ItemValue;
 use crate::devices::interbus::protocol::{KIND, Reply, StartupMode, Value};
-use crate::devices::interbus::state::explain as words;
+use crate::devices::interbus::state::explain;
 use crate::result_of;
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
@@ -37,7 +37,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
 fn identity_text(identity: &Identity) -> String {
     let kind = if identity.flags.counts_turns() { "multiturn" } else { "single turn" };
     let less = if identity.flags.steps_minus_one() { ", steps minus one" } else { "" };
-    let direction = words::direction_text(identity.direction).terminal_text();
+    let direction = explain::direction_text(identity.direction).terminal_text();
     let mut lines = Lines::default();
     lines
         .add_line("encoder", format!("INTERBUS K3, {kind}{less}"))
@@ -45,7 +45,7 @@ fn identity_text(identity: &Identity) -> String {
         .add_line("software version", identity.software_version)
         .add_line("steps", format!("{} over {}", identity.steps, format_turns(identity.revolutions)))
         .add_line("direction", format!("{} ({direction})", identity.direction))
-        .add_line("mode", words::startup_mode_text(identity.mode).terminal_text());
+        .add_line("mode", explain::startup_mode_text(identity.mode).terminal_text());
     lines.text()
 }
 
@@ -73,7 +73,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         .iter()
         .map(|error| {
             let word = format!("0x{:08X}", Reply::Error(*error).emit());
-            json!({"code": error.code.get(), "text": words::error_word_text(*error).terminal_text(), "word": word})
+            json!({"code": error.code.get(), "text": explain::error_word_text(*error).terminal_text(), "word": word})
         })
         .collect();
     let warnings: Vec<Json> =
@@ -103,14 +103,14 @@ fn to_celsius(tenths: i32) -> f64 {
 
 fn status_text(status: &Status) -> String {
     let error = status.error.map(|error| {
-        format!("0x{:08X}: {}", Reply::Error(error).emit(), words::error_word_text(error).terminal_text())
+        format!("0x{:08X}: {}", Reply::Error(error).emit(), explain::error_word_text(error).terminal_text())
     });
     let mut lines = Lines::default();
     lines
         .add_line("errors", error.unwrap_or_else(|| "none".to_owned()))
         .add_line("warnings", unexpected_bits(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
         .add_line("IN word", format!("0x{:08X}", status.reading.word))
-        .add_line("mode", words::startup_mode_text(status.mode).terminal_text())
+        .add_line("mode", explain::startup_mode_text(status.mode).terminal_text())
         .add_line("temperature", format!("{:.1} °C", to_celsius(status.temperature_tenths)))
         .add_line("operating time", format!("{} min", status.operating_minutes));
     lines.text()

@@ -14,7 +14,7 @@ use crate::devices::interbus::jobs::{
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_to_read};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::explain as words;
+use crate::devices::interbus::state::explain;
 use crate::profile::Operation as _;
 use crate::result_of;
 
@@ -51,7 +51,7 @@ pub(super) fn commit_plan(
     }
     let wear = prepared.wear_to_report();
     check_wear::<Interbus>(consent, &prepared)?;
-    let wear_text = words::wear_warning(&prepared).map(|text| text.terminal_text());
+    let wear_text = explain::wear_warning(&prepared).map(|text| text.terminal_text());
     if let Some(wear_text) = &wear_text {
         output.print_message(wear_text);
     }

@@ -17,7 +17,7 @@ use crate::cli::profiles::{
 use crate::cli::{Result, Success};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, RecordedValues, programs_to_read};
-use crate::devices::interbus::state::explain as words;
+use crate::devices::interbus::state::explain;
 use crate::profile::Body;
 use crate::report::Mark;
 use crate::result_of;
@@ -41,7 +41,7 @@ impl ProfileCommands for InterbusCommands {
         disturbs.confirm_start(common, output, Some(&restore.consent))?;
         let prepared = prepare_plan(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
-            output.print_message(&words::other_type(types).terminal_text());
+            output.print_message(&explain::other_type(types).terminal_text());
         }
         print_missing(output, &prepared.missing);
         print_skipped_mounting(output, &prepared.mounting_left);
@@ -71,7 +71,7 @@ impl ProfileCommands for InterbusCommands {
         let line = status.error.map(|error| StatusLine {
             mark: Mark::Bad,
             code: error.code.get().to_string(),
-            text: words::error_word_text(error),
+            text: explain::error_word_text(error),
             advice: Vec::new(),
         });
         let status = Some(line.into_iter().collect());
@@ -85,7 +85,7 @@ impl ProfileCommands for InterbusCommands {
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)
                 .err()?;
         Some(match error {
-            PlanError::TypeMismatch(types) => words::other_type(types).terminal_text(),
+            PlanError::TypeMismatch(types) => explain::other_type(types).terminal_text(),
             PlanError::OtherDevice { profile, device } => {
                 format!("The profile is of serial number {profile}, the encoder has {device}.")
             }

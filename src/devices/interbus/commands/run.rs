@@ -8,7 +8,7 @@ use crate::cli::runner::{self, CliDevice, to_failure};
 use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput, JobStep};
 use crate::devices::interbus::procedures::{Identity, Survey};
 use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
-use crate::devices::interbus::state::explain as words;
+use crate::devices::interbus::state::explain;
 use crate::result_of;
 use crate::worker::Session;
 
@@ -28,14 +28,14 @@ impl CliDevice for Interbus {
 
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     let identity = result_of!(runner.run(InterbusJob::Identify)?, InterbusOutput::Identity(identity) => identity);
-    identity.gear().map_err(|why| to_failure(&words::implausible_value_text(why)))?;
+    identity.gear().map_err(|why| to_failure(&explain::implausible_value_text(why)))?;
     Ok(identity)
 }
 
 /// Reads all values that are available without selecting a cam program.
 pub(super) fn read_survey(runner: &mut Runner) -> Result<Box<Survey>> {
     let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
-    survey.identity.gear().map_err(|why| to_failure(&words::implausible_value_text(why)))?;
+    survey.identity.gear().map_err(|why| to_failure(&explain::implausible_value_text(why)))?;
     Ok(survey)
 }
 

@@ -57,7 +57,7 @@ impl Encoder {
     pub(super) fn apply_edit(&mut self, edit: &Edit) {
         self.refusal = match self.session.is_writing() {
             true => Some(Text::new("session.busy")),
-            false => self.staged.apply_edit(edit).err().map(|error| super::cams::words::edit_error_text(&error)),
+            false => self.staged.apply_edit(edit).err().map(|error| super::cams::labels::edit_error_text(&error)),
         };
     }
 

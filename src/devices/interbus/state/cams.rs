@@ -5,12 +5,12 @@
 //! them.
 
 mod grid;
+pub mod labels;
 mod moving;
 mod snap;
-pub mod table_words;
+pub mod table_text;
 #[cfg(test)]
 mod tests;
-pub mod words;
 
 pub use grid::{Tick, grid_ticks, next_grid_line, round_up_1_2_5};
 pub use moving::{DragTarget, apply_drag, cam_between, move_cam};

@@ -7,7 +7,7 @@ use super::record::Record;
 use super::staged::{EditFinding, EditedValues, StagedEdits, ValueId};
 use super::table::Import;
 use super::trace::FrameDecoder;
-use super::{cams, words};
+use super::{cams, format};
 use crate::analysis::check::CycleCount;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
@@ -83,7 +83,7 @@ impl Encoder {
     pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<EditFinding> = self.findings();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
-        truncated_list(&cams::words::finding_texts(&marks), Text::clone)
+        truncated_list(&cams::labels::finding_texts(&marks), Text::clone)
     }
 
     pub fn profile(&self) -> Option<&InterbusProfile> {
@@ -222,7 +222,7 @@ impl Encoder {
             .text("log.interbus")
             .with("serial", &identity.serial_number)
             .with("version", identity.software_version)
-            .with_text("range", words::range_text(identity.steps, identity.revolutions));
+            .with_text("range", format::range_text(identity.steps, identity.revolutions));
         services.log_only(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 

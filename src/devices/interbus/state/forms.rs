@@ -1,7 +1,7 @@
 //! Conversion of typed entries to values and edits.
 
+use super::format;
 use super::staged::Edit;
-use super::words;
 use crate::app::Text;
 use crate::app::number::parse_decimal as decimal;
 use crate::devices::interbus::profile::{Parameters, Scale, Unit};
@@ -135,7 +135,7 @@ fn check_in_range(parameter: Parameter, value: u32, now: &Parameters) -> Result<
     }
     Err(TEXTS
         .text("ib_entry.range")
-        .with_text("what", words::parameter(parameter))
+        .with_text("what", format::parameter(parameter))
         .with("value", value)
         .with("low", range.start())
         .with("high", range.end()))

@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::explain as words;
+use crate::devices::interbus::state::explain;
 
 pub(super) fn job_name(job: &InterbusJob) -> Text {
     match job {
@@ -13,10 +13,10 @@ pub(super) fn job_name(job: &InterbusJob) -> Text {
         InterbusJob::Status => Text::new("job.status"),
         InterbusJob::Check => Text::new("job.check"),
         InterbusJob::Read(item) => Text::new("job.read").with("item", item),
-        InterbusJob::ReadOut(what) => Text::new("job.read").with_text("item", words::read_out(*what)),
-        InterbusJob::Select(mode) => TEXTS.text("ib_job.select").with_text("mode", words::startup_mode_text(*mode)),
+        InterbusJob::ReadOut(what) => Text::new("job.read").with_text("item", explain::read_out(*what)),
+        InterbusJob::Select(mode) => TEXTS.text("ib_job.select").with_text("mode", explain::startup_mode_text(*mode)),
         InterbusJob::Save { .. } => Text::new("job.save"),
-        InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change_text(change)),
+        InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", explain::change_text(change)),
         InterbusJob::Commit(_) => Text::new("job.write"),
         InterbusJob::RestoreMode => Text::new("job.lead_back"),
     }

@@ -8,6 +8,7 @@ mod drafts;
 mod encoder;
 mod events;
 pub mod explain;
+pub mod format;
 pub mod forms;
 mod job;
 mod kind;
@@ -24,7 +25,6 @@ mod table;
 mod texts;
 mod trace;
 pub mod word_meaning;
-pub mod words;
 mod write;
 
 pub use texts::TEXTS;

@@ -1,9 +1,9 @@
 //! Values of an encoder in a report: identity, parameters, and the cam programs as charts and tables.
 
-use super::cams::{Chart, Lane, VisibleRange, grid_ticks, words as cam_words};
+use super::cams::{Chart, Lane, VisibleRange, grid_ticks, labels as cam_labels};
 use super::explain::{direction_text, startup_mode_text};
 use super::staged::StagedEdits;
-use super::{TEXTS, words};
+use super::{TEXTS, format};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::report::{ReportContent, ReportContext};
@@ -52,15 +52,15 @@ fn identity_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> S
     let facts = [
         Some(context.fact("encoder_card.title", TEXTS.text("ib_card.class"))),
         Some(context.code("encoder_card.serial", &profile.identity.serial_number)),
-        profile.identity.flags.map(|flags| context.fact(TEXTS.text("ib_card.flags"), words::flags_text(flags))),
+        profile.identity.flags.map(|flags| context.fact(TEXTS.text("ib_card.flags"), format::flags_text(flags))),
         recorded.software_version.map(|own| context.code(TEXTS.text("ib_card.version"), own.to_string())),
         recorded.mode.map(|mode| context.fact(TEXTS.text("ib_card.mode"), startup_mode_text(mode))),
         recorded.operating_minutes.map(|minutes| {
-            context.fact(TEXTS.text("ib_card.time"), words::read_out_value(ReadOutValue::Minutes(minutes)))
+            context.fact(TEXTS.text("ib_card.time"), format::read_out_value(ReadOutValue::Minutes(minutes)))
         }),
         recorded
             .temperature_tenths
-            .map(|tenths| context.fact(TEXTS.text("ib_card.temperature"), words::temperature_text(tenths))),
+            .map(|tenths| context.fact(TEXTS.text("ib_card.temperature"), format::temperature_text(tenths))),
     ];
     Section::new(context.say("report.identity")).with(Block::Facts(facts.into_iter().flatten().collect()))
 }
@@ -75,7 +75,7 @@ fn parameter_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> 
     ]);
     for item in profile.items().filter(|item| item.program().is_none()) {
         let Some(value) = profile.image.value_of(item) else { continue };
-        let name = item.parameter().map_or_else(|| TEXTS.text("report.ib_shift"), words::parameter);
+        let name = item.parameter().map_or_else(|| TEXTS.text("report.ib_shift"), format::parameter);
         let meaning = match value {
             ItemValue::Direction(direction) => context.say(direction_text(direction)),
             _ if profile.depends_on_mounting(item) => context.say("report.mounting"),
@@ -85,7 +85,7 @@ fn parameter_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> 
         table.add_row([item.to_string(), context.say(name), value.to_string(), unit, meaning]);
     }
     let parameters = &profile.image.parameters;
-    let range = context.fact(TEXTS.text("ib_card.range"), words::range_text(parameters.steps, parameters.revolutions));
+    let range = context.fact(TEXTS.text("ib_card.range"), format::range_text(parameters.steps, parameters.revolutions));
     Section::new(context.say("report.settings")).with(Block::Facts(vec![range])).with(Block::Table(table))
 }
 
@@ -110,7 +110,7 @@ fn program_section(
     let title = if name.is_empty() { context.say(title) } else { format!("{}: {name}", context.say(title)) };
     let scale = Scale::default();
     let facts = chart.lanes.iter().filter(|lane| is_used(lane)).map(|lane| {
-        Fact::new(context.say(cam_words::cam(lane)), context.say(cam_words::lane_text(lane, &scale, chart.range)))
+        Fact::new(context.say(cam_labels::cam(lane)), context.say(cam_labels::lane_text(lane, &scale, chart.range)))
     });
     Section::new(title.clone())
         .with(Block::Drawing(cam_chart(context, chart, title)))
@@ -141,7 +141,7 @@ fn cam_chart(context: &ReportContext<'_>, chart: &Chart, title: String) -> Drawi
     for tick in grid_ticks(&scale, &view, chart.range, apart) {
         let at = x(tick.position);
         let path = vec![PathSegment::Move(at.into(), RULER.into()), PathSegment::Down(height.into())];
-        let words = context.say(cam_words::tick_label(tick.value, tick.decimals, scale.unit()));
+        let words = context.say(cam_labels::tick_label(tick.value, tick.decimals, scale.unit()));
         let label = DrawingLabel::new(at, RULER - 6, 9, words.trim());
         drawing.shapes.extend([
             DrawingShape::Line { path, colour: GRID },
@@ -152,7 +152,7 @@ fn cam_chart(context: &ReportContext<'_>, chart: &Chart, title: String) -> Drawi
         let top = RULER + u32::from(lane.cam.get()) * LANE;
         let right = (HEAD + PLOT).into();
         let path = vec![PathSegment::Move(0.into(), (top + LANE).into()), PathSegment::Across(right)];
-        let label = DrawingLabel::new(0, top + 13, 9, context.say(cam_words::cam(lane)));
+        let label = DrawingLabel::new(0, top + 13, 9, context.say(cam_labels::cam(lane)));
         drawing.shapes.extend([DrawingShape::Line { path, colour: GRID }, DrawingShape::Text(label)]);
         for range in lane.on_ranges(chart.range) {
             let (from, to) = (x(range.first.into()), x(f64::from(range.last) + 1.0));

@@ -1,6 +1,6 @@
 //! Meaning of process data words. OUT words are commands, and the mode determines the meaning of IN words.
 
-use super::words;
+use super::format;
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::devices::interbus::protocol::{
@@ -32,7 +32,7 @@ pub fn describe_out_word(word: u32, mode: EncoderMode) -> Text {
         Err(refused) if matches!(refused.command, Command::Unknown(_)) => TEXTS.text("ib_word.unknown"),
         Err(refused) => TEXTS
             .text("ib_word.illegal")
-            .with_text("mode", words::mode(refused.mode))
+            .with_text("mode", format::mode(refused.mode))
             .with_text("elsewhere", command_text(refused.command)),
     }
 }
@@ -47,8 +47,8 @@ pub fn command_text(command: Command) -> Text {
         Command::Set(Parameter::Default, _) => TEXTS.text("ib_word.default"),
         Command::Set(parameter, value) => TEXTS
             .text("ib_word.set")
-            .with_text("parameter", words::parameter(parameter))
-            .with_text("value", words::setting(parameter, value.get())),
+            .with_text("parameter", format::parameter(parameter))
+            .with_text("value", format::setting(parameter, value.get())),
         Command::Velocity(true) => TEXTS.text("ib_word.velocity_on"),
         Command::Velocity(false) => TEXTS.text("ib_word.velocity_off"),
         Command::ReadOut(read_out) => TEXTS.text("ib_word.read_out").with_text("what", explained::read_out(read_out)),
@@ -90,10 +90,10 @@ pub fn word_text(word: u32, known: &WordContext) -> Text {
             Some(read_out) => TEXTS
                 .text("ib_word.value")
                 .with_text("what", explained::read_out(read_out))
-                .with_text("value", words::read_out_value(read_out.value(value))),
+                .with_text("value", format::read_out_value(read_out.value(value))),
             None => TEXTS
                 .text("ib_word.some_value")
-                .with_text("value", words::read_out_value(ReadOutValue::Plain(value.get()))),
+                .with_text("value", format::read_out_value(ReadOutValue::Plain(value.get()))),
         },
         Reply::UnknownReadOut(_) => TEXTS.text("ib_word.no_read_out"),
         Reply::Unknown { code, .. } => TEXTS.text("ib_word.unknown_reply").with("code", code.get()),

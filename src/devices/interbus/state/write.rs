@@ -1,6 +1,6 @@
 //! Writing of edits or a profile to an encoder, its jobs, and the values that are read again afterwards.
 
-use super::cams::words;
+use super::cams::labels;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
@@ -80,7 +80,7 @@ impl HasProfile for Encoder {
     }
 
     fn save_remarks(&self) -> Vec<Text> {
-        truncated_list(&words::finding_texts(&self.findings()), Text::clone)
+        truncated_list(&labels::finding_texts(&self.findings()), Text::clone)
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {

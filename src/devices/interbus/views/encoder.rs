@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, StartupMode};
-use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, word_meaning, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, format, word_meaning};
 use crate::devices::interbus::views::translate;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
@@ -60,25 +60,25 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
                 &translate(theme, "ib_card.version"),
                 theme.monospace(identity.software_version.to_string()),
             );
-            row(ui, theme, &translate(theme, "ib_card.flags"), theme.format_text(&words::flags_text(identity.flags)));
+            row(ui, theme, &translate(theme, "ib_card.flags"), theme.format_text(&format::flags_text(identity.flags)));
             row(
                 ui,
                 theme,
                 &translate(theme, "ib_card.mode"),
                 theme.format_text(&explain::startup_mode_text(identity.mode)),
             );
-            let range = words::range_text(identity.steps, identity.revolutions);
+            let range = format::range_text(identity.steps, identity.revolutions);
             row(ui, theme, &translate(theme, "ib_card.range"), theme.format_text(&range));
-            let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
+            let time = format::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
             row(ui, theme, &translate(theme, "ib_card.time"), theme.format_text(&time));
-            let celsius = words::temperature_text(survey.temperature_tenths);
+            let celsius = format::temperature_text(survey.temperature_tenths);
             row(ui, theme, &translate(theme, "ib_card.temperature"), theme.format_text(&celsius));
         } else if let Some(profile) = encoder.profile() {
             paragraph(ui, theme.value(translate(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
             row(ui, theme, &serial, theme.monospace(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;
-            let range = words::range_text(parameters.steps, parameters.revolutions);
+            let range = format::range_text(parameters.steps, parameters.revolutions);
             row(ui, theme, &translate(theme, "ib_card.range"), theme.format_text(&range));
             let programs = profile.image.known_programs().count();
             row(ui, theme, &translate(theme, "ib_card.programs"), programs.to_string());

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{Class, Interface, LedState, Leds, id_code};
-use crate::devices::interbus::state::{TEXTS, words};
+use crate::devices::interbus::state::{TEXTS, format};
 use crate::devices::interbus::views::translate;
 use crate::ui::controls::{folding_card, name, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
@@ -51,7 +51,7 @@ fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
             paragraph(ui, RichText::new(translate(theme, "ib_leds.unknown")).color(theme.palette.warn));
             return;
         };
-        let (meaning, remedy) = words::led_texts(own);
+        let (meaning, remedy) = format::led_texts(own);
         paragraph(ui, theme.value(theme.format_text(&meaning)));
         paragraph(ui, theme.format_text(&remedy));
     });
@@ -86,7 +86,7 @@ fn codes_ui(ui: &mut Ui, theme: &Theme) {
                 .into_iter()
                 .map(|interface| {
                     let code = id_code(class, interface);
-                    format!("{} 0x{code:02X} ({code})", theme.format_text(&words::interface(interface)))
+                    format!("{} 0x{code:02X} ({code})", theme.format_text(&format::interface(interface)))
                 })
                 .collect();
             let (bytes_in, bytes_out) = class.bytes();

@@ -14,7 +14,9 @@ use crate::devices::interbus::jobs::{Change, WEAR_CONFIRMATION, WEAR_LAST, WEAR_
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
-use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, word_meaning, words};
+use crate::devices::interbus::state::{
+    Encoder, InterbusAction as Interbus, cams, explain, format, forms, word_meaning,
+};
 use crate::ui::controls::{
     card, committed_entry, dropdown, empty_placeholder, enabled_button, entry, paragraph, problem_ui, row,
     show_error_below, show_error_beside, two_columns,
@@ -81,7 +83,7 @@ fn table_ui(
         for parameter in
             [Parameter::Turns, Parameter::Steps, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift]
         {
-            let word = theme.format_text(&words::parameter(parameter));
+            let word = theme.format_text(&format::parameter(parameter));
             let (Some(before), Some(now)) = (old.value(parameter), new.value(parameter)) else { continue };
             entry(ui, theme, &word, |ui| {
                 if parameter == Parameter::Direction {
@@ -103,7 +105,7 @@ fn table_ui(
                 if refused.is_some() {
                     show_error_beside(ui, theme, refused);
                 } else if before != now {
-                    let was = TEXTS.text("ib_set.was").with_text("value", words::setting(parameter, before));
+                    let was = TEXTS.text("ib_set.was").with_text("value", format::setting(parameter, before));
                     ui.add(
                         egui::Label::new(RichText::new(theme.format_text(&was)).color(theme.palette.staged)).truncate(),
                     );
@@ -130,7 +132,7 @@ fn table_ui(
                 }
             }
             Err(error) => {
-                problem_ui(ui, theme, Some(&cams::words::gear(&error)));
+                problem_ui(ui, theme, Some(&cams::labels::gear(&error)));
             }
         }
         if encoder.identity().is_some_and(|own| own.flags.steps_minus_one()) {

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{READ_OUTS, ReadOutNumber};
-use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, format};
 use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, folding_card, icon_button, paragraph};
 use crate::ui::{Theme, icons};
@@ -37,7 +37,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
                     ui.label(theme.label(&name));
                 });
                 let value = encoder.read_out(row.read_out);
-                let value = value.map(|value| theme.format_text(&words::read_value(row.read_out, value)));
+                let value = value.map(|value| theme.format_text(&format::read_value(row.read_out, value)));
                 ui.add(egui::Label::new(theme.monospace(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
                 if at % columns == columns - 1 {
                     ui.end_row();

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::devices::interbus::protocol::{EncoderMode, READ_OUTS, WindowShift};
 use crate::devices::interbus::state::reader::{Reading, WordSource};
-use crate::devices::interbus::state::{TEXTS, explain, words};
+use crate::devices::interbus::state::{TEXTS, explain, format};
 use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, dropdown, entry, mono_entry, name, paragraph};
 use crate::ui::{Theme, icons};
@@ -37,7 +37,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
                     ui,
                     &word,
                     &mut reading.mode,
-                    EncoderMode::ALL.map(|mode| (mode, theme.format_text(&words::mode(mode)))),
+                    EncoderMode::ALL.map(|mode| (mode, theme.format_text(&format::mode(mode)))),
                 );
             });
         }

@@ -14,7 +14,7 @@ use crate::devices::ssi::protocol::{
     settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 
 pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
     let SsiExportArgs { layout: spec, format, file, clock, pause, cable, synchronous } = arguments;
@@ -52,7 +52,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
                 }
             };
             for warning in timing.warnings {
-                output.print_message(&words::timing_warning_text(&warning).terminal_text());
+                output.print_message(&explain::timing_warning_text(&warning).terminal_text());
             }
             timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english_text).to_svg()
         }
@@ -68,5 +68,5 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
 }
 
 fn too_wide_failure(error: TooWideError) -> Failure {
-    Failure::Failed(vec![words::too_wide_text(error).terminal_text()])
+    Failure::Failed(vec![explain::too_wide_text(error).terminal_text()])
 }

@@ -11,7 +11,7 @@ use crate::cli::runner::to_failure;
 use crate::cli::{Result, Success};
 use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::Frames;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 
 /// Maximum number of bits in a frame. It is also assumed for hexadecimal frames without a given number of bits.
 const MAX_CLOCKS: u8 = 64;
@@ -34,7 +34,7 @@ pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) 
     let search = protocol::find(&frames, clocks, &families);
     output.show(&json(&search, &families), &text(&search, &families))?;
     if search.classes.is_empty() {
-        return Err(to_failure(&words::uncertainty_text(search.doubt)));
+        return Err(to_failure(&explain::uncertainty_text(search.doubt)));
     }
     Ok(Success::Well)
 }
@@ -80,7 +80,7 @@ fn text(search: &Search, families: &Families) -> String {
             lines.add_line("  the same here", same);
         }
     }
-    let verdict = words::uncertainty_text(search.doubt).terminal_text();
+    let verdict = explain::uncertainty_text(search.doubt).terminal_text();
     let next = next_motion(search).map_or_else(String::new, |next| next + "\n");
     format!("{}{verdict}\n{next}", lines.text())
 }
@@ -91,17 +91,17 @@ fn spec_text(class: &Class, families: &Families) -> String {
 }
 
 fn evidence_text(class: &Class) -> String {
-    let frame = class.members.first().map(|member| words::layout_summary(&member.layout).terminal_text());
-    let evidence = words::evidence_for(&class.evidence).terminal_text();
+    let frame = class.members.first().map(|member| explain::layout_summary(&member.layout).terminal_text());
+    let evidence = explain::evidence_for(&class.evidence).terminal_text();
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 
 /// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
 fn next_motion(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::SearchUncertainty::Open);
-    let doubt = doubt.map(|doubt| words::uncertainty_text(Some(doubt)).terminal_text());
+    let doubt = doubt.map(|doubt| explain::uncertainty_text(Some(doubt)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
-    let open = open.map(|open| words::open_question_text(*open).terminal_text());
+    let open = open.map(|open| explain::open_question_text(*open).terminal_text());
     let all: Vec<String> = doubt.into_iter().chain(open).collect();
     (!all.is_empty()).then(|| all.join(" "))
 }

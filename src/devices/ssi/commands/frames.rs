@@ -11,7 +11,7 @@ use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::protocol::{
     BitMeaning, Flags, FrameFinding, FrameReading, Layout, Location, Role, frame_bits,
 };
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 
 pub(super) fn decode(output: &Output, SsiDecodeArgs { layout: spec, frames }: &SsiDecodeArgs) -> Result {
     let layout = select_layout(output, spec)?.layout;
@@ -91,7 +91,7 @@ impl<'a> DecodedFrame<'a> {
             }
         }
         let findings = self.layout.to_findings(self.reading);
-        let told = findings.iter().map(|finding| format!("{}\n", words::finding_text(finding).terminal_text()));
+        let told = findings.iter().map(|finding| format!("{}\n", explain::finding_text(finding).terminal_text()));
         lines.text() + &told.collect::<String>()
     }
 }

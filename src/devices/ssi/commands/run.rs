@@ -11,7 +11,7 @@ use crate::cli::runner::{self, CliDevice};
 use crate::devices::ssi::jobs::{JobStep, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{ClockSettings, Words};
 use crate::devices::ssi::protocol::ReadConditions;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::result_of;
 use crate::worker::Session;
 
@@ -53,7 +53,7 @@ pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &Selecte
             ..chosen.profile.read_conditions()
         };
         for warning in times.calculate_timing(&reads).warnings {
-            output.print_message(&words::timing_warning_text(&warning).terminal_text());
+            output.print_message(&explain::timing_warning_text(&warning).terminal_text());
         }
     }
     Ok(runner)

@@ -2,9 +2,9 @@
 //! description contains the frames that a family can send, its timing and its additional signals. [`Settings`] selects
 //! one of the frames.
 
-mod sends;
 mod setting_name;
 mod settings;
+mod settings_search;
 #[cfg(test)]
 mod tests;
 mod text;

@@ -5,23 +5,23 @@
 //! frames that they do not explain. Layouts that the frames cannot distinguish form a class, and the result states the
 //! motion that would distinguish them.
 
-mod any_other;
-mod code_ends;
+mod candidates;
+mod custom_frames;
+mod family_candidates;
 mod frame_set;
-mod members;
 mod motion;
-mod of_family;
 mod plausible;
 mod probe;
 mod reading;
+mod step_counts;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
 use std::collections::HashSet;
 
+use candidates::{LayoutCandidate, group_members};
 use frame_set::FrameSet;
-use members::{LayoutCandidate, group_members};
 use motion::Motion;
 use probe::LayoutProbe;
 use reading::{FrameNumbers, best_readings};

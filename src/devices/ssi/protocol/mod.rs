@@ -12,12 +12,12 @@ mod explain;
 mod export;
 mod family;
 mod find;
+mod finding_counts;
 mod frame_spec;
 mod frame_text;
 mod layout;
 mod range;
 mod spec;
-mod tally;
 mod timing;
 
 /// Keyword for SSI encoders on the command line, in profiles and in stored data.
@@ -37,13 +37,13 @@ pub use family::{
     SettingName, Settings, SettingsError, Signal, StepLimits,
 };
 pub use find::{Class, ClassEvidence, LayoutProposal, OpenQuestion, Search, SearchUncertainty, find};
+pub use finding_counts::{CountedFinding, FindingCounts};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
 pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPart, WordOperation};
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
-pub use tally::{CountedFinding, FindingCounts};
 pub use timing::{
     AnySteps, AsynchronousTimes, ReadConditions, SamplingMoment, SynchronousTimes, Times, Timing, Warning,
 };

@@ -15,7 +15,7 @@ use crate::devices::ssi::protocol::{
 };
 use crate::devices::ssi::sim::DEFAULT_ENCODER;
 use crate::devices::ssi::state::TEXTS;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::link::{LinkScheme, LinkUrl};
 
 const DEFAULT_FAMILY: &str = "ahm36";
@@ -67,7 +67,7 @@ impl Design {
     /// # Errors
     /// Returns an error with the reason if the layout is impossible.
     fn from_profile(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
-        let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout_error_text(&error))?;
+        let layout = Layout::new(profile.descriptor.clone()).map_err(|error| explain::layout_error_text(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.find_by_key(key));
         let sends = |family: &Family, settings: &Settings| {
             settings.resolve(family).is_ok_and(|resolved| *resolved.layout.descriptor() == profile.descriptor)
@@ -224,7 +224,7 @@ impl LayoutDesigner {
             Edit::Frame(descriptor) => profile.descriptor = *descriptor,
             Edit::Position(range, code) => {
                 profile.descriptor = reshape::with_positions(&profile.descriptor, range, code)
-                    .map_err(|error| words::layout_error_text(&error))?;
+                    .map_err(|error| explain::layout_error_text(&error))?;
             }
             Edit::Direction(direction) => profile.direction = direction,
             Edit::Preset(preset) => profile.preset = preset,
@@ -232,7 +232,7 @@ impl LayoutDesigner {
             Edit::Name(name) => profile.name = name,
             Edit::Whole(whole) => return Ok(*whole),
             Edit::LinuxCnc(format) => {
-                let layout = from_linuxcnc(&format).map_err(|error| words::format_error_text(&error))?;
+                let layout = from_linuxcnc(&format).map_err(|error| explain::format_error_text(&error))?;
                 profile.family = None;
                 profile.descriptor = layout.descriptor().clone();
             }
@@ -322,7 +322,7 @@ fn parse_profile(text: &str, families: &Families) -> SsiProfile {
 /// Returns the profile with the frame that a family sends with these settings. Direction and preset are kept.
 fn resolved_profile(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
     let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
-    let resolved = settings.resolve(family).map_err(|error| words::settings_error_text(&error))?;
+    let resolved = settings.resolve(family).map_err(|error| explain::settings_error_text(&error))?;
     profile.descriptor = resolved.layout.descriptor().clone();
     profile.family = Some(family.key.clone());
     Ok(profile)

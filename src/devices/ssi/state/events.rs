@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use super::drafts::Drafts;
 use super::encoder::Encoder;
-use super::{trace, words};
+use super::{job, trace};
 use crate::app::FrameExplanation;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{Kind, SessionEvents};
@@ -36,7 +36,7 @@ impl Kind for Ssi {
     }
 
     fn job_text(job: &SsiJob) -> Text {
-        words::job_name(job)
+        job::job_name(job)
     }
 
     fn survey_job() -> SsiJob {

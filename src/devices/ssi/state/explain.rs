@@ -5,7 +5,7 @@ mod export;
 mod family;
 #[cfg(test)]
 mod phrases;
-mod refused;
+mod rejection;
 
 use crate::app::Text;
 use crate::app::explain::link_error_text;
@@ -20,7 +20,7 @@ use crate::devices::ssi::state::TEXTS;
 pub use check::check_lines;
 pub use export::export_text;
 pub use family::{family_error_text, note_text};
-pub use refused::{
+pub use rejection::{
     burst_error_text, entry_error_text, format_error_text, frame_text, layout_error_text, settings_error_text,
     too_wide_text,
 };

@@ -6,7 +6,7 @@ use crate::devices::ssi::protocol::{
     ExportText, bit_table, frame_picture, generate_c99, scl_source, settings_sheet, structured_text,
     structured_text_32, timing_picture, to_linuxcnc,
 };
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::drawing::Drawing;
 
 /// Export format of a layout. Profiles are exported separately.
@@ -89,13 +89,13 @@ impl LayoutDesigner {
         }
         let layout = self.layout();
         let title = self.title();
-        let say = |text: &ExportText| words::export_text(text).to_string_in(language);
+        let say = |text: &ExportText| explain::export_text(text).to_string_in(language);
         Ok(match format {
             ExportFormat::C => generate_c99(layout, &title),
             ExportFormat::StructuredText => structured_text(layout, &title),
-            ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(words::too_wide_text)?,
-            ExportFormat::Scl => scl_source(layout, &title).map_err(words::too_wide_text)?,
-            ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format_error_text(&error))? + "\n",
+            ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(explain::too_wide_text)?,
+            ExportFormat::Scl => scl_source(layout, &title).map_err(explain::too_wide_text)?,
+            ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| explain::format_error_text(&error))? + "\n",
             ExportFormat::Sheet => settings_sheet(layout, self.times(), &title, &say),
             ExportFormat::Table | ExportFormat::Frame | ExportFormat::Timing => bit_table(layout, &say),
         })
@@ -104,7 +104,7 @@ impl LayoutDesigner {
     /// Returns the layout as a picture, or `None` if the format is text.
     pub fn layout_picture(&self, format: ExportFormat, language: Language) -> Option<Drawing> {
         let (layout, title) = (self.layout(), self.title());
-        let say = |text: &ExportText| words::export_text(text).to_string_in(language);
+        let say = |text: &ExportText| explain::export_text(text).to_string_in(language);
         match format {
             ExportFormat::Frame => Some(frame_picture(layout, None, &title, &say)),
             ExportFormat::Timing => {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Encoder;
-use super::explain as words;
+use super::explain;
 use crate::app::action::{Action, TaskResult};
 use crate::app::services::Services;
 use crate::app::{AnyDevice, Severity};
@@ -23,7 +23,7 @@ pub(super) fn families(services: &mut Services) -> Arc<Families> {
         let (families, broken) = jobs::families(&store);
         Action::Done(TaskResult::Shared(Box::new(move |services, devices| {
             for error in &broken {
-                services.notify(Severity::Warning, vec![words::family_error_text(error)], None);
+                services.notify(Severity::Warning, vec![explain::family_error_text(error)], None);
             }
             update_families(&Arc::new(families), services, devices);
         })))

@@ -12,6 +12,7 @@ pub mod explain;
 mod export;
 mod families;
 mod form;
+mod job;
 mod kind;
 mod model;
 mod record;
@@ -24,7 +25,6 @@ mod texts;
 pub mod timing;
 mod trace;
 mod trial;
-mod words;
 
 pub use texts::TEXTS;
 

@@ -1,15 +1,15 @@
 //! A frame as a row of cells, one for each clock, with its movable parts, which are the boundaries between fields and
 //! single bits. A move returns the resulting frame and does not change the layout.
 
+mod labels;
 mod moving;
 #[cfg(test)]
 mod tests;
-mod words;
 
-pub use moving::move_part;
-pub use words::{
+pub use labels::{
     cell_text, clocks_text, field, field_name, handle_hint, handle_text, name, reach_text, short_label, value,
 };
+pub use moving::move_part;
 
 use crate::devices::ssi::protocol::{BitMeaning, Flags, GrayCoverage, Layout, Range, Role, Word};
 

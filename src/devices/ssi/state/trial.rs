@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Layout, Location, parse_frame};
 use crate::devices::ssi::state::TEXTS;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialFrame {
@@ -72,7 +72,7 @@ impl TrialFrame {
     pub(super) fn set_text(&mut self, layout: &Layout, text: &str) {
         match parse_frame(text, layout.clock_count()) {
             Ok(frame) => self.set_frame(frame),
-            Err(error) => self.problem = Some(words::frame_text(&error)),
+            Err(error) => self.problem = Some(explain::frame_text(&error)),
         }
     }
 

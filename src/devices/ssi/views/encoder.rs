@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::wiring;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::ssi::protocol::BitMeaning;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::{Encoder, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::translate;
 use crate::ui::check::lines_ui;
@@ -101,8 +101,8 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(colour));
                 ui.vertical(|ui| {
-                    paragraph(ui, theme.format_text(&words::finding_text(&own.finding)));
-                    paragraph(ui, theme.caption(theme.format_text(&words::finding_counts(own))));
+                    paragraph(ui, theme.format_text(&explain::finding_text(&own.finding)));
+                    paragraph(ui, theme.caption(theme.format_text(&explain::finding_counts(own))));
                 });
             });
         }

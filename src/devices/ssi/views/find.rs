@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use super::frames;
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Class, FrameDescriptor, LayoutProposal, Search, SearchUncertainty};
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::translate;
 use crate::ui::controls::{
@@ -140,7 +140,7 @@ fn search_results_ui(
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, theme.format_text(&words::uncertainty_text(search.doubt)));
+        paragraph(ui, theme.format_text(&explain::uncertainty_text(search.doubt)));
     });
     for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
         ui.add_space(theme.space.between);
@@ -182,7 +182,7 @@ fn class_ui(
                         title_ui(ui, theme, encoder, proposal);
                         ui.add(
                             egui::Label::new(
-                                theme.caption(theme.format_text(&words::layout_summary(&proposal.layout))),
+                                theme.caption(theme.format_text(&explain::layout_summary(&proposal.layout))),
                             )
                             .wrap(),
                         );
@@ -199,10 +199,10 @@ fn class_ui(
             for open in &class.open {
                 ui.horizontal_top(|ui| {
                     ui.label(RichText::new(icons::QUESTION).color(theme.palette.accent));
-                    paragraph(ui, theme.format_text(&words::open_question_text(*open)));
+                    paragraph(ui, theme.format_text(&explain::open_question_text(*open)));
                 });
             }
-            paragraph(ui, theme.caption(theme.format_text(&words::evidence_for(evidence))));
+            paragraph(ui, theme.caption(theme.format_text(&explain::evidence_for(evidence))));
         },
     );
 }

@@ -7,7 +7,7 @@ use super::form::rows_ui;
 use super::trial;
 use crate::app::{Action, AnyDevice, DeviceCommand, DeviceModel, PendingEdits, Studio, Text};
 use crate::devices::ssi::protocol::Family;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::strip::{self, Strip};
 use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, TrialInput};
 use crate::devices::ssi::views::translate;
@@ -99,7 +99,7 @@ fn layout_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSt
         for advice in &designer.design().advice {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
-                paragraph(ui, theme.caption(theme.format_text(&words::advice_text(advice))));
+                paragraph(ui, theme.caption(theme.format_text(&explain::advice_text(advice))));
             });
         }
         if designer.layout().loses_lowest_bit() {
@@ -169,7 +169,7 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
             });
         }
         Some(family) => {
-            paragraph(ui, theme.caption(theme.format_text(&words::note_text(family, &family.source))));
+            paragraph(ui, theme.caption(theme.format_text(&explain::note_text(family, &family.source))));
         }
         None => paragraph(ui, theme.caption(translate(theme, "ssi_layout.free_words"))),
     }

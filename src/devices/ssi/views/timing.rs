@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::form::{LayoutFormUiState, rows_ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::Timing;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::timing::{BurstDiagram, frequency};
 use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::devices::ssi::views::translate;
@@ -78,7 +78,7 @@ fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
         warning_ui(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));
     }
     for warning in &timing.warnings {
-        warning_ui(ui, theme, (icons::WARNING, theme.palette.warn), &words::timing_warning_text(warning));
+        warning_ui(ui, theme, (icons::WARNING, theme.palette.warn), &explain::timing_warning_text(warning));
     }
 }
 

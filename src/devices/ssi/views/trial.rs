@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{BitMeaning, Location, frame_bits};
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput, parse_whole};
 use crate::devices::ssi::views::translate;
 use crate::ui::controls::{
@@ -168,7 +168,7 @@ fn findings_ui(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            paragraph(ui, theme.format_text(&words::finding_text(finding)));
+            paragraph(ui, theme.format_text(&explain::finding_text(finding)));
         });
     }
 }

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::devices::ssi::protocol::{Family, Signal};
 use crate::devices::ssi::state::TEXTS;
-use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::explain;
 use crate::devices::ssi::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph, row};
@@ -43,9 +43,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
             ui.add_space(theme.space.between);
             ui.label(theme.heading(&family.name));
             for note in &family.notes {
-                paragraph(ui, theme.caption(theme.format_text(&words::note_text(family, note))));
+                paragraph(ui, theme.caption(theme.format_text(&explain::note_text(family, note))));
             }
-            paragraph(ui, theme.caption(theme.format_text(&words::note_text(family, &family.source))));
+            paragraph(ui, theme.caption(theme.format_text(&explain::note_text(family, &family.source))));
         }
     });
 }

@@ -4,7 +4,7 @@ use super::form_map;
 use crate::bits::{ByteOrder, hex, hex_compact};
 use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, WriteReply};
 use crate::cli::decode::FrameExplanation;
-use crate::devices::biss::commands::words;
+use crate::devices::biss::commands::register_text;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
 /// Decodes frames. `requested` is the request before the frames. It is replaced by the last request among them.
@@ -79,7 +79,7 @@ fn explain_payload(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<V
 fn register_number_text(register: u16) -> String {
     match RegisterAddress::from_global(register) {
         None => format!("0x{register:04X}, which is behind the last"),
-        Some(address) => match words::name(address) {
+        Some(address) => match register_text::name(address) {
             Some(name) => format!("{address} ({name})"),
             None => address.to_string(),
         },
@@ -88,7 +88,7 @@ fn register_number_text(register: u16) -> String {
 
 fn value_description(register: u16, value: u8) -> String {
     let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
-    match words::register_meaning(address, &[value]) {
+    match register_text::register_meaning(address, &[value]) {
         Some(meaning) => format!("register {} is 0x{value:02X}: {meaning}", register_number_text(register)),
         None => format!("register {} is 0x{value:02X}", register_number_text(register)),
     }

@@ -14,7 +14,7 @@ use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
 use super::codes::CodeTable;
-use super::flaw::{self, DescriptionErrorKind, UniqueItem};
+use super::description_error::{self, DescriptionErrorKind, UniqueItem};
 use super::german::GermanNames;
 use super::name::Name;
 use super::register::{Access, Area, Register, Role, ValueDecoding};
@@ -26,10 +26,10 @@ use crate::bits::ByteOrder;
 /// # Errors
 /// Returns the error and its position in the file if the description is invalid.
 pub(super) fn parse(text: &str) -> Result<Description, (Position, DescriptionErrorKind)> {
-    flaw::take_error();
+    description_error::take_error();
     let read: Result<File, SpannedError> = ron::from_str(text);
     let mut file = read.map_err(|SpannedError { code, span }| {
-        (span.start, flaw::take_error().unwrap_or_else(|| DescriptionErrorKind::Form(code.to_string())))
+        (span.start, description_error::take_error().unwrap_or_else(|| DescriptionErrorKind::Form(code.to_string())))
     })?;
     std::mem::take(&mut file.german).translate(file.names_mut(), text)?;
     Ok(Description {
@@ -206,7 +206,7 @@ macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                $row::deserialize(deserializer)?.validate().map_err(flaw::store_error)
+                $row::deserialize(deserializer)?.validate().map_err(description_error::store_error)
             }
         }
     )*};
@@ -378,7 +378,7 @@ impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
         while let Some(row) = list.next_element::<T>()? {
             for claim in row.unique_items() {
                 if claimed.contains(&claim) {
-                    return Err(flaw::store_error(DescriptionErrorKind::Twice(claim)));
+                    return Err(description_error::store_error(DescriptionErrorKind::Twice(claim)));
                 }
                 claimed.insert(claim);
             }

@@ -9,7 +9,7 @@ use ron::error::Position;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::flaw::{self, DescriptionErrorKind, UniqueItem};
+use super::description_error::{self, DescriptionErrorKind, UniqueItem};
 use super::name::Name;
 
 /// A map from English names to German ones.
@@ -74,10 +74,10 @@ impl<'de> Visitor<'de> for Entries {
         let mut entries = BTreeMap::new();
         while let Some((english, german)) = map.next_entry::<String, String>()? {
             if german.trim().is_empty() {
-                return Err(flaw::store_error(DescriptionErrorKind::GermanEmpty(english)));
+                return Err(description_error::store_error(DescriptionErrorKind::GermanEmpty(english)));
             }
             if entries.contains_key(&english) {
-                return Err(flaw::store_error(DescriptionErrorKind::Twice(UniqueItem::Name(english))));
+                return Err(description_error::store_error(DescriptionErrorKind::Twice(UniqueItem::Name(english))));
             }
             entries.insert(english, german);
         }

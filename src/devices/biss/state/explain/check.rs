@@ -8,7 +8,7 @@ use crate::app::explain::{cycle_count_text, literal_text};
 use crate::devices::biss::procedures::check::{BissStepResult, CheckFinding, CheckStep};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
-use crate::devices::biss::state::words::data_sheet_error_text;
+use crate::devices::biss::state::format::data_sheet_error_text;
 
 pub fn check_lines(lines: &[BissStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()

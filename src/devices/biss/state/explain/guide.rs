@@ -163,7 +163,7 @@ pub fn outcome_texts(outcome: &Outcome) -> Vec<Text> {
             vec![
                 TEXTS
                     .text("guide.filter_selected")
-                    .with_text("filter", crate::devices::biss::state::words::filter(*filter)),
+                    .with_text("filter", crate::devices::biss::state::format::filter(*filter)),
             ]
         }
         Outcome::Calibrated(report) => calibration_summary(report),

@@ -16,7 +16,7 @@ use crate::devices::biss::procedures::write::{InterruptedWrite, WrittenValues};
 use crate::devices::biss::profile::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
 use crate::devices::biss::state::TEXTS;
-use crate::devices::biss::state::words::filter;
+use crate::devices::biss::state::format::filter;
 
 pub fn change_text(change: &Change) -> Text {
     match change {

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::lead::StateSequencer;
+use super::state_sequence::StateSequencer;
 use super::{
     ActionEnd, DeadMan, LEVEL_TIME, MAX_REPORT_DELAY, Motion, MotionKind, NOT_REACHED_TIME, START, SpeedTorque,
     StopLevel, TargetState,

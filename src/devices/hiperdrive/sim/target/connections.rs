@@ -10,8 +10,8 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
 use super::cyclic::Cyclic;
+use super::device::{Originator, TargetDevice};
 use super::objects::{class_and_attribute, status_of};
-use super::plant::{Originator, TargetDevice};
 use crate::buses::ethernet_ip::protocol::{
     ConnectionOwner, EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
     ForwardOpenSuccess, GeneralStatus, IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType,

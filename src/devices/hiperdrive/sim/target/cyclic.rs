@@ -9,7 +9,7 @@
 use std::net::SocketAddrV4;
 use std::time::Duration;
 
-use super::plant::TargetDevice;
+use super::device::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{
     ConnectionOwner, ForwardOpen, Frame, IoPacket, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader,
 };

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddrV4;
 
-use super::plant::{Originator, TargetDevice};
+use super::device::{Originator, TargetDevice};
 use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, IdentityItem, Item, ItemList, Reply, Request, Service,
     SocketAddress,

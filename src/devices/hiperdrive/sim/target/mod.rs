@@ -17,17 +17,17 @@
 
 mod connections;
 mod cyclic;
+mod device;
 mod frames;
 mod network;
 mod objects;
-mod plant;
 #[cfg(test)]
 mod tests;
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use plant::{Originator, TargetDevice};
+use device::{Originator, TargetDevice};
 
 use super::config::Config;
 use super::station::Station;

@@ -1,6 +1,6 @@
 //! The CIP objects: identity, parameters (reference 7), and network objects.
 
-use super::plant::TargetDevice;
+use super::device::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{
     ConfigurationControl, EPath, GeneralStatus, Identity, LogicalKind, PacketError, Reply, Request, Revision, Segment,
     Service,

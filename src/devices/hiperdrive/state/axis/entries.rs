@@ -1,6 +1,6 @@
 //! Entries of the axis set-up: pitch and resolution, the reference position and both limits, with their results.
 
-use super::{DriveFacts, words};
+use super::{DriveFacts, labels};
 use crate::app::number::parse_in_range;
 use crate::app::texts::localize_number;
 use crate::app::{Language, Text};
@@ -79,7 +79,7 @@ impl LengthEntries {
     /// Returns an error with the reason if an entry is invalid.
     pub fn preview(&self, seen: &DriveFacts) -> Result<LimitsPreview, Text> {
         let (pitch, step) = (self.parse_pitch()?, parse_length("hd_axis.resolution", &self.resolution, 100.0)?);
-        let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
+        let scale = PositionScale::for_spindle(pitch, step).map_err(|why| labels::scale(&why))?;
         let ruler = Ruler { scale, pitch: Some(pitch) };
         let turns = seen.family.unwrap_or(Family::Short).factory_turns();
         // With very fine steps, part of the travel does not fit into 32 bits.
@@ -101,7 +101,7 @@ impl LengthEntries {
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(asked).filter(|own| (low..=high).contains(own));
         let becomes = becomes.ok_or_else(|| {
-            let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
+            let mm = |steps: i32| labels::millimetres_text(ruler, steps.into());
             TEXTS.text("hd_axis.reference_outside").with_text("low", mm(low)).with_text("high", mm(high))
         })?;
         Ok(ReferencePosition { asked, becomes })

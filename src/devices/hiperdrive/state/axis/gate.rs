@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::supply::{Power, RESTART_MARKER, RestartEvidence, is_marked, mark_value};
-use super::{Axis, AxisButton, AxisStep, DriveFacts, DriveRequest, TestTarget, differences, words};
+use super::{Axis, AxisButton, AxisStep, DriveFacts, DriveRequest, TestTarget, differences, labels};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::MotionLock;
 use crate::devices::hiperdrive::protocol::State;
@@ -51,7 +51,7 @@ impl Axis {
             AxisButton::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
             AxisButton::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
             AxisButton::Acknowledge => Ok(DriveRequest::Acknowledge),
-            _ if let Some(step) = self.invalidated_step() => Err(words::invalidated_step(step)),
+            _ if let Some(step) = self.invalidated_step() => Err(labels::invalidated_step(step)),
             AxisButton::Do => stands().and_then(|()| self.step_request(seen)),
             AxisButton::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(DriveRequest::ConfirmLimits),
@@ -128,7 +128,7 @@ impl Axis {
     fn teach_in_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper_limit(ruler)?);
-        let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
+        let mm = |steps: i32| labels::millimetres_text(ruler, steps.into());
         if low >= high {
             return Err(TEXTS.text("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
         }
@@ -155,7 +155,7 @@ impl Axis {
             return Err(TEXTS.text("hd_axis.busy"));
         }
         if let Some(step) = self.invalidated_step() {
-            return Err(words::invalidated_step(step));
+            return Err(labels::invalidated_step(step));
         }
         match seen.actual.map(|actual| actual.status.state()) {
             Some(State::Fault) => return Err(TEXTS.text("hd_refused.fault")),
@@ -174,7 +174,7 @@ impl Axis {
     /// Returns an error with the reason if the location cannot become a limit.
     pub fn check_can_adopt_position(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.invalidated_step() {
-            return Err(words::invalidated_step(step));
+            return Err(labels::invalidated_step(step));
         }
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
@@ -218,7 +218,7 @@ impl Axis {
             return Err(TEXTS.text("hd_axis.moving"));
         }
         if let Some(step) = self.invalidated_step() {
-            return Err(words::invalidated_step(step));
+            return Err(labels::invalidated_step(step));
         }
         match self.step {
             AxisStep::Request => {

@@ -1,6 +1,6 @@
 //! Report of a finished run for saving and printing: plain text that fits a page, lengths in millimetres.
 
-use super::{Axis, AxisStep, DriveFacts, SetupEnd, StepStatus, TestTarget, words};
+use super::{Axis, AxisStep, DriveFacts, SetupEnd, StepStatus, TestTarget, labels};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -40,18 +40,21 @@ pub fn write_report(axis: &Axis, now: &DriveFacts, device: &Device, language: La
 fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
     let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
-    page.write_text("", &line.with_text("step", words::title(step)).with_text("reached", words::step_status(reached)));
+    page.write_text(
+        "",
+        &line.with_text("step", labels::title(step)).with_text("reached", labels::step_status(reached)),
+    );
     if matches!(reached, StepStatus::Done | StepStatus::Failed)
-        && let Some(found) = words::finding_text(axis, step, seen)
+        && let Some(found) = labels::finding_text(axis, step, seen)
     {
         page.write_text(INDENT, &found);
     }
     if step == AxisStep::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome_of(place).is_some()) {
-        page.write_text(INDENT, &words::speed_torque_text("hd_axis.report_effort"));
+        page.write_text(INDENT, &labels::speed_torque_text("hd_axis.report_effort"));
         for place in TestTarget::ALL {
             let Some(outcome) = axis.outcome_of(place) else { continue };
-            let line = TEXTS.text("hd_axis.report_place").with_text("place", words::target_text(place));
-            page.write_text(INDENT, &line.with_text("outcome", words::outcome_text(&outcome, seen)));
+            let line = TEXTS.text("hd_axis.report_place").with_text("place", labels::target_text(place));
+            page.write_text(INDENT, &line.with_text("outcome", labels::outcome_text(&outcome, seen)));
         }
     }
 }
@@ -59,11 +62,11 @@ fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) 
 /// Returns what was written, whether it is saved, and which values now differ from the saved ones.
 pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
-    match (axis.changes().is_empty(), words::write_back_text(axis, now)) {
+    match (axis.changes().is_empty(), labels::write_back_text(axis, now)) {
         (true, None) => lines.push(TEXTS.text("hd_axis.nothing_written")),
         (true, Some(returned)) => lines.push(returned),
         (false, returned) => {
-            lines.push(words::changes_text(axis));
+            lines.push(labels::changes_text(axis));
             lines.extend(returned);
             lines.push(TEXTS.text(if axis.is_saved() { "hd_axis.all_saved" } else { "hd_axis.not_saved" }));
         }
@@ -71,9 +74,9 @@ pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     if axis.is_partly_written() {
         lines.push(TEXTS.text("hd_axis.partly"));
     }
-    lines.extend(words::differences(now));
-    lines.extend(words::unrestored_position_text(axis, now));
-    lines.extend(words::unexplained_change_text(axis, axis.displayed_facts(now)));
+    lines.extend(labels::differences(now));
+    lines.extend(labels::unrestored_position_text(axis, now));
+    lines.extend(labels::unexplained_change_text(axis, axis.displayed_facts(now)));
     lines
 }
 

@@ -140,7 +140,7 @@ fn rewritten_parameters_are_reported_once() {
     let mut axis = run();
     axis.changes =
         vec![AxisChange::Parameter(158, 9), AxisChange::Parameter(160, 10_050), AxisChange::Parameter(160, 250)];
-    let said = words::changes_text(&axis).to_string_in(Language::English);
+    let said = labels::changes_text(&axis).to_string_in(Language::English);
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
@@ -265,7 +265,7 @@ fn values_lost_in_a_power_cycle_are_reported() {
         axis.on_survey(&seen, false);
         assert!(!axis.has_survived() && axis.step_status(AxisStep::PowerCycle) == StepStatus::Failed);
         assert!(axis.check_can_continue(&seen).is_err());
-        words::finding_text(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
+        labels::finding_text(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
     };
     assert_eq!(survive(|seen| at(seen, 2002 + 7)), "hd_axis.power_moved");
     assert_eq!(survive(|seen| seen.limits = Some((-1000, 1000))), "hd_axis.power_lost");
@@ -425,8 +425,8 @@ fn pitch_and_step_are_previewed_before_writing() {
 fn every_step_has_instructions_and_a_result() {
     let (axis, seen) = at_power_cycle_step();
     for step in AxisStep::ALL {
-        let texts = [words::title(step), words::step_instructions(step, &seen), words::button_label(step)];
-        let found = words::finding_text(&axis, step, &seen).unwrap();
+        let texts = [labels::title(step), labels::step_instructions(step, &seen), labels::button_label(step)];
+        let found = labels::finding_text(&axis, step, &seen).unwrap();
         for text in texts.iter().chain([&found]) {
             for language in [Language::English, Language::German] {
                 let said = text.to_string_in(language);
@@ -434,7 +434,7 @@ fn every_step_has_instructions_and_a_result() {
             }
         }
     }
-    let found = |step| words::finding_text(&axis, step, &seen).unwrap().to_string_in(Language::English);
+    let found = |step| labels::finding_text(&axis, step, &seen).unwrap().to_string_in(Language::English);
     assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256 (400 steps per turn).");
     assert_eq!(found(AxisStep::Confirm), "The drive's limits are -2044.00 mm to 2044.00 mm.");
     assert_eq!(found(AxisStep::Upper), "The drive's limits are -10.00 mm to 20.00 mm.");

@@ -6,7 +6,7 @@ use super::AxisPanel;
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::axis::{
-    AxisAction as Run, AxisButton, AxisStep, LengthEntries, TestTarget, words,
+    AxisAction as Run, AxisButton, AxisStep, LengthEntries, TestTarget, labels,
 };
 use crate::devices::hiperdrive::state::{MotorCommand, TEXTS};
 use crate::devices::hiperdrive::views::jog::jog_button_ui;
@@ -64,7 +64,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
         }
     }
     if step != AxisStep::Lower {
-        let word = theme.format_text(&words::button_label(step));
+        let word = theme.format_text(&labels::button_label(step));
         shown.button_ui(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == AxisStep::Request {
@@ -86,8 +86,8 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
             for own in TestTarget::ALL {
                 let Some(outcome) = shown.axis.outcome_of(own) else { continue };
                 let ink = if outcome.is_good() { theme.palette.good } else { theme.palette.bad };
-                let place = theme.format_text(&words::target_text(own));
-                let words = theme.format_text(&words::outcome_text(&outcome, shown.seen));
+                let place = theme.format_text(&labels::target_text(own));
+                let words = theme.format_text(&labels::outcome_text(&outcome, shown.seen));
                 row(ui, theme, &place, RichText::new(words).color(ink));
             }
         }
@@ -132,7 +132,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
 
 fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
-    let caption = theme.format_text(&words::speed_torque_text("hd_axis.jog_hold"));
+    let caption = theme.format_text(&labels::speed_torque_text("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
@@ -164,7 +164,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntr
     };
     let ruler = Some(preview.ruler);
     let range = |low: Text, high: Text| TEXTS.text("hd_axis.range").with_text("low", low).with_text("high", high);
-    let mm = |steps: i32| words::millimetres_text(ruler, steps.into());
+    let mm = |steps: i32| labels::millimetres_text(ruler, steps.into());
     let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
     row(ui, theme, &translate(theme, "hd_axis.preview_scale"), theme.monospace(scale));
     row(
@@ -190,7 +190,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntr
 }
 
 fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
-    let mm = |steps: i32| words::millimetres_text(shown.seen.ruler(), steps.into());
+    let mm = |steps: i32| labels::millimetres_text(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
         theme.format_text(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
     };
@@ -208,8 +208,9 @@ fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Len
     let ruler = shown.seen.ruler();
     match entries.parse_reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
-            let text =
-                TEXTS.text("hd_axis.becomes").with_text("position", words::millimetres_text(ruler, own.becomes.into()));
+            let text = TEXTS
+                .text("hd_axis.becomes")
+                .with_text("position", labels::millimetres_text(ruler, own.becomes.into()));
             paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         }
         Ok(_) => {}
@@ -218,9 +219,9 @@ fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Len
 }
 
 fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
-    let mm = |steps: i32| theme.format_text(&words::millimetres_text(shown.seen.ruler(), steps.into()));
+    let mm = |steps: i32| theme.format_text(&labels::millimetres_text(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {
-        let word = theme.format_text(&words::target_text(own));
+        let word = theme.format_text(&labels::target_text(own));
         entry(ui, theme, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
             let go = format!("{} {}", translate(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
@@ -246,7 +247,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
 /// Draws the control of the supply. A virtual device is switched here, and a real one by hand.
 fn supply_switch_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = theme.format_text(&words::button_label(AxisStep::PowerCycle));
+        let word = theme.format_text(&labels::button_label(AxisStep::PowerCycle));
         shown.button_ui(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
         let word = translate(theme, "hd_axis.give");
         shown.button_ui(ui, theme, AxisButton::Give, (icons::PLUGS, &word), actions);

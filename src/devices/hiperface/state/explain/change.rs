@@ -1,6 +1,6 @@
 //! Texts for changes: review titles and job names.
 
-use super::words;
+use super::format;
 use crate::app::Text;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::state::{ByteEditError, TEXTS};
@@ -13,10 +13,10 @@ pub fn change_text(change: &Change) -> Text {
             TEXTS.text(if bytes == 1 { "change.store_one" } else { "change.store" }).with("bytes", bytes)
         }
         Change::CreateField { number, status } => {
-            TEXTS.text("change.create").with("number", number).with_text("status", words::field_status(*status))
+            TEXTS.text("change.create").with("number", number).with_text("status", format::field_status(*status))
         }
         Change::Redefine { number, status } => {
-            TEXTS.text("change.redefine").with("number", number).with_text("status", words::field_status(*status))
+            TEXTS.text("change.redefine").with("number", number).with_text("status", format::field_status(*status))
         }
         Change::LockField { number, lock: true } => TEXTS.text("change.lock").with("number", number),
         Change::LockField { number, lock: false } => TEXTS.text("change.unlock").with("number", number),
@@ -32,7 +32,7 @@ pub fn change_text(change: &Change) -> Text {
         Change::ShiftPosition { steps } => TEXTS.text("change.shift").with("steps", format!("{steps:+}")),
         Change::SetAddress(address) => TEXTS.text("change.address").with("address", address),
         Change::Configure(settings) => {
-            TEXTS.text("change.settings").with_text("settings", words::line_settings(*settings))
+            TEXTS.text("change.settings").with_text("settings", format::line_settings(*settings))
         }
         Change::ClearCounter => TEXTS.text("change.clear_counter"),
         Change::IncrementCounter => TEXTS.text("change.increment_counter"),

@@ -1,7 +1,7 @@
 //! Texts for the device check.
 
 use super::encoder_error_text;
-use super::words::{field_status, position_text, raw_position_text, status_with_number};
+use super::format::{field_status, position_text, raw_position_text, status_with_number};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::literal_text;

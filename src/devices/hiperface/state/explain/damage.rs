@@ -1,6 +1,6 @@
 //! Messages about damaged replies.
 
-use super::words::status_with_number;
+use super::format::status_with_number;
 use crate::app::Text;
 use crate::devices::hiperface::procedures::ReplyDamage;
 use crate::devices::hiperface::protocol::{FrameError, ReplyError};

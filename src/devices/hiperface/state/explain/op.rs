@@ -1,6 +1,6 @@
 //! Descriptions of plan operations for the review.
 
-use super::words::{field_access, field_code_required, field_status, line_settings};
+use super::format::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::app::review::OperationTexts;

@@ -4,7 +4,7 @@ mod session;
 
 use super::{
     Chart, DragTarget, OutputState, PositionRange, SnapSettings, VisibleRange, apply_drag, cam_between, grid_ticks,
-    move_cam, next_grid_line, on_ranges, round_up_1_2_5, snap_distance, words,
+    labels, move_cam, next_grid_line, on_ranges, round_up_1_2_5, snap_distance,
 };
 use crate::app::Language;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, Parameters, Scale};
@@ -67,7 +67,7 @@ fn simulated_outputs_are_compared_with_the_encoders() {
     assert!(!lamps[3].is_mismatch() && lamps[5].is_mismatch() && lamps[5].effective_state() == Some(true));
     assert_eq!(chart.output_states(None, None)[0], OutputState { simulated: None, own: None });
     assert_eq!(chart.output_states(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
-    let says = |lamp| words::output_text(lamp).to_string_in(Language::English);
+    let says = |lamp| labels::output_text(lamp).to_string_in(Language::English);
     assert_eq!(says(lamps[5]), "Encoder: on, simulation: off");
     assert_eq!(says(chart.output_states(None, None)[0]), "unknown");
 }
@@ -215,16 +215,16 @@ fn a_lane_describes_its_cam_and_its_problems() {
     let lane = chart.lane_of(cam(3)).unwrap();
     let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     let says = |text: crate::app::Text| text.to_string_in(Language::English);
-    assert_eq!(says(words::cam(lane)), "Cam 3 · glue");
-    assert_eq!(says(words::edge_name(lane, Edge::Stop)), "Cam 3: stop");
+    assert_eq!(says(labels::cam(lane)), "Cam 3 · glue");
+    assert_eq!(says(labels::edge_name(lane, Edge::Stop)), "Cam 3: stop");
     let expected = "On from 900 (324.0°) to 20 (7.2°) across the end of the range, 121 steps";
-    assert_eq!(says(words::lane_text(lane, &degrees, 1000)), expected);
-    let troubles: Vec<String> = words::lane_problems(&chart, lane).into_iter().map(says).collect();
+    assert_eq!(says(labels::lane_text(lane, &degrees, 1000)), expected);
+    let troubles: Vec<String> = labels::lane_problems(&chart, lane).into_iter().map(says).collect();
     assert_eq!(troubles, ["This pulse overlaps another pulse on track glue."]);
     own.apply_edit(&Edit::Steps(850)).unwrap();
     let chart = Chart::from_edits(&own, program()).unwrap();
     let troubles: Vec<String> =
-        words::lane_problems(&chart, chart.lane_of(cam(3)).unwrap()).into_iter().map(says).collect();
+        labels::lane_problems(&chart, chart.lane_of(cam(3)).unwrap()).into_iter().map(says).collect();
     assert_eq!(troubles[0], "The position is outside the measuring range, which ends at 849.");
     assert!(chart.lane_of(cam(3)).unwrap().edited && !chart.lane_of(cam(5)).unwrap().edited);
 }

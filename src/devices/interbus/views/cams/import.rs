@@ -4,7 +4,7 @@ use egui::{Event, RichText, Ui};
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::ProgramNumber;
-use crate::devices::interbus::state::cams::{table_words, words};
+use crate::devices::interbus::state::cams::{labels, table_text};
 use crate::devices::interbus::state::{Encoder, Import, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, labelled_button, paragraph, primary_button};
@@ -36,16 +36,16 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
             .with("rows", table.rows.len())
             .with("programs", programs);
         paragraph(ui, theme.format_text(&text));
-        paragraph(ui, theme.caption(theme.format_text(&table_words::layout_text(table))));
+        paragraph(ui, theme.caption(theme.format_text(&table_text::layout_text(table))));
         egui::ScrollArea::vertical().id_salt("table").max_height(MAX_LIST_HEIGHT).show(ui, |ui| {
             for problem in &table.problems {
-                line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.format_text(&table_words::problem_text(problem)));
+                line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.format_text(&table_text::problem_text(problem)));
             }
             for note in &table.notes {
-                line_ui(ui, icons::INFO, theme.palette.accent, theme.format_text(&table_words::note_text(note)));
+                line_ui(ui, icons::INFO, theme.palette.accent, theme.format_text(&table_text::note_text(note)));
             }
             for row in table.rounded_rows() {
-                let words = theme.format_text(&table_words::rounding_text(row, &encoder.scale));
+                let words = theme.format_text(&table_text::rounding_text(row, &encoder.scale));
                 line_ui(ui, icons::RULER, theme.palette.muted, words);
             }
             if table.problems.is_empty() && table.rounded_rows().next().is_none() {
@@ -55,7 +55,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
         for filled in table.to_programs() {
             if encoder.staged.program(filled.program).is_none() && encoder.profile().is_none() {
                 let unread = crate::devices::interbus::state::EditError::NotRead(filled.program);
-                line_ui(ui, icons::WARNING, theme.palette.warn, theme.format_text(&words::edit_error_text(&unread)));
+                line_ui(ui, icons::WARNING, theme.palette.warn, theme.format_text(&labels::edit_error_text(&unread)));
             }
         }
         // A table with problems is never added, because the cam of an omitted line would be switched off.

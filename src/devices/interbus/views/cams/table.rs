@@ -10,7 +10,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Text};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
-use crate::devices::interbus::state::cams::{Chart, Lane, words};
+use crate::devices::interbus::state::cams::{Chart, Lane, labels};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, forms};
 use crate::ui::controls::{card, committed_entry, name, paragraph, problem_ui};
 use crate::ui::{Theme, icons};
@@ -94,7 +94,7 @@ fn row_ui(
     let ink = if lane.edited { theme.palette.staged } else { theme.palette.text };
     let mut on = lane.on;
     let response = cell_ui(ui, CAM_WIDTH, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));
-    if name(response, true, &theme.format_text(&words::cam_name(cam))).clicked() {
+    if name(response, true, &theme.format_text(&labels::cam_name(cam))).clicked() {
         put(Edit::Switch { program, cam, on });
     }
     let word = TEXTS.text("ib_cams.name_of").with("cam", cam.get());
@@ -111,7 +111,7 @@ fn row_ui(
         let shown = chart
             .edge_position(cam, edge)
             .map_or_else(String::new, |own| forms::format_position(own, &encoder.scale, chart.range));
-        let word = theme.format_text(&words::edge_name(lane, edge));
+        let word = theme.format_text(&labels::edge_name(lane, edge));
         cell_ui(ui, NUMBER_WIDTH, |ui| {
             committed_entry(ui, draft, &shown, NUMBER_WIDTH - ENTRY_MARGIN, &word, |text| {
                 let to = forms::position(text, &encoder.scale, chart.range)?;
@@ -124,11 +124,11 @@ fn row_ui(
             })
         });
     }
-    for trouble in words::lane_problems(chart, lane) {
+    for trouble in labels::lane_problems(chart, lane) {
         ui.label(RichText::new(icons::WARNING).color(theme.palette.warn)).on_hover_text(theme.format_text(&trouble));
     }
     if wide && let Some(edges) = lane.edges {
-        let text = words::range_text(edges, &encoder.scale, chart.range);
+        let text = labels::range_text(edges, &encoder.scale, chart.range);
         let ink = if lane.on { theme.label(theme.format_text(&text)) } else { theme.caption(theme.format_text(&text)) };
         ui.add(egui::Label::new(ink).truncate());
     }

@@ -6,7 +6,7 @@ use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect
 use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
-use crate::devices::interbus::state::cams::{self, Chart, DragTarget, SnapSettings, VisibleRange, words};
+use crate::devices::interbus::state::cams::{self, Chart, DragTarget, SnapSettings, VisibleRange, labels};
 use crate::devices::interbus::views::translate;
 use crate::ui::Theme;
 use crate::ui::widgets::series_colour;
@@ -173,7 +173,7 @@ impl CamChart<'_> {
         response.widget_info(|| {
             let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), theme.format_text(label));
             info.role = Role::Slider;
-            info.current_text_value = Some(theme.format_text(&words::position(at, self.scale, self.chart.range)));
+            info.current_text_value = Some(theme.format_text(&labels::position(at, self.scale, self.chart.range)));
             info
         });
         if !self.movable {
@@ -214,9 +214,9 @@ impl CamChart<'_> {
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-            ui.label(theme.format_text(&words::cam(lane)));
-            ui.label(theme.format_text(&words::lane_text(lane, self.scale, self.chart.range)));
-            for trouble in words::lane_problems(self.chart, lane) {
+            ui.label(theme.format_text(&labels::cam(lane)));
+            ui.label(theme.format_text(&labels::lane_text(lane, self.scale, self.chart.range)));
+            for trouble in labels::lane_problems(self.chart, lane) {
                 ui.label(egui::RichText::new(theme.format_text(&trouble)).color(theme.palette.bad));
             }
             if self.movable {
@@ -235,8 +235,8 @@ impl CamChart<'_> {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;
         let words = match drag.hold {
-            DragTarget::Edge(_, edge) => words::position(cams::edge_value(to, edge).get(), self.scale, range),
-            DragTarget::Whole(_) | DragTarget::New(_) => words::range_text(to, self.scale, range),
+            DragTarget::Edge(_, edge) => labels::position(cams::edge_value(to, edge).get(), self.scale, range),
+            DragTarget::Whole(_) | DragTarget::New(_) => labels::range_text(to, self.scale, range),
         };
         let font = FontId::proportional(theme.sizes.caption);
         let galley = painter.layout_no_wrap(theme.format_text(&words), font, theme.palette.on_accent.into());

@@ -15,9 +15,9 @@
 //!   position of the encoder.
 
 mod grips;
-mod head;
+mod lane_header;
+mod layout;
 mod paint;
-mod place;
 
 use egui::accesskit::Role;
 use egui::{Id, Sense, Ui, WidgetInfo};
@@ -27,7 +27,7 @@ use crate::devices::interbus::profile::Unit;
 use crate::devices::interbus::state::cams::{Chart, SnapSettings, VisibleRange};
 use crate::ui::Theme;
 
-use place::PlotArea;
+use layout::PlotArea;
 
 struct LanePainter<'a> {
     ui: &'a Ui,

@@ -20,7 +20,7 @@ use super::cam_chart::{self, CamChart, CamEvent, Drag, display_colour};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Program, Value};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::cams::{Chart, DragTarget, Lane, SnapSettings, VisibleRange, grid_ticks, words};
+use crate::devices::interbus::state::cams::{Chart, DragTarget, Lane, SnapSettings, VisibleRange, grid_ticks, labels};
 use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
@@ -162,7 +162,7 @@ impl Ring<'_> {
         let rect = Rect::from_center_size(place, Vec2::splat(GRIP_WIDTH.min(self.dial.circle_distance())));
         let sense = if self.model.movable { Sense::click_and_drag() } else { Sense::click() };
         let response = self.ui.interact(rect, self.base.with("edge").with(hold), sense);
-        let label = TEXTS.text("cams.on_ring").with_text("edge", words::edge_name(lane, edge));
+        let label = TEXTS.text("cams.on_ring").with_text("edge", labels::edge_name(lane, edge));
         let mut event = self.model.announce_edge(self.ui, self.theme, &response, hold, &label);
         let apart = self.snap_settings().apart.unwrap_or(1.0);
         event = event.or(self.model.handle_keys(self.ui, &response, hold, apart));
@@ -240,7 +240,7 @@ impl Ring<'_> {
                 [at(dial.radius * INNER_RADIUS), at(dial.radius + 3.0)],
                 Stroke::new(1.0, theme.palette.line),
             );
-            let words = theme.format_text(&words::tick_label(tick.value, tick.decimals, scale.unit()));
+            let words = theme.format_text(&labels::tick_label(tick.value, tick.decimals, scale.unit()));
             let galley =
                 painter.layout_no_wrap(words, FontId::monospace(theme.sizes.caption), theme.palette.muted.into());
             // The label is outside the circle.

@@ -4,9 +4,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::code_ends::{possible_codes, unusual_step_cost};
 use super::frame_set::{FrameSet, binary_entropy};
 use super::motion::Motion;
+use super::step_counts::{possible_codes, unusual_step_cost};
 use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::Parity;
 

@@ -1,8 +1,8 @@
 //! Assessment of the classes: the certainty of the result, the fit of each class, and the motion that would distinguish
 //! them.
 
+use super::candidates::{LayoutCandidate, has_only_even_steps};
 use super::frame_set::FrameSet;
-use super::members::{LayoutCandidate, has_only_even_steps};
 use super::probe::TrialReading;
 use super::reading::FrameNumbers;
 use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};

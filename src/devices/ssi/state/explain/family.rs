@@ -1,6 +1,6 @@
 //! Texts from family files, and messages about family files that cannot be used.
 
-use super::refused::settings_error_reason;
+use super::rejection::settings_error_reason;
 use crate::app::Text;
 use crate::app::explain::{self as general, literal_text, syntax_error_text};
 use crate::devices::ssi::protocol::{Family, FamilyError, FamilyProblem};

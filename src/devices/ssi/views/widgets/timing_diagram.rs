@@ -9,7 +9,7 @@
 //!   happens, the axis is broken and the omitted time is stated.
 
 mod axis;
-mod place;
+mod label_layout;
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use crate::devices::ssi::state::timing::{BurstDiagram, skipped_operations};
 use crate::ui::Theme;
 
 use axis::Axis;
-use place::{Bar, LabelExtent, LabelPlacement};
+use label_layout::{Bar, LabelExtent, LabelPlacement};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimingDiagram<'a> {
@@ -77,13 +77,13 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     flags.sort_by(|a, b| a.0.total_cmp(&b.0));
     let sizes: Vec<LabelExtent> =
         flags.iter().map(|(x, galley, _)| LabelExtent { x: *x, width: galley.size().x }).collect();
-    let flags_put = place::place_labels(&sizes, (0.0, width));
+    let flags_put = label_layout::place_labels(&sizes, (0.0, width));
 
     let bars = diagram.spans().iter().map(|span| caption(&diagram.span_text(span), text));
     let bars: Vec<Arc<Galley>> = bars.collect();
     let ends = diagram.spans().iter().map(|span| (axis.x(span.from), axis.x(span.to)));
     let sizes = ends.zip(&bars).map(|(ends, galley)| Bar { ends, width: galley.size().x });
-    let bars_put = place::place_bars(&sizes.collect::<Vec<_>>(), (0.0, width));
+    let bars_put = label_layout::place_bars(&sizes.collect::<Vec<_>>(), (0.0, width));
 
     let count = |put: &[LabelPlacement]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
     let heights = [

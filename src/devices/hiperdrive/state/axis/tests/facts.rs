@@ -145,7 +145,7 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
 #[test]
 fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let found = |axis: &Axis, seen: &DriveFacts| {
-        words::finding_text(axis, AxisStep::PowerCycle, seen).unwrap().to_string_in(Language::English)
+        labels::finding_text(axis, AxisStep::PowerCycle, seen).unwrap().to_string_in(Language::English)
     };
     let again = |axis: &mut Axis, seen: &DriveFacts| {
         axis.handle_connection_loss();
@@ -196,9 +196,9 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
     for (word, why) in [(0x2AB8, "hd_refused.fault"), (0x2A70, "hd_refused.lock")] {
         seen.actual = seen.actual.map(|actual| ActualValues { status: StatusWord::new(word), ..actual });
         seen.error = None;
-        assert_eq!(words::fault_text(&seen).unwrap().id(), "hd_axis.fault_unread");
+        assert_eq!(labels::fault_text(&seen).unwrap().id(), "hd_axis.fault_unread");
         seen.error = Some(ErrorCode::BLOCK_REVERSE);
-        assert!(words::fault_text(&seen).unwrap().to_string_in(Language::English).starts_with("Fault 8300: "));
+        assert!(labels::fault_text(&seen).unwrap().to_string_in(Language::English).starts_with("Fault 8300: "));
         assert_eq!(axis.may_move(&seen).unwrap_err().id(), why);
         assert_eq!(axis.request(AxisButton::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
         assert_eq!(axis.request(AxisButton::Acknowledge, &seen), Ok(DriveRequest::Acknowledge));
@@ -213,7 +213,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
     assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
     seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
     seen.unsaved = BTreeMap::from([(154, 256), (156, 1), (158, -1000), (198, 0)]);
-    let told = words::differences(&seen).unwrap().to_string_in(Language::English);
+    let told = labels::differences(&seen).unwrap().to_string_in(Language::English);
     assert!(
         told.contains("parameter 154 is 400 instead of 256") && told.contains("parameter 156 is 256 instead of 1"),
         "{told}"
@@ -226,12 +226,12 @@ fn differences_from_saved_values_are_shown_and_restored() {
     assert_eq!(axis.request(AxisButton::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
     axis.begin_request(DriveRequest::Restore(back), &seen);
     axis.mark_written();
-    let returned = |seen: &DriveFacts| words::write_back_text(&axis, seen).unwrap().to_string_in(Language::English);
+    let returned = |seen: &DriveFacts| labels::write_back_text(&axis, seen).unwrap().to_string_in(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
     assert!(returned(&seen).contains("restored to their previous values: 2 of 2"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
-    let told = words::unrestored_position_text(&axis, &seen).unwrap().to_string_in(Language::English);
+    let told = labels::unrestored_position_text(&axis, &seen).unwrap().to_string_in(Language::English);
     assert!(
         told.starts_with(
             "The previous position (parameter 198) is not restored, because it would set a wrong zero point"
@@ -248,7 +248,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
     let text = write_report(&axis, &seen, &device, Language::German).unwrap();
     assert!(text.contains("Die vorherige Position (Parameter 198) wird nicht wiederhergestellt"), "{text}");
     seen.values.insert(198, 0);
-    assert_eq!(words::unrestored_position_text(&axis, &seen), None);
+    assert_eq!(labels::unrestored_position_text(&axis, &seen), None);
     assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
@@ -256,7 +256,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
 #[test]
 fn millimetres_need_a_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
-    let position = |seen: &DriveFacts| words::millimetres_text(seen.ruler(), 400).to_string_in(Language::English);
+    let position = |seen: &DriveFacts| labels::millimetres_text(seen.ruler(), 400).to_string_in(Language::English);
     press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Scale);
     // A drive with 400 steps per turn of an unknown spindle: no pitch is proposed that would fit it by accident.

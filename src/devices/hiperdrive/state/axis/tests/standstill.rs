@@ -32,7 +32,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
         let (mut axis, mut seen) = at_standstill();
         read(&mut seen, 10_000 + ms, position, word);
         axis.update(&seen);
-        (axis.invalidated_step(), words::unexplained_change_text(&axis, &seen).is_some())
+        (axis.invalidated_step(), labels::unexplained_change_text(&axis, &seen).is_some())
     };
     let jump = (Some(AxisStep::Reference), false);
     for (label, ms, steps, expected) in [
@@ -54,7 +54,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     let (mut axis, mut seen) = at_standstill();
     read(&mut seen, 10_020, 128, STANDS);
     axis.update(&seen);
-    let why = words::invalidated_step(axis.invalidated_step().unwrap()).to_string_in(Language::English);
+    let why = labels::invalidated_step(axis.invalidated_step().unwrap()).to_string_in(Language::English);
     assert!(why.contains("changed while the axis was at rest"), "{why}");
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
 }
@@ -73,7 +73,7 @@ fn a_known_position_change_is_not_a_jump() {
         change(&mut seen);
         read(&mut seen, 10_020, -900, STANDS);
         axis.update(&seen);
-        assert_eq!((axis.invalidated_step(), words::unexplained_change_text(&axis, &seen)), (None, None), "{label}");
+        assert_eq!((axis.invalidated_step(), labels::unexplained_change_text(&axis, &seen)), (None, None), "{label}");
     }
     // Set by this program: the run is at the step after it, and counts by the new numbers.
     let (mut axis, mut seen) = at_standstill();
@@ -102,14 +102,14 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
     };
     let (axis, seen) = again(2000 - 6);
     assert_eq!(
-        (axis.invalidated_step(), words::unexplained_change_text(&axis, &seen)),
+        (axis.invalidated_step(), labels::unexplained_change_text(&axis, &seen)),
         (None, None),
         "5° are 5.6 steps"
     );
     let (mut axis, mut seen) = again(2000 - 348);
     assert_eq!(axis.invalidated_step(), None, "it may have been moved");
     let told = |axis: &Axis, seen: &DriveFacts| {
-        words::unexplained_change_text(axis, seen).map(|text| text.to_string_in(Language::English))
+        labels::unexplained_change_text(axis, seen).map(|text| text.to_string_in(Language::English))
     };
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
     // No reference was set or confirmed yet: nothing counts by it.

@@ -7,7 +7,7 @@ use super::LanePainter;
 use super::paint::GripState;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::Cam;
-use crate::devices::interbus::state::cams::{DragTarget, Lane, PositionRange, words};
+use crate::devices::interbus::state::cams::{DragTarget, Lane, PositionRange, labels};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl LanePainter<'_> {
@@ -85,11 +85,11 @@ impl LanePainter<'_> {
 
     fn describe_lane(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
         response.widget_info(|| {
-            let label = self.theme.format_text(&words::cam(lane));
+            let label = self.theme.format_text(&labels::cam(lane));
             let mut info = WidgetInfo::labeled(Role::Slider, self.ui.is_enabled(), label);
             info.value = lane.edges.map(|cam| f64::from(cam.start.get()));
             info.current_text_value =
-                Some(self.theme.format_text(&words::lane_text(lane, self.model.scale, self.model.chart.range)));
+                Some(self.theme.format_text(&labels::lane_text(lane, self.model.scale, self.model.chart.range)));
             info
         });
         response.gained_focus().then_some(CamEvent::Selected(lane.cam))
@@ -101,7 +101,7 @@ impl LanePainter<'_> {
         let shown = self.place.is_visible(x);
         let id = self.base.with("edge").with(hold);
         let response = self.ui.interact(rect, id, self.sense(shown, true));
-        let label = words::edge_name(lane, edge);
+        let label = labels::edge_name(lane, edge);
         let mut event = self.model.announce_edge(self.ui, self.theme, &response, hold, &label);
         event = event.or(self.model.handle_keys(self.ui, &response, hold, self.grid_distance()));
         if response.clicked() || response.drag_started() {

@@ -5,7 +5,7 @@ use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect, Shape, Stroke, 
 use super::LanePainter;
 use crate::devices::interbus::profile::{Edge, Scale, Unit};
 use crate::devices::interbus::protocol::CamNumber;
-use crate::devices::interbus::state::cams::{DragTarget, Lane, Tick, grid_ticks, words};
+use crate::devices::interbus::state::cams::{DragTarget, Lane, Tick, grid_ticks, labels};
 use crate::devices::interbus::views::widgets::cam_chart::{Drag, display_colour};
 use crate::ui::widgets::{draw_hatching, focus_ring};
 
@@ -72,7 +72,7 @@ impl LanePainter<'_> {
         let is_above = ruler.bottom() <= self.place.plot.top() + 1.0;
         let (edge, align) = if is_above { (ruler.bottom(), -1.0) } else { (ruler.top(), 1.0) };
         painter.vline(x, egui::Rangef::point(edge).expand(2.0), Stroke::new(1.0, theme.palette.muted));
-        let words = theme.format_text(&words::tick_label(tick.value, tick.decimals, unit));
+        let words = theme.format_text(&labels::tick_label(tick.value, tick.decimals, unit));
         let font = FontId::monospace(theme.sizes.caption);
         let middle = pos2(x, ruler.center().y + align);
         painter.text(middle, Align2::CENTER_CENTER, words, font, theme.palette.muted.into());

@@ -1,13 +1,13 @@
 //! Candidate layouts for encoders that belong to no known family. They have common widths, and separate bits for clocks
 //! that are always 1, were active at some time, or are unexplained.
 
-use super::code_ends::unusual_step_cost;
-use super::frame_set::FrameSet;
-use super::members::{
+use super::candidates::{
     EXCHANGE_WEIGHT, NO_FAMILY_WEIGHT, PADDED, TestCandidateFn, encoder_parity, find_ambiguous_parity, sum,
 };
+use super::frame_set::FrameSet;
 use super::plausible::{common_bit_splits, width_penalty};
 use super::reading::FrameNumbers;
+use super::step_counts::unusual_step_cost;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity, Repeat};
 use crate::devices::ssi::protocol::layout::Layout;

@@ -1,8 +1,8 @@
 //! Candidate layouts for a reading of the frames: possible settings of families, and other layouts of common widths.
 
-use super::any_other::try_custom_frames;
+use super::custom_frames::try_custom_frames;
+use super::family_candidates::try_families;
 use super::frame_set::FrameSet;
-use super::of_family::try_families;
 use super::probe::{LayoutProbe, TrialReading};
 use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;

@@ -6,7 +6,7 @@ use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Vec2, 
 
 use super::LanePainter;
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::cams::{Lane, OutputState, words};
+use crate::devices::interbus::state::cams::{Lane, OutputState, labels};
 use crate::devices::interbus::views::translate;
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, display_colour};
 use crate::ui::widgets::focus_ring;
@@ -35,7 +35,7 @@ impl LanePainter<'_> {
         let square = Rect::from_center_size(pos2(head.left() + size / 2.0 + 1.0, head.center().y), Vec2::splat(size));
         let sense = if can { Sense::click() } else { Sense::hover() };
         let response = ui.interact(square, self.base.with("switch").with(lane.cam), sense);
-        let label = TEXTS.text("cams.works_of").with_text("cam", words::cam_name(lane.cam));
+        let label = TEXTS.text("cams.works_of").with_text("cam", labels::cam_name(lane.cam));
         let label = self.theme.format_text(&label);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can, lane.on, label.clone()));
         let painter = ui.painter();
@@ -99,12 +99,12 @@ impl LanePainter<'_> {
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-            ui.label(theme.format_text(&words::cam(lane)));
-            ui.label(theme.format_text(&words::lane_text(lane, self.model.scale, self.model.chart.range)));
+            ui.label(theme.format_text(&labels::cam(lane)));
+            ui.label(theme.format_text(&labels::lane_text(lane, self.model.scale, self.model.chart.range)));
             if lane.edited {
                 ui.label(egui::RichText::new(translate(theme, "cams.edited")).color(palette.staged));
             }
-            for trouble in words::lane_problems(self.shown, lane) {
+            for trouble in labels::lane_problems(self.shown, lane) {
                 ui.label(egui::RichText::new(theme.format_text(&trouble)).color(palette.bad));
             }
         });
@@ -116,7 +116,7 @@ impl LanePainter<'_> {
         let rect = Rect::from_min_max(pos2(head.right() - INDICATOR_WIDTH, head.top()), head.max);
         let response = self.ui.interact(rect, self.base.with("lamp").with(lane.cam), Sense::hover());
         let label = theme.format_text(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
-        let value = theme.format_text(&words::output_text(lamp));
+        let value = theme.format_text(&labels::output_text(lamp));
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Image, true, label.clone());
             info.current_text_value = Some(value.clone());

@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, SpeedTorque};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{ErrorCode, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::explain;
 use crate::devices::hiperdrive::state::ruler::{PositionUnit, Ruler};
 
 pub fn title(step: AxisStep) -> Text {
@@ -163,7 +163,7 @@ pub fn fault_text(seen: &DriveFacts) -> Option<Text> {
     let Some(code) = seen.error.filter(|code| *code != ErrorCode::NONE) else {
         return Some(TEXTS.text("hd_axis.fault_unread"));
     };
-    let words = words::error_code_explanation(code);
+    let words = explain::error_code_explanation(code);
     let text = TEXTS.text("hd_axis.fault").with("code", format!("{:04X}", code.code()));
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }
@@ -180,7 +180,7 @@ pub fn outcome_text(outcome: &Outcome, seen: &DriveFacts) -> Text {
         let text = TEXTS.text("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
         return text.with_text("missed", mm(outcome.position_deviation()));
     }
-    let why = words::end_text(outcome.ended, |steps| mm(steps.into()));
+    let why = explain::end_text(outcome.ended, |steps| mm(steps.into()));
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 

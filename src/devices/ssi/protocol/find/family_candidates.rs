@@ -1,8 +1,8 @@
 //! Candidate layouts of a family. Only settings with which the position ends at the same clock as in the reading are
 //! tried.
 
+use super::candidates::{EXCHANGE_WEIGHT, PADDED, TestCandidateFn, find_ambiguous_parity, sum};
 use super::frame_set::FrameSet;
-use super::members::{EXCHANGE_WEIGHT, PADDED, TestCandidateFn, find_ambiguous_parity, sum};
 use super::plausible::width_penalty;
 use super::reading::FrameNumbers;
 use crate::devices::ssi::protocol::code::Code;
