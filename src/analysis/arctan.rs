@@ -28,8 +28,8 @@ impl Phase {
         self.0 * DEGREES
     }
 
-    /// Returns the step that contains the phase when a period is divided into 2^`bits` steps, like an interpolating
-    /// counter. At a lower resolution, the result is the upper bits of the same step. `bits` is limited to 32.
+    /// Returns the step that contains the phase if a period is divided into 2^`bits` steps, like an interpolating
+    /// counter. A lower resolution yields the upper bits of the same step. `bits` is limited to 32.
     pub fn step(self, bits: u32) -> u32 {
         let bits = bits.min(32);
         let steps = 1_u64 << bits;

@@ -20,18 +20,19 @@ pub struct StepResult<S, F> {
 }
 
 impl<S, F> StepResult<S, F> {
-    /// Creates the result of a step. Its verdict is that of the worst finding, or good if there are no findings.
+    /// Creates the result of a step. Its verdict is the worst verdict among the findings, or good if there are none.
     pub(crate) fn new(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
     }
 }
 
-/// Write cycles of a device that the logbook contains. Writes by other programs are never included.
+/// Number of a device's write cycles that the logbook contains. Writes by other programs are never included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CycleCount {
     pub seen: u64,
-    /// Whether none is missing. Otherwise, the server of the logbook is away, or the file was damaged.
+    /// Whether no entries are missing. Entries can be missing if the logbook server is not available or the file was
+    /// damaged.
     pub is_complete: bool,
 }
 
@@ -42,7 +43,7 @@ impl CycleCount {
     }
 }
 
-/// Known wear of a device's memory.
+/// Known wear of a device's non-volatile memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryWear {
     /// Counted write cycles, if known.

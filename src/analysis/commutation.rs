@@ -76,8 +76,8 @@ impl Motor {
     }
 
     /// Evaluates the shaft's movement, in periods, from one static vector to another that is `electrical_turns` ahead.
-    /// The distance must be below ½, because the shaft may otherwise turn in the opposite direction. Returns `None` if
-    /// the shaft has not moved or the distance is zero.
+    /// `electrical_turns` must be below ½, because the shaft may otherwise turn in the opposite direction. Returns
+    /// `None` if the shaft has not moved or the distance is zero.
     pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVectorResult> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
@@ -113,7 +113,7 @@ mod tests {
         let offset = motor.offset(339.02).unwrap();
         assert_eq!(offset.bits(), 0x5305_1EB8);
         assert!((offset.to_degrees() - 116.746_875).abs() < 1e-7);
-        // A tenth of a revolution further, plus any number of whole revolutions.
+        // A movement of a tenth of a revolution, plus any number of whole revolutions.
         for turns in [0.0, 1.0, 4095.0] {
             let angle = motor.electrical_angle(339.02 + 102.4 + 1024.0 * turns, offset).unwrap();
             assert!((angle.to_degrees() / 360.0 - 0.4).abs() < 1e-8, "{angle:?}");

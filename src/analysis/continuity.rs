@@ -10,16 +10,16 @@ const GAP: f64 = 1.5;
 const SAMPLED_STEPS: usize = 1 << 14;
 /// Relative tolerance within which a time step is equal to the usual step.
 const STEP_TOLERANCE: f64 = 0.01;
-/// Fraction of equal time steps. Below it, differences are attributed to the limited number of digits.
+/// Minimum fraction of equal time steps. Below it, differences are attributed to the limited number of digits.
 const EVEN_STEP_SHARE: f64 = 0.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
-    /// Missing samples. `None` if the capture has no gap or no times.
+    /// Missing samples, or `None` if the capture has no gap or no times.
     pub missing: Option<MissingSamples>,
     /// Index of the first sample with a time earlier than that of the previous sample, counted from 0.
     pub back: Option<usize>,
-    /// Total time of the continuous sections in seconds. `None` without times.
+    /// Total duration of the continuous sections in seconds, or `None` without times.
     pub stretches_s: Option<f64>,
     /// Indices of the samples that begin a section, except the first sample.
     pub(super) breaks: Vec<usize>,
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn missing_rows_are_a_gap() {
-        // 2.5 µs per row, 799 rows missing after the thousandth: one step of 800 intervals.
+        // 2.5 µs per row, with 799 rows missing after row 1000: one step of 800 intervals.
         let mut capture = times(4000, |at| at * 2.5e-6);
         capture.drain(1000..1799);
         let told = Continuity::from_times(&capture);

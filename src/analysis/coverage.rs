@@ -11,11 +11,11 @@ use super::outliers::remaining_ranges;
 pub struct Coverage {
     /// Number of octants of the corrected angle that contain at least one sample, 0 to 8.
     pub octants: u32,
-    /// Periods from the lowest to the highest angle, as a number with a fraction.
+    /// Number of periods from the lowest to the highest angle, including fractions.
     pub periods: f64,
-    /// Periods from the first to the last sample, without gaps. Negative if the angle decreases.
+    /// Number of periods from the first to the last sample, without gaps. It is negative if the angle decreases.
     pub travel_periods: f64,
-    /// Total path in periods in both directions, without gaps.
+    /// Total path in both directions in periods, without gaps.
     pub path_periods: f64,
     /// Number of reversals by more than half a period.
     pub reversals: usize,
@@ -279,7 +279,7 @@ mod tests {
             assert!((told.travel_periods - (to - from)).abs() < 1e-8, "{from} {to}: {told:?}");
             assert!((told.periods - f64::abs(to - from)).abs() < 1e-8, "{from} {to}: {told:?}");
             assert_eq!(told.octants, octants, "{from} {to}");
-            // Angles of 100 000 periods lose digits.
+            // Angles of 100 000 periods lose precision.
             assert!(told.residual_rms < 1e-9);
         }
     }
@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn motion_within_a_gap_is_not_counted() {
-        // 2.7 periods, a jump of 40.4, then 1.1 periods back with one sample left out at their start.
+        // 2.7 periods, a jump of 40.4 periods, then 1.1 periods back. The first sample after the jump is left out.
         let angles =
             (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
         let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.point_at(TAU * periods)).unzip();

@@ -27,7 +27,7 @@ pub struct Ellipse {
 
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// The fit has too few points. An ellipse has five parameters, and one more point is needed to assess the fit.
+    /// There are too few points. An ellipse has five parameters, and one more point is needed to assess the fit.
     #[error("{points} points are too few: at least {least} are required", least = MIN_POINTS)]
     TooFew { points: usize },
     #[error("sample {index} is not a finite number")]
@@ -136,7 +136,7 @@ impl Ellipse {
         let mut moments = around_mean;
         let mut found = solve_normal_equations(&moments)?;
         for _ in 1..CENTRING_PASSES {
-            // After a poor start the centre may be outside. The fit around the mean is kept then.
+            // After a poor start, the centre may be outside the ellipse. In this case, the fit around the mean is kept.
             let moved = moments.with_origin(found.offset_cosine_v, found.offset_sine_v);
             let Ok(better) = solve_normal_equations(&moved) else { break };
             (moments, found) = (moved, better);
@@ -216,7 +216,7 @@ impl EllipseCorrection {
 fn ensure_nonzero_area(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
-    // Relative to the level, because a constant 2.5 V still varies by a few units in the last place.
+    // The limit is relative to the level, because a constant 2.5 V still varies by a few units in the last place.
     if most <= around_mean.max_abs_voltage() * 1e-9 {
         return Err(FitError::Constant);
     }

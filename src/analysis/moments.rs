@@ -1,5 +1,5 @@
 //! Sums of powers of two signals up to the fourth. They suffice for fitting an ellipse to any number of samples
-//! (Heydemann 1981). The sums are accumulated at a scale near one, where no digits are lost to the unit, and can be
+//! (Heydemann 1981). The sums are accumulated at a scale near one, which preserves precision in any unit, and can be
 //! moved to another origin afterwards.
 
 use super::ellipse::{Ellipse, FitError};
@@ -80,7 +80,7 @@ impl Moments {
         for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
             let sums = self.block_sums(xs, ys);
             let extremes = Extremes::from_samples(ys, xs);
-            // A sample that is not finite shows in these sums, and so does one that is too large for its fourth power.
+            // These sums are not finite if a sample is not finite or its fourth power overflows.
             if !sums.iter().all(|sum| sum.is_finite()) {
                 let bad = xs.iter().zip(ys).position(|(x, y)| !x.is_finite() || !y.is_finite());
                 return Err(FitError::NotFinite { index: block * BLOCK + bad.unwrap_or_default() });

@@ -1,6 +1,6 @@
 //! Comparison of a capture with a reference encoder: the non-linearity over one revolution, as measured and after
-//! correction. The measured angle is the one that a drive interpolates from sine and cosine. See section 6 of the
-//! project's sine/cosine reference.
+//! correction. The measured angle is interpolated from sine and cosine, as a drive does. See section 6 of the project's
+//! sine/cosine reference.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -74,13 +74,13 @@ impl Revolution {
         if !found.is_finite() {
             return Err(NonlinearityError::TooLittle.into());
         }
-        // Less than a period does not show how many there are.
+        // Less than a period does not reveal the number of periods per revolution.
         if turned.abs() >= 1.0
             && (found.abs() / f64::from(periods) - 1.0).abs() > MAX_PERIOD_DEVIATION.max(1.0 / turned.abs())
         {
             return Err(RevolutionError::Periods { found: found.abs(), given: periods });
         }
-        // A reference that is mounted the other way round counts in the other direction.
+        // A reference that is mounted in reverse counts in the other direction.
         let factor = 360.0 / TAU / f64::from(periods) * found.signum();
         let mechanical = |angles: &[f64]| angles.iter().map(|angle| angle * factor).collect::<Vec<f64>>();
         Ok(Revolution {

@@ -10,8 +10,8 @@ use super::position_error::{PositionError, Samples};
 
 /// Minimum number of octants of a period that must contain samples (U).
 pub const MIN_OCTANTS: u32 = 6;
-/// Rms distance from the ellipse, relative to the amplitude, above which there is no ellipse. A cloud of noise around
-/// one point has 0.4 or more, while a residual of 0.02 is already a poor signal.
+/// Maximum rms distance from the ellipse, relative to the amplitude. Above it, the samples do not form an ellipse. A
+/// cloud of noise around one point has 0.4 or more, while a residual of 0.02 already indicates a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
 /// Maximum median angle between samples in degrees. Above this angle, the direction is uncertain: with fewer than four
@@ -28,9 +28,9 @@ pub struct Analysis {
     pub error: PositionError,
     /// Number of samples, including excluded ones.
     pub samples: usize,
-    /// Time between the first and last sample in seconds. `None` if times do not increase.
+    /// Time between the first and last sample in seconds, or `None` if the times do not increase.
     pub duration_s: Option<f64>,
-    /// Excluded outliers and the ellipse that would include them. `None` without outliers.
+    /// Excluded outliers and the ellipse that would include them, or `None` without outliers.
     pub outliers: Option<Outliers>,
 }
 
@@ -61,10 +61,10 @@ impl Analysis {
     /// period.
     pub fn from_samples(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         Self::try_from_samples(samples).map_err(|error| match error {
-            // For few samples or NaN, there is nothing more to find out. Equal points may also be a dead cable.
+            // These errors already name the cause. Equal points may also come from a dead cable.
             AnalysisError::Fit(FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant) => error,
             _ if is_at_rest(samples.sine_v, samples.cosine_v) => AnalysisError::AtRest,
-            // One spark on a dead channel makes it look alive. The resulting error does not show the cause.
+            // A single spark on a dead channel makes it look alive. The resulting error would hide the cause.
             AnalysisError::Fit(FitError::NotAnEllipse)
             | AnalysisError::Coverage { .. }
             | AnalysisError::NoSignal { .. } => outliers::dead_channel(samples.sine_v, samples.cosine_v)

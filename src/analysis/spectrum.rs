@@ -56,7 +56,7 @@ impl Spectrum {
         let mut windowed: Vec<f64> = samples.iter().enumerate().map(|(at, value)| (value - mean) * hann(at)).collect();
         let transform = RealFftPlanner::new().plan_fft_forward(count);
         let mut lines = transform.make_output_vec();
-        // The buffers are made for this transform, so it cannot fail. An overflow shows in the lines.
+        // The buffers match this transform, so it cannot fail. An overflow appears in the lines.
         transform.process(&mut windowed, &mut lines).map_err(|_| SpectrumError::NotFinite)?;
         // A sine has half its amplitude in each of its two lines, and the window has the mean ½.
         let amplitudes_v = lines.iter().map(|line| line.norm() * 4.0 / count as f64).collect();

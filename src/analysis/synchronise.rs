@@ -61,7 +61,7 @@ impl Synchroniser {
         let half = if self.half_step { 0.5 } else { 0.0 };
         let low = (absolute % STEPS) as f64 + half - self.offset_steps;
         let difference = low - STEPS as f64 * phase.to_periods();
-        // The offset may add several periods to the difference. Only the last one is to be decided.
+        // The offset may add several periods to the difference. Only the last period is uncertain.
         let periods = difference / STEPS as f64;
         let nearest = periods.round();
         let residual = periods - nearest;
@@ -192,7 +192,7 @@ mod tests {
             })
             .collect();
         let offset = measure_offset(pairs.iter().copied()).unwrap();
-        // 0.55 periods are 17.6 steps, which is −14.4; a step is on average half of itself less.
+        // 0.55 periods are 17.6 steps, which equal −14.4 steps. Rounding down subtracts half a step on average.
         assert!((offset - -14.9).abs() < 0.05, "{offset}");
         let synchroniser = Synchroniser { offset_steps: offset, ..Synchroniser::new(64) };
         for (absolute, phase) in pairs {

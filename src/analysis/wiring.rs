@@ -1,5 +1,5 @@
-//! The four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS and REFCOS. They
-//! hold the samples of an analogue source without their times.
+//! The voltages of the four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS
+//! and REFCOS. The sample times are stored elsewhere.
 
 /// Voltages of the four wires. All columns have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub enum Wire {
 impl Wire {
     pub const ALL: [Wire; 4] = [Wire::Sin, Wire::Refsin, Wire::Cos, Wire::Refcos];
 
-    /// Returns the name as spelled in the manual.
+    /// Returns the name of the wire in the manual's spelling.
     pub const fn name(self) -> &'static str {
         match self {
             Wire::Sin => "SIN",

@@ -73,7 +73,7 @@ mod tests {
 
     use proptest::prelude::*;
 
-    /// The examples from the usual description of COBS, without the terminating 00, are encoded and decoded correctly.
+    /// The well-known published examples of COBS, without the terminating 00, are encoded and decoded correctly.
     #[test]
     fn published_examples_encode_and_decode() {
         let counting = |first: u8, count: u8| (0..count).map(|at| first.wrapping_add(at)).collect::<Vec<u8>>();

@@ -1,4 +1,5 @@
-//! Codes and sets of bits in messages of an adapter (reference 2). Unknown ones survive a round trip.
+//! Codes and bit sets in the messages of an adapter (reference, section 2). Unknown codes and bits survive a round
+//! trip.
 
 /// The capabilities of an adapter as a set of bits. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +37,7 @@ impl Capabilities {
     /// The encoder supply is on. This bit is a state and not a capability. Adapters that do not report the state leave
     /// it clear.
     pub const SUPPLY_ON: Capabilities = Capabilities(1 << 6);
-    /// The adapter samples the cosine after the sine, and tells by how much.
+    /// The adapter samples the cosine after the sine and reports the delay.
     pub const ANALOG_SKEW: Capabilities = Capabilities(1 << 7);
     /// The adapter reports its condition.
     pub const STATUS: Capabilities = Capabilities(1 << 8);
@@ -64,13 +65,13 @@ impl Capabilities {
 }
 
 impl RestartReason {
-    /// The reason is not known.
+    /// The reason is unknown.
     pub const UNKNOWN: RestartReason = RestartReason(0);
-    /// The adapter was connected, or its voltage was too low for a while.
+    /// The adapter was connected to power, or its supply voltage was temporarily too low.
     pub const POWER: RestartReason = RestartReason(1);
-    /// The reset pin was used.
+    /// The reset pin was activated.
     pub const RESET_PIN: RestartReason = RestartReason(2);
-    /// The adapter has not responded to itself.
+    /// The firmware stopped responding, and the watchdog restarted the adapter.
     pub const WATCHDOG: RestartReason = RestartReason(3);
 
     /// Creates a reason from its byte. Every value is valid.
@@ -87,7 +88,7 @@ impl RestartReason {
 impl SupplyFaults {
     /// There is no fault.
     pub const NONE: SupplyFaults = SupplyFaults(0);
-    /// The switch has reported an overload, and the supply was switched off.
+    /// The supply switch reported an overload, and the supply was switched off.
     pub const OVERLOAD: SupplyFaults = SupplyFaults(1);
 
     /// Creates faults from their bits. Every value is valid.
@@ -133,7 +134,7 @@ impl ErrorCode {
     pub const NO_ANSWER: ErrorCode = ErrorCode(4);
     /// The control frame of the encoder has a CRC error.
     pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
-    /// The adapter was too slow.
+    /// The adapter was too slow to keep up.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 
     /// Creates an error code from its byte. Every value is valid.

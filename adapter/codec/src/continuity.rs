@@ -1,4 +1,4 @@
-//! Check of stream packets for gaps. Every gap is reported (reference 3).
+//! Check of stream packets for gaps. Every gap is reported (reference, section 3).
 
 use super::data::StreamData;
 
@@ -20,7 +20,7 @@ pub enum PacketGap {
 }
 
 impl Continuity {
-    /// Creates the state at the start of a stream, whose first sample has the number 0.
+    /// Creates the state at the start of a stream, where sample 0 is expected.
     pub const fn at_start() -> Self {
         Continuity { next: 0 }
     }

@@ -1,4 +1,4 @@
-//! Stream packets, which an adapter sends without a request (reference 3).
+//! Stream packets, which an adapter sends without being asked (reference, section 3).
 
 use alloc::vec::Vec;
 
@@ -47,7 +47,7 @@ pub struct BissData {
     pub lost: u16,
     /// Width of the data and CRC of a frame in the packet in bytes, 1 to 8.
     pub width: u8,
-    /// Status, and right-justified data and CRC, of each frame. There are at most 255 frames.
+    /// Status of each frame with its right-justified data and CRC, at most 255 frames.
     pub values: Vec<(BissStatus, u64)>,
 }
 
@@ -60,7 +60,7 @@ pub struct AnalogData {
     pub t0_us: u64,
     /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
-    /// Sine and cosine of each sample as fractions of full scale. There are at most 255 samples.
+    /// Sine and cosine of each sample as fractions of full scale, at most 255 samples.
     pub samples: Vec<(i16, i16)>,
 }
 

@@ -76,7 +76,7 @@ impl<'a> FieldReader<'a> {
         self.take_array().map(u64::from_le_bytes)
     }
 
-    /// Parses a switch, which is 0 or 1.
+    /// Parses a switch byte, which must be 0 or 1.
     pub(super) fn take_switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),
@@ -85,7 +85,7 @@ impl<'a> FieldReader<'a> {
         }
     }
 
-    /// Parses a number of `width` bytes. The width is at most 8.
+    /// Parses an unsigned integer of `width` bytes, at most 8.
     pub(super) fn take_uint(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))

@@ -40,5 +40,6 @@ pub use request::{Operation, Request, SsiFlags};
 
 /// Version of the protocol that this program uses.
 pub const VERSION: u8 = 1;
-/// Time without a reply after which a request is repeated once. After the same time again, it has failed.
+/// Time without a reply after which a request is repeated once. If there is still no reply after the same time again,
+/// the request has failed.
 pub const REPEAT_AFTER: Duration = Duration::from_millis(200);

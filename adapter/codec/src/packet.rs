@@ -1,4 +1,4 @@
-//! Packets, which consist of a sequence number, an operation, a body and a checksum (reference 1).
+//! Packets, which consist of a sequence number, an operation, a body and a checksum (reference, section 1).
 
 use alloc::vec::Vec;
 
@@ -80,8 +80,8 @@ impl Packet {
     }
 }
 
-/// Calculates CRC-16/IBM-3740 of bytes. Its polynomial is x¹⁶ + x¹² + x⁵ + 1, and its initial value is FFFFh. The most
-/// significant bit is first.
+/// Calculates the CRC-16/IBM-3740 checksum of bytes: polynomial x¹⁶ + x¹² + x⁵ + 1, initial value FFFFh, most
+/// significant bit first.
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc: u16, byte| {
         let [high, _] = crc.to_be_bytes();
@@ -89,7 +89,7 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-/// CRC remainders of all values that the upper eight bits of the register may have.
+/// CRC remainder for each possible value of the register's upper eight bits.
 const TABLE: [u16; 256] = crc_table();
 
 #[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]

@@ -1,4 +1,4 @@
-//! Assembly of packets from received bytes. Damaged packets are dropped and counted (reference 1).
+//! Assembly of packets from received bytes. Damaged packets are dropped and counted (reference, section 1).
 
 use alloc::vec::Vec;
 
@@ -49,7 +49,7 @@ impl Receiver {
                     self.dropped += 1;
                     self.broken = Some(packet);
                 }
-                // There is nothing between two adjacent 00.
+                // Two adjacent 00 bytes enclose no packet.
                 None => {}
             }
         }
@@ -102,7 +102,7 @@ mod tests {
         damaged[5] ^= 2;
         assert_eq!(packets(&mut receiver, &[damaged, good.clone()].concat()), [packet(1, 20)]);
         assert_eq!(receiver.dropped_count(), 1);
-        // The end of one packet is lost, and the beginning of the next.
+        // The end of one packet and the beginning of the next are lost.
         let cut = [&good[..10], &good[4..], &good].concat();
         assert_eq!(packets(&mut receiver, &cut), [packet(1, 20)]);
         assert_eq!(receiver.dropped_count(), 2);

@@ -1,4 +1,4 @@
-//! Messages of an adapter, which are replies and unsolicited packets (reference 2 and 3).
+//! Messages of an adapter: replies and unsolicited packets (reference, sections 2 and 3).
 
 use alloc::string::String;
 use alloc::vec;
@@ -83,7 +83,7 @@ pub enum Reply {
     },
     /// A BiSS register has been written.
     BissRegisterWrite {
-        /// Value that the encoder has returned.
+        /// Value returned by the encoder.
         value: u8,
     },
     /// The stream of BiSS frames has started.
@@ -117,7 +117,7 @@ pub enum Reply {
     },
     /// Bytes have been received on the serial line.
     UartTransfer {
-        /// Time of the first start bit in microseconds. It has the same clock as the analogue samples.
+        /// Time of the first start bit in microseconds of the adapter's clock, which also times the analogue samples.
         t_us: u64,
         /// Received bytes.
         rx: Vec<u8>,
@@ -150,13 +150,13 @@ pub struct AdapterStatus {
     pub restart: RestartReason,
     /// Faults that are present.
     pub faults: SupplyFaults,
-    /// Voltage before the switch of the encoder supply in millivolts. Adapters without a supply have 0.
+    /// Voltage at the input of the supply switch in millivolts, 0 for adapters without a supply.
     pub input_millivolt: u16,
     /// Number of damaged packets that the adapter has received.
     pub damaged: u32,
-    /// Number of packets whose content was not valid.
+    /// Number of packets with invalid content.
     pub malformed: u32,
-    /// Number of samples that the host has not fetched in time.
+    /// Number of samples lost because the host did not fetch them in time.
     pub lost: u32,
 }
 
@@ -181,7 +181,7 @@ impl Message {
         Reply::parse(packet).map(Message::Reply)
     }
 
-    /// Returns the packet that an adapter sends. `seq` is the sequence number of the request.
+    /// Encodes the message as a packet. `seq` is the sequence number of the request.
     pub fn emit(&self, seq: u8) -> Packet {
         match self {
             Message::Reply(reply) => reply.emit(seq),
@@ -196,7 +196,7 @@ impl Message {
 }
 
 impl Reply {
-    /// Returns the operation that this reply answers.
+    /// Returns the operation to which this reply belongs.
     pub const fn operation(&self) -> Operation {
         match self {
             Reply::Hello(_) => Operation::Hello,

@@ -1,4 +1,4 @@
-//! Requests of a host to an adapter (reference 2).
+//! Requests from a host to an adapter (reference, section 2).
 
 use alloc::vec::Vec;
 
@@ -52,7 +52,7 @@ pub enum Request {
     Supply {
         /// Whether to switch the supply on.
         on: bool,
-        /// Voltage in millivolts. It must be one that the description of the encoder allows.
+        /// Voltage in millivolts, which must be permitted by the encoder's data sheet.
         millivolt: u16,
     },
     /// Reads the condition of the adapter. Adapters with [`STATUS`] support it.
@@ -85,7 +85,7 @@ pub enum Request {
         data_bits: u8,
         /// Width of the CRC in bits.
         crc_bits: u8,
-        /// Time-out of the frame in microseconds.
+        /// BiSS time-out in microseconds, which ends the frame.
         timeout_us: u16,
     },
     /// Reads a BiSS frame.
@@ -138,7 +138,7 @@ pub enum Request {
     UartTransfer {
         /// Maximum time in microseconds until the first byte of the reply.
         timeout_us: u32,
-        /// Silence in microseconds that ends the reply.
+        /// Duration of silence that ends the reply, in microseconds.
         idle_us: u32,
         /// Bytes to send.
         tx: Vec<u8>,
@@ -227,7 +227,7 @@ impl Request {
         }
     }
 
-    /// Returns the packet that a host sends. `seq` is its sequence number.
+    /// Encodes the request as a packet with the sequence number `seq`.
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {

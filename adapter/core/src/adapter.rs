@@ -1,7 +1,7 @@
-//! Requests of the host, their replies, and the streams.
+//! The adapter, which executes the host's requests and sends replies and streams.
 //!
-//! SSI and BiSS share their wires, so a stream of one occupies both. HELLO ends the streams and leaves the supply
-//! unchanged.
+//! SSI and BiSS share their wires, so a stream of one bus also blocks the other. HELLO ends the streams and leaves the
+//! supply unchanged.
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;
@@ -19,7 +19,7 @@ use crate::{
     SsiSetting, UartSetting, access_register,
 };
 
-/// What an adapter tells about itself.
+/// Identity that an adapter reports, and the corrections of its inputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Name of the adapter.
@@ -45,7 +45,7 @@ pub struct Adapter<B> {
     outbox: Outbox,
     ssi: Option<SsiSetting>,
     biss: Option<BissSetting>,
-    /// Bus that the hardware is set up for.
+    /// Bus for which the hardware is currently set up.
     selected: Option<Clocking>,
     stream: Option<ClockedStream>,
     analog: Option<AnalogSetting>,
@@ -53,15 +53,15 @@ pub struct Adapter<B> {
     supply: Supply,
     uart: Option<UartSetting>,
     transfer: Option<Transfer>,
-    /// Time in microseconds before which the serial line must not be driven.
+    /// Time in microseconds until which the serial line must not be driven.
     line_free_us: u64,
-    /// Time in microseconds before which no frame may begin.
+    /// Earliest time of the next frame, in microseconds.
     free_us: u64,
-    /// Number of the next packet of a stream.
+    /// Sequence number of the next stream packet.
     pushed: u8,
-    /// Number of valid packets whose content was not.
+    /// Number of packets with a valid checksum but invalid content.
     malformed: u32,
-    /// Number of samples that the host has not fetched in time.
+    /// Number of samples lost because the host did not fetch them in time.
     lost: u32,
 }
 
@@ -72,7 +72,7 @@ const TRANSFERRING: Refusal = (ErrorCode::BUSY, "a transfer is running");
 const NOT_SUPPORTED: Refusal = (ErrorCode::NOT_SUPPORTED, "this adapter does not support the operation");
 
 impl<B: Bus> Adapter<B> {
-    /// Creates an adapter that has received nothing yet.
+    /// Creates an adapter without streams or settings.
     pub fn new(bus: B, identity: Identity) -> Self {
         Adapter {
             bus,
@@ -96,27 +96,27 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Returns the wires.
+    /// Returns the bus hardware.
     pub const fn bus(&self) -> &B {
         &self.bus
     }
 
-    /// Returns the wires.
+    /// Returns the bus hardware.
     pub const fn bus_mut(&mut self) -> &mut B {
         &mut self.bus
     }
 
-    /// Returns the bytes for the host.
+    /// Returns the outbox with the bytes for the host.
     pub const fn outbox(&mut self) -> &mut Outbox {
         &mut self.outbox
     }
 
-    /// Returns whether [`receive`](Self::receive) may be called. Otherwise the host has to wait.
+    /// Returns whether [`receive`](Self::receive) may be called. Otherwise, the host must wait.
     pub fn accepts_bytes(&self) -> bool {
         self.outbox.has_room()
     }
 
-    /// Returns whether a reply from the serial line is awaited.
+    /// Returns whether a transfer on the serial line is in progress.
     pub const fn is_transferring(&self) -> bool {
         self.transfer.is_some()
     }
@@ -131,7 +131,7 @@ impl<B: Bus> Adapter<B> {
         (self.receiver.dropped_count(), self.malformed)
     }
 
-    /// Takes bytes from the host and executes the requests that are complete.
+    /// Appends bytes from the host and executes all complete requests.
     pub fn receive(&mut self, bytes: &[u8]) {
         self.receiver.push(bytes);
         while let Some(packet) = self.receiver.next_packet() {
@@ -141,7 +141,7 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Sends the samples that are ready. Ends the streams if the host no longer fetches them.
+    /// Sends the available samples. If the host no longer fetches data, ends the streams.
     pub fn poll(&mut self) {
         if self.outbox.is_stuck(self.bus.now_us()) {
             self.host_left();
@@ -162,7 +162,7 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Ends the streams and forgets what has not been sent, because the host has gone.
+    /// Ends the streams and discards unsent bytes after the host has disconnected.
     pub fn host_left(&mut self) {
         self.stop_streams();
         if self.transfer.take().is_some() {
@@ -186,7 +186,7 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Returns the reply to a request, or `None` if it follows later.
+    /// Returns the reply to a request, or `None` if the reply follows later.
     fn answer(&mut self, packet: &Packet) -> Option<Message> {
         let answer = match Request::parse(packet) {
             Ok(Request::UartTransfer { timeout_us, idle_us, tx }) => {
@@ -295,10 +295,10 @@ impl<B: Bus> Adapter<B> {
             Request::Supply { on, millivolt } => {
                 self.requires(Capabilities::SUPPLY)?;
                 let millivolt = self.supply.switch(&mut self.bus, on, millivolt)?;
-                // The current is limited by the switch, and not measured.
+                // The switch limits the current but does not measure it.
                 Ok(Reply::Supply { on, millivolt, milliampere: 0 })
             }
-            // It was handled before, since its reply follows later.
+            // Transfers are handled before, because their replies follow later.
             Request::UartTransfer { .. } => Err(NOT_SUPPORTED),
         }
     }
@@ -340,12 +340,12 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Refuses an operation that this build does not have.
+    /// Returns an error if this build lacks the capability.
     fn requires(&self, capability: Capabilities) -> Result<(), Refusal> {
         if self.identity.capabilities.contains(capability) { Ok(()) } else { Err(NOT_SUPPORTED) }
     }
 
-    /// Clocks one frame, after the pause that the previous one requires.
+    /// Clocks one frame after the pause required by the previous frame.
     fn frame(&mut self, clocking: Clocking, cdm: bool) -> Frame {
         self.select(clocking);
         let frame = self.bus.frame(cdm);
@@ -373,7 +373,7 @@ impl<B: Bus> Adapter<B> {
         result.map_err(|error| error.refusal())
     }
 
-    /// Starts a stream, or ends it with a period of 0. Returns the actual period in microseconds.
+    /// Starts a stream, or ends it if the period is 0. Returns the actual period in microseconds.
     fn stream(&mut self, clocking: Clocking, period_us: u32, least_us: u32) -> u32 {
         if period_us == 0 {
             let same = |stream: &ClockedStream| bus_of(stream.clocking()) == bus_of(clocking);
@@ -417,7 +417,7 @@ fn bus_of(clocking: Clocking) -> core::mem::Discriminant<Clocking> {
     core::mem::discriminant(&clocking)
 }
 
-/// Returns the time in microseconds after a frame until the encoder is ready for the next one, and the clock line is high.
+/// Returns the microseconds from the end of a frame until the encoder is ready and the clock line is high again.
 fn pause_us(clocking: Clocking) -> u64 {
     u64::from(match clocking {
         Clocking::Ssi(setting) => setting.pause_us,

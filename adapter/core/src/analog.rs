@@ -1,5 +1,5 @@
-//! Sine and cosine. The converter takes all of its inputs in turn without a pause, so that a pair is sampled back to back,
-//! and every pair has the same delay between its signals. Slower rates use every nth pair.
+//! Sampling of sine and cosine. The converter samples all inputs in turn without a pause. The sine and cosine of a pair
+//! therefore follow each other directly, with the same delay in every pair. Slower rates use every nth pair.
 
 use alloc::vec::Vec;
 
@@ -7,30 +7,30 @@ use bridge_codec::{AnalogData, ErrorCode, MAX_BODY, StreamData};
 
 use crate::{Bus, Refusal};
 
-/// Settings of sampling.
+/// Sample rate of the analogue inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnalogSetting {
-    /// Divisor of [`MAX_HZ`](Self::MAX_HZ), which it divides without a remainder.
+    /// Divisor of [`MAX_HZ`](Self::MAX_HZ) that leaves no remainder.
     divisor: u32,
 }
 
-/// Offset and gain of an input, which correct the amplifier in front of the converter.
+/// Correction of the amplifier at an input of the converter: offset and gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Correction {
-    /// Value without a signal in sixteenths of a step.
+    /// Value without a signal, in sixteenths of a converter step.
     pub offset: u16,
     /// Gain in 16384ths.
     pub gain: u16,
 }
 
-/// Running conversions whose samples are sent.
+/// A running stream of analogue samples.
 #[derive(Clone, Debug)]
 pub(crate) struct AnalogStream {
     divisor: u32,
     corrections: [Correction; 2],
-    /// Time at which the present conversions were started, and the number of the pair that is their first.
+    /// Start time of the current conversions, and the number of their first pair.
     start: (u64, u64),
-    /// Conversions since then.
+    /// Number of conversions since that start.
     converted: u64,
     /// Number of the next pair, counted from the start of the stream.
     next: u64,
@@ -38,22 +38,22 @@ pub(crate) struct AnalogStream {
 }
 
 impl AnalogSetting {
-    /// Inputs that are converted in turn: sine, cosine, the supply voltage, and two that belong to the board.
+    /// Number of inputs, which are converted in turn: sine, cosine, the supply voltage, and two of the board itself.
     pub const INPUTS: u32 = 5;
     /// Duration of a conversion in microseconds.
     const CONVERSION_US: u32 = 2;
-    /// Highest rate of pairs in hertz.
+    /// Maximum sample rate in pairs per second.
     pub const MAX_HZ: u32 = 1_000_000 / (Self::INPUTS * Self::CONVERSION_US);
-    /// Time in nanoseconds by which the cosine is converted after the sine.
+    /// Delay of the cosine after the sine in nanoseconds.
     pub const SKEW_NS: u16 = 1_000 * Self::CONVERSION_US as u16;
     const MIN_HZ: u32 = 10;
     /// Resolution of the converter in bits.
     pub(crate) const BITS: u8 = 12;
-    /// Voltage in microvolts between the wires of the encoder at the value 32 767. The amplifier has a gain of 2.2, and
-    /// the converter a range of ±1.65 V.
+    /// Differential voltage of the encoder in microvolts at the value 32 767. The amplifier has a gain of 2.2, and the
+    /// converter has a range of ±1.65 V.
     pub(crate) const FULL_SCALE_MICROVOLT: u32 = 749_977;
 
-    /// Checks the rate of a request. The actual one is at most the requested one.
+    /// Checks the requested rate. The actual rate is at most the requested one.
     pub(crate) fn new(sample_hz: u32) -> Result<Self, Refusal> {
         if sample_hz < Self::MIN_HZ {
             return Err((ErrorCode::BAD_ARGUMENT, "a rate of at least 10 Hz"));
@@ -70,7 +70,7 @@ impl AnalogSetting {
 }
 
 impl Correction {
-    /// An input without deviations: the middle of the range, and a gain of 1.
+    /// No correction: the offset is in the middle of the range, and the gain is 1.
     pub const NONE: Correction = Correction { offset: 2048 * 16, gain: 1 << 14 };
 
     /// Returns a converted value as a fraction of full scale.
@@ -83,9 +83,9 @@ impl Correction {
 }
 
 impl AnalogStream {
-    /// Time in microseconds after which a packet is sent although more samples would fit.
+    /// Time in microseconds after which a packet is sent even if it is not full.
     const FLUSH_US: u64 = 5_000;
-    /// Number of bytes in a packet before the samples.
+    /// Number of bytes that precede the samples in a packet.
     const HEAD: usize = 15;
     /// Number of samples that fit in a packet.
     const FIT: u64 = ((MAX_BODY - Self::HEAD) / 4) as u64;
@@ -96,12 +96,12 @@ impl AnalogStream {
         AnalogStream { divisor: setting.divisor, corrections, start, converted: 0, next: 0, lost: 0 }
     }
 
-    /// Returns the number of microseconds between two pairs.
+    /// Returns the interval between two pairs in microseconds.
     fn period_us(&self) -> u64 {
         u64::from(self.divisor * AnalogSetting::INPUTS * AnalogSetting::CONVERSION_US)
     }
 
-    /// Returns the number of the conversion of a sine.
+    /// Returns the conversion number of a pair's sine.
     fn conversion(&self, pair: u64) -> u64 {
         (pair - self.start.1) * u64::from(self.divisor * AnalogSetting::INPUTS)
     }
@@ -112,19 +112,19 @@ impl AnalogStream {
             self.restart(bus);
         }
         self.converted += u64::from(bus.converted().wrapping_sub(self.converted as u32));
-        // Some conversions may be replaced while they are read.
+        // The oldest conversions may be overwritten while they are read.
         let kept = u64::from(B::CONVERSIONS - B::CONVERSIONS / 8);
         let oldest = self.converted.saturating_sub(kept);
         let next = self.conversion(self.next);
         let step = u64::from(self.divisor * AnalogSetting::INPUTS);
         if next < oldest {
-            // Half of them go, so that the stream continues without losing again at once.
+            // Half of the samples are dropped, so that no more are lost directly afterwards.
             let lost = (oldest + kept / 2 - next).div_ceil(step);
             self.next += lost;
             self.lost = self.lost.saturating_add(u32::try_from(lost).unwrap_or(u32::MAX));
         }
         let next = self.conversion(self.next);
-        // A pair is complete with its cosine.
+        // A pair is complete once its cosine is converted.
         let ready = self.converted.checked_sub(next + 2).map_or(0, |behind| behind / step + 1);
         let t0_us = self.start.0 + (self.next - self.start.1) * self.period_us();
         if ready == 0 || ready < Self::FIT && bus.now_us() < t0_us + Self::FLUSH_US {
@@ -134,7 +134,7 @@ impl AnalogStream {
         let [sine, cosine] = self.corrections;
         let samples: Vec<(i16, i16)> = (0..count)
             .map(|at| {
-                // Numbers of conversions wrap.
+                // Conversion numbers wrap around.
                 let number = (next + at * step) as u32;
                 let value = |number: u32| bus.conversion(number);
                 (sine.apply(value(number)), cosine.apply(value(number.wrapping_add(1))))
@@ -146,7 +146,7 @@ impl AnalogStream {
         Some(StreamData::Analog(AnalogData { first_index, t0_us, lost, samples }))
     }
 
-    /// Starts the conversions again after one was missed, because the inputs are no longer in their order.
+    /// Restarts the conversions after one was missed, because the inputs are then no longer in order.
     fn restart<B: Bus>(&mut self, bus: &mut B) {
         bus.stop_conversions();
         let start_us = bus.start_conversions();
@@ -179,7 +179,7 @@ mod tests {
         assert!(AnalogSetting::new(9).is_err());
     }
 
-    /// A step of the converter is 16, and ±1.65 V at a gain of 2.2 are ±0.75 V at 32 768.
+    /// A converter step equals 16 units, and ±1.65 V with a gain of 2.2 correspond to ±0.75 V at 32 768.
     #[test]
     fn values_are_fractions_of_full_scale() {
         let values = [0, 2047, 2048, 2049, 4095].map(|value| Correction::NONE.apply(value));

@@ -1,18 +1,18 @@
-//! Settings of BiSS C, the times that follow from them, and the content of a frame. See the reference, `protocol/biss.md`
+//! Settings of BiSS C, the resulting times, and the content of a frame. See the reference, `protocol/biss.md`, sections
 //! 1 and 2.
 //!
 //! The state machines sample four levels before the data: the line before the frame, the acknowledgement, the start bit
-//! and the control bit. Without an encoder the search for an edge ends after a number of clocks, so that every frame has
-//! the same number of bits.
+//! and the control bit. Without an encoder, the search for an edge ends after a fixed number of clocks, so that every
+//! frame has the same number of bits.
 
 use bridge_codec::{BissStatus, ErrorCode};
 
 use crate::{FrameWords, Refusal};
 
-/// The settings with which BiSS frames are read.
+/// Settings for reading BiSS frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BissSetting {
-    /// Number of bits after the control bit, 1 to 64: data and CRC.
+    /// Number of data and CRC bits, which follow the control bit, 1 to 64.
     pub bits: u8,
     /// Divisor of [`MAX_HZ`](Self::MAX_HZ).
     pub divisor: u16,
@@ -31,18 +31,18 @@ pub(crate) struct BissFrame {
 }
 
 impl BissSetting {
-    /// Highest clock in hertz. Every clock is an integer fraction of it.
+    /// Maximum clock in hertz. Every clock is this frequency divided by an integer.
     pub const MAX_HZ: u32 = 10_000_000;
     const MIN_HZ: u32 = 80_000;
     const MAX_TIMEOUT_US: u16 = 500;
-    /// Levels that are sampled before the data.
+    /// Number of levels that are sampled before the data.
     const HEAD: u8 = 4;
-    /// Longest delay of the line in both directions, in tenths of a microsecond.
+    /// Maximum delay of the line in both directions together, in tenths of a microsecond.
     const LINE_DELAY: u32 = 10;
-    /// Longest time that an encoder takes to prepare its data, in tenths of a microsecond. The reference has 7 µs.
+    /// Maximum time that an encoder needs to prepare its data, in tenths of a microsecond. The reference states 7 µs.
     const BUSY: u32 = 80;
 
-    /// Checks the settings of a request. The clock is at most the requested one.
+    /// Checks the requested settings. The actual clock is at most the requested one.
     pub(crate) fn new(clock_hz: u32, data_bits: u8, crc_bits: u8, timeout_us: u16) -> Result<Self, Refusal> {
         let bits = data_bits.saturating_add(crc_bits);
         if data_bits == 0 || bits > 64 {
@@ -51,7 +51,7 @@ impl BissSetting {
         if clock_hz < Self::MIN_HZ {
             return Err((ErrorCode::BAD_ARGUMENT, "a clock of at least 80 kHz"));
         }
-        // An access to a register takes 97 frames at most, during which the adapter does nothing else.
+        // A register access takes at most 97 frames, during which the adapter does nothing else.
         if timeout_us > Self::MAX_TIMEOUT_US {
             return Err((ErrorCode::BAD_ARGUMENT, "a time-out of 500 µs at most"));
         }
@@ -77,24 +77,25 @@ impl BissSetting {
         (6 * (2 + clocks(Self::LINE_DELAY))).max(2 + clocks(Self::BUSY))
     }
 
-    /// Returns the longest duration of a frame in microseconds, without the time-out.
+    /// Returns the maximum duration of a frame in microseconds, without the time-out.
     pub fn frame_us(self) -> u32 {
         let steps = self.search_steps();
-        // Until the acknowledgement, until the start bit, start bit, control bit, data and two clocks at the end.
+        // Search for the acknowledgement, search for the start bit, start bit, control bit, data, and two final clocks.
         let clocks = (steps / 6 + 1) + steps + 4 + u32::from(self.bits);
         (clocks * u32::from(self.divisor)).div_ceil(10)
     }
 
-    /// Returns the shortest interval between two frames in microseconds.
+    /// Returns the minimum interval between two frames in microseconds.
     pub(crate) fn least_period_us(self) -> u32 {
         let divisor = u32::from(self.divisor);
-        // A good frame, whose encoder needs the time-out: half a clock, the delay twice, start, control, data, the end.
+        // A valid frame is followed by the time-out. Its parts: half a clock, twice the delay, start, control, data,
+        // and end.
         let clocks = (5 + u32::from(self.bits)) * divisor;
         let good = (clocks + Self::BUSY + 2 * Self::LINE_DELAY).div_ceil(10) + u32::from(self.timeout_us);
         good.max(self.frame_us() + 1)
     }
 
-    /// Returns the content of a frame.
+    /// Decodes the words of a frame.
     pub(crate) fn decode(self, words: FrameWords) -> BissFrame {
         let frame = words.join(self.sampled_bits());
         let mask = u64::MAX >> (64 - u32::from(self.bits.clamp(1, 64)));
@@ -104,7 +105,7 @@ impl BissSetting {
             (true, false, true) => BissStatus::OK,
             (_, true, _) => BissStatus::STUCK_HIGH,
             (false, false, _) => BissStatus::STUCK_LOW,
-            // It was high before the frame and has not come back.
+            // The line was high before the frame and did not return to high.
             (true, false, false) => BissStatus::NO_ACKNOWLEDGE,
         };
         BissFrame { status, cds, raw: if status == BissStatus::OK { raw } else { 0 } }
@@ -139,8 +140,8 @@ mod tests {
         assert!(BissSetting::new(1_000_000, 35, 6, 500).is_ok() && BissSetting::new(1_000_000, 35, 6, 501).is_err());
     }
 
-    /// Worst frame times of the reference, section 2, with 7 µs busy and 18 µs time-out, in tenths of a microsecond. The
-    /// adapter also waits for a line of 1 µs and for two more clocks.
+    /// Longest frame times of the reference, section 2, for a busy time of 7 µs and a time-out of 18 µs, in tenths of a
+    /// microsecond. The adapter also allows for a line delay of 1 µs and two more clocks.
     #[test]
     fn an_interval_holds_the_longest_frame_of_the_reference() {
         for (hz, worst) in [(1_000_000, 700), (2_000_000, 475), (5_000_000, 340), (10_000_000, 295), (80_000, 5875)] {
@@ -149,7 +150,7 @@ mod tests {
         }
     }
 
-    /// The search ends only after the slowest encoder at the longest line: 1 µs and 7 µs busy.
+    /// The search lasts long enough for the slowest encoder (7 µs busy) on the longest line (1 µs).
     #[test]
     fn the_search_covers_a_long_line_and_a_slow_encoder() {
         for hz in [80_000, 1_000_000, 2_000_000, 5_000_000, 10_000_000] {
@@ -162,7 +163,8 @@ mod tests {
 
     #[test]
     fn a_frame_has_a_status_a_control_bit_and_data() {
-        // Idle 1, acknowledgement 0, start 1, control bit 1, then the frame of the reference for 1234 and 18000.
+        // Idle 1, acknowledgement 0, start 1, control bit 1, then the example frame of the reference for 1234 and
+        // 18000.
         let words = |head: u32| {
             let frame = u64::from(head) << 41 | 0x024_6980_00CF;
             FrameWords([(frame >> 13) as u32, (frame & 0x1FFF) as u32, 0])

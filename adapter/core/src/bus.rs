@@ -1,8 +1,8 @@
-//! What the adapter requires of its hardware.
+//! The hardware interface of the adapter.
 
 use crate::{BissSetting, FrameWords, SsiSetting, UartSetting};
 
-/// The bus that is clocked, with its settings.
+/// The selected clocked bus with its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clocking {
     /// SSI.
@@ -20,10 +20,10 @@ pub struct Frame {
     pub words: FrameWords,
 }
 
-/// The wires of an adapter and its clock.
+/// The hardware of an adapter: its lines, its inputs and its clock.
 ///
-/// A stream is paced by hardware: after [`start`](Self::start), a frame is clocked every period without any call, and
-/// its words are kept until newer ones replace them.
+/// The hardware paces a stream: after [`start`](Self::start), one frame is clocked per period without further calls.
+/// The words are kept until newer ones replace them.
 pub trait Bus {
     /// Number of words of a stream that the hardware keeps.
     const CAPACITY: u32;
@@ -34,14 +34,14 @@ pub trait Bus {
     /// Waits until a time in microseconds of the adapter's clock.
     fn wait_until(&mut self, t_us: u64);
 
-    /// Selects the bus for the following frames. No stream is running.
+    /// Selects the bus for the following frames. Must not be called during a stream.
     fn select(&mut self, clocking: Clocking);
 
-    /// Clocks one frame. With `cdm`, the clock line stays low during the time-out of BiSS, which transmits a control bit
-    /// of 1. The pause or time-out after the frame is not waited for.
+    /// Clocks one frame without waiting for the pause or time-out after it. If `cdm` is set, the clock line stays low
+    /// during the time-out of BiSS, which transmits a control bit of 1.
     fn frame(&mut self, cdm: bool) -> Frame;
 
-    /// Starts to clock frames at an interval in microseconds. Returns the time of the first one.
+    /// Starts clocking frames at an interval in microseconds. Returns the time of the first frame.
     fn start(&mut self, period_us: u32) -> u64;
 
     /// Ends the stream.
@@ -50,14 +50,14 @@ pub trait Bus {
     /// Returns the number of words received since the start of the stream, modulo 2³².
     fn received(&self) -> u32;
 
-    /// Returns a word of the stream by its number. It must be among the last [`CAPACITY`](Self::CAPACITY) words.
+    /// Returns a word of the stream by its number, which must be among the last [`CAPACITY`](Self::CAPACITY) words.
     fn word(&self, number: u32) -> u32;
 
     /// Number of conversions that the hardware keeps.
     const CONVERSIONS: u32;
 
-    /// Starts to convert all analogue inputs in turn, without a pause. Returns the time of the first conversion, which is
-    /// that of the sine. The cosine is the second one.
+    /// Starts converting all analogue inputs in turn without a pause. The sine is first, and the cosine is second.
+    /// Returns the time of the first conversion.
     fn start_conversions(&mut self) -> u64;
 
     /// Ends the conversions.
@@ -66,37 +66,38 @@ pub trait Bus {
     /// Returns the number of conversions since their start, modulo 2³².
     fn converted(&self) -> u32;
 
-    /// Returns a converted value by its number. It must be among the last [`CONVERSIONS`](Self::CONVERSIONS).
+    /// Returns a converted value by its number, which must be among the last [`CONVERSIONS`](Self::CONVERSIONS).
     fn conversion(&self, number: u32) -> u16;
 
-    /// Returns whether a conversion was missed since their start.
+    /// Returns whether a conversion was missed since the start of the conversions.
     fn has_overrun(&self) -> bool;
 
-    /// Measures the voltage before the switch of the supply, in millivolts.
+    /// Measures the voltage at the input of the supply switch, in millivolts.
     fn supply_millivolt(&mut self) -> u16;
 
-    /// Switches the supply of the encoder.
+    /// Switches the encoder supply on or off.
     fn switch_supply(&mut self, on: bool);
 
-    /// Returns whether the switch of the supply reports an overload.
+    /// Returns whether the supply switch reports an overload.
     fn has_supply_fault(&mut self) -> bool;
 
     /// Sets up the serial line.
     fn configure_uart(&mut self, setting: UartSetting);
 
-    /// Sends characters, given as their bits with the start bit lowest, and then receives. The hardware does both.
+    /// Starts sending characters and then receiving, both by hardware. Each character is given as its bits, with the
+    /// start bit lowest.
     fn begin_transfer(&mut self, characters: &[u32]);
 
-    /// Returns whether all characters have been sent, and the driver is off.
+    /// Returns whether all characters have been sent and the driver is off.
     fn has_sent(&mut self) -> bool;
 
-    /// Returns the time of the first start edge after the characters were sent.
+    /// Returns the time of the reply's first start edge, or `None` before that edge.
     fn first_edge_us(&mut self) -> Option<u64>;
 
     /// Returns the number of received characters.
     fn received_characters(&mut self) -> usize;
 
-    /// Returns the bits of a received character without the start bit, the last one highest.
+    /// Returns the bits of a received character without the start bit. The last bit is the highest.
     fn received_character(&mut self, at: usize) -> u32;
 
     /// Ends the reception.

@@ -1,8 +1,8 @@
-//! Control frames of BiSS C, which read and write registers by one bit in each frame. See the reference,
-//! `protocol/biss.md` 3.
+//! Control frames of BiSS C, which read and write registers with one bit per frame. See the reference,
+//! `protocol/biss.md`, section 3.
 //!
-//! The bit of the host (CDM) is the level of the clock line during the time-out, inverted. The bit of the encoder (CDS)
-//! follows one frame later: in the frame whose number is k, the encoder answers the bit that the host sent with frame
+//! The control bit of the host (CDM) is the inverted level of the clock line during the time-out. The control bit of
+//! the encoder (CDS) follows one frame later: in frame k, the encoder responds to the bit that the host sent in frame
 //! k−1.
 
 use bridge_codec::ErrorCode;
@@ -18,24 +18,24 @@ pub struct RegisterAccess {
     pub value: Option<u8>,
 }
 
-/// The reason why an access has failed.
+/// The reason why a register access has failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControlError {
     /// A frame could not be read.
     NoFrame,
-    /// No encoder with this number answers.
+    /// No encoder with this number responds.
     NoSlave,
     /// The encoder does not accept the access.
     Refused,
-    /// The encoder has not answered within the processing time.
+    /// The encoder did not respond within the processing time.
     NotReady,
-    /// The checksum of the answer does not match.
+    /// The checksum of the reply does not match.
     Checksum,
 }
 
-/// Bits of 0 that end an earlier control frame.
+/// Number of 0 bits that end an earlier control frame.
 const PAUSE: usize = 14;
-/// Frames for which an encoder may delay the value of a register (`U`).
+/// Number of frames by which an encoder may delay the value of a register (`U`).
 const PROCESSING: usize = 50;
 
 impl ControlError {
@@ -51,11 +51,11 @@ impl ControlError {
     }
 }
 
-/// Reads or writes a register. `frame` sends a bit with one frame and returns the bit of the encoder in this frame, or
-/// `None` if the frame could not be read. Returns the value that the encoder has sent.
+/// Reads or writes a register. `frame` sends one bit and returns the encoder's bit in the same frame, or `None` if the
+/// frame could not be read. Returns the value sent by the encoder.
 ///
 /// # Errors
-/// Returns a [`ControlError`]. The encoder ignores an access that ended early.
+/// Returns a [`ControlError`] if the access fails. The encoder ignores an incomplete access.
 pub fn access_register(
     access: RegisterAccess,
     mut frame: impl FnMut(bool) -> Option<bool>,
@@ -64,14 +64,14 @@ pub fn access_register(
     for _ in 0..PAUSE {
         exchange(false)?;
     }
-    // Start, register access, slave, address and checksum: the bits 0 to 15.
+    // Bits 0 to 15: start, register access, slave, address and checksum.
     let selection = 1 << 10 | u32::from(access.slave & 7) << 7 | u32::from(access.address & 0x7F);
     let header = 1 << 15 | selection << 4 | crc4(selection, 11);
     let mut locked = 0_u32;
     for at in (0..16).rev() {
         locked = locked << 1 | u32::from(exchange(header >> at & 1 == 1)?);
     }
-    // The bits 1 to 8 of the encoder have a bit for each slave.
+    // Bits 1 to 8 from the encoder represent slaves 0 to 7.
     if locked >> (14 - (access.slave & 7)) & 1 == 0 {
         return Err(ControlError::NoSlave);
     }
@@ -82,12 +82,12 @@ pub fn access_register(
     if (reads, writes) != (!is_write, is_write) {
         return Err(ControlError::Refused);
     }
-    // Value and checksum of a write follow the start bit, and zeros that of a read.
+    // In a write, the value and its checksum follow the start bit. In a read, zeros follow.
     let data = access.value.map_or(0, |value| u32::from(value) << 4 | crc4(value.into(), 8));
     let mut bits = (0..12).rev().map(|at| data >> at & 1 == 1);
     let mut is_ready = exchange(bits.next().unwrap_or(false))?;
-    // An encoder that is not ready yet would miss the data of a write, so that the write ends here. A read repeats the
-    // start bit, because 14 bits of 0 would end it.
+    // An encoder that is not ready would miss the data of a write, so the write ends here. A read repeats the start
+    // bit, because 14 bits of 0 would end the control frame.
     for _ in 0..if is_write { 0 } else { PROCESSING } {
         if is_ready {
             break;
@@ -111,7 +111,7 @@ pub fn access_register(
     Ok(value as u8)
 }
 
-/// Calculates the checksum of the lowest `count` bits: x⁴ + x + 1, from 0 on, inverted.
+/// Calculates the CRC of the lowest `count` bits: polynomial x⁴ + x + 1, initial value 0, inverted result.
 fn crc4(bits: u32, count: u32) -> u32 {
     let crc = (0..count).rev().fold(0, |crc, at| {
         let feedback = (crc >> 3 ^ bits >> at) & 1;
@@ -140,7 +140,8 @@ mod tests {
         }
     }
 
-    /// Plays an encoder whose bits are given from the bit 0 on. Returns the result and the bits of the host.
+    /// Simulates an encoder with the given control bits, starting at bit 0. Returns the result and the bits of the
+    /// host.
     fn play(access: RegisterAccess, answer: &str) -> (Result<u8, ControlError>, String) {
         let mut answer = answer.chars().filter(|bit| *bit != ' ').map(|bit| bit == '1');
         let mut sent = Vec::new();
@@ -159,7 +160,7 @@ mod tests {
         RegisterAccess { slave: 0, address, value: None }
     }
 
-    /// The bits of the host are those of the reference, section 3; a read has one more frame for the stop bit.
+    /// The host sends the bits of the reference, section 3. A read takes one more frame for the stop bit.
     #[test]
     fn bits_of_the_host_match_the_reference() {
         for (address, bits) in [
@@ -222,7 +223,7 @@ mod tests {
         assert_eq!((broken, frames), (Err(ControlError::NoFrame), 20));
     }
 
-    /// The bit of a slave is at its own place: the bits 1 to 8 are those of the slaves 0 to 7.
+    /// Each slave has its own bit: bits 1 to 8 belong to slaves 0 to 7.
     #[test]
     fn another_slave_has_its_own_bit() {
         let access = RegisterAccess { slave: 2, address: 0x66, value: None };

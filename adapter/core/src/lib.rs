@@ -1,6 +1,6 @@
-//! The adapter without its hardware: it answers the requests of a host, runs control frames of BiSS and puts the samples
-//! of a stream into packets. Clocks, pins and time belong to a [`Bus`], which the firmware implements with the hardware
-//! of the RP2040, and the tests with a model.
+//! The hardware-independent part of the adapter. It replies to the requests of a host, runs BiSS control frames and
+//! packs the samples of streams. Clocks, pins and time belong to a [`Bus`]. The firmware implements it for the RP2040,
+//! and the tests implement it with a model.
 
 #![no_std]
 #![forbid(unsafe_code)]

@@ -1,5 +1,5 @@
-//! Bits of a frame as the state machines deliver them: words of 32 bits, the first bit highest, and the rest in a last
-//! word, right-justified. A frame whose length is a multiple of 32 ends with an empty word.
+//! Bits of a frame as delivered by the state machines: words of 32 bits with the first bit highest, and the remaining
+//! bits right-justified in a last word. A frame whose length is a multiple of 32 ends with an empty word.
 
 /// Maximum number of words in a frame.
 pub const MAX_WORDS: usize = 3;

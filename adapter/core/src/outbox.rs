@@ -1,5 +1,5 @@
-//! Bytes that wait for the host. Samples are only added while there is room, and requests are only taken while their
-//! replies have room, so that a host that does not read cannot exhaust the memory.
+//! Bytes that wait for the host. Samples are added, and requests are accepted, only while there is enough room. A host
+//! that does not read can therefore not exhaust the memory.
 
 use alloc::collections::VecDeque;
 
@@ -11,27 +11,27 @@ pub struct Outbox {
     progress_us: u64,
 }
 
-/// Number of bytes above which nothing is added.
+/// Number of waiting bytes above which no samples are added.
 const ROOM: usize = 24 * 1024;
-/// Number of bytes that replies to the requests of one USB packet may need in addition.
+/// Additional number of bytes for the replies to the requests in one USB packet.
 const REPLIES: usize = 8 * 1024;
-/// Time in microseconds without progress after which the host counts as lost.
+/// Time in microseconds without progress after which the host is considered lost.
 const LOST_US: u64 = 2_000_000;
 
 impl Default for Outbox {
-    /// The memory is reserved once, since a small computer has none to move bytes to.
+    /// Allocates all memory at once, because a small heap has no room for reallocation.
     fn default() -> Self {
         Outbox { bytes: VecDeque::with_capacity(ROOM + REPLIES), progress_us: 0 }
     }
 }
 
 impl Outbox {
-    /// Returns the first bytes that have not been sent yet. More may follow when these are consumed.
+    /// Returns the next unsent bytes. More bytes may follow after these are consumed.
     pub fn pending(&self) -> &[u8] {
         self.bytes.as_slices().0
     }
 
-    /// Removes the first `count` pending bytes, which were sent at a time in microseconds.
+    /// Removes the first `count` pending bytes, which have been sent. `now_us` is the current time in microseconds.
     pub fn consume(&mut self, count: usize, now_us: u64) {
         if count > 0 {
             self.progress_us = now_us;
@@ -54,7 +54,7 @@ impl Outbox {
         self.bytes.len() < ROOM
     }
 
-    /// Returns whether the host has not fetched anything for too long.
+    /// Returns whether the host has fetched nothing for too long.
     pub(crate) fn is_stuck(&self, now_us: u64) -> bool {
         !self.bytes.is_empty() && now_us.saturating_sub(self.progress_us) > LOST_US
     }
@@ -76,7 +76,7 @@ mod tests {
         outbox.consume(2, 8);
         outbox.consume(ROOM, 9);
         assert!(outbox.pending().is_empty() && outbox.has_room());
-        // The bytes continue at the begin of the memory.
+        // The bytes wrap around to the beginning of the memory.
         for round in 0..10 {
             outbox.push(&[round; ROOM / 4 * 3], 10);
             let mut count = 0;

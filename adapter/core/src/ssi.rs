@@ -1,13 +1,13 @@
-//! Settings of SSI and the times that follow from them. See the reference, `protocol/ssi.md` 1.
+//! Settings of SSI and the resulting times. See the reference, `protocol/ssi.md`, section 1.
 
 use bridge_codec::{ErrorCode, SsiFlags};
 
 use crate::Refusal;
 
-/// The settings with which SSI words are read.
+/// Settings for reading SSI words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiSetting {
-    /// Number of clocks, 1 to 64.
+    /// Number of clocks per word, 1 to 64.
     pub clocks: u8,
     /// Divisor of [`BASE_HZ`](Self::BASE_HZ).
     pub divisor: u16,
@@ -16,13 +16,14 @@ pub struct SsiSetting {
 }
 
 impl SsiSetting {
-    /// Frequency of which every SSI clock is an integer fraction. Edges are therefore at equal distances.
+    /// Base frequency in hertz. Every SSI clock is this frequency divided by an integer, so all edges are evenly
+    /// spaced.
     pub const BASE_HZ: u32 = 12_000_000;
-    /// Highest clock in hertz.
+    /// Maximum clock in hertz.
     pub const MAX_HZ: u32 = 4_000_000;
     const MIN_HZ: u32 = 50_000;
 
-    /// Checks the settings of a request. The clock is at most the requested one.
+    /// Checks the requested settings. The actual clock is at most the requested one.
     pub(crate) fn new(clocks: u8, clock_hz: u32, pause_us: u16, flags: SsiFlags) -> Result<Self, Refusal> {
         if !(1..=64).contains(&clocks) {
             return Err((ErrorCode::BAD_ARGUMENT, "1 to 64 clocks"));
@@ -49,7 +50,7 @@ impl SsiSetting {
         (u32::from(self.clocks) * u32::from(self.divisor)).div_ceil(12)
     }
 
-    /// Returns the shortest interval between two words in microseconds.
+    /// Returns the minimum interval between two words in microseconds.
     pub(crate) fn least_period_us(self) -> u32 {
         self.burst_us() + u32::from(self.pause_us) + 2
     }
@@ -81,7 +82,7 @@ mod tests {
         }
     }
 
-    /// Durations of the reference, section 1: 25 clocks at 400 kHz take 62.5 µs, 33 clocks 82.5 µs.
+    /// Durations in the reference, section 1: at 400 kHz, 25 clocks take 62.5 µs and 33 clocks take 82.5 µs.
     #[test]
     fn durations_match_the_reference() {
         let burst = |clocks, hz| SsiSetting::new(clocks, hz, 25, SsiFlags::FALLING_EDGE).unwrap();

@@ -1,5 +1,5 @@
-//! Frames of a stream in packets. The hardware clocks them at equal intervals and keeps their words for a while; words
-//! that the host does not fetch in time are lost, and counted in the next packet.
+//! Packing of a stream's frames. The hardware clocks frames at equal intervals and keeps their words for a while.
+//! Frames that the host does not fetch in time are lost. The next packet contains their number.
 
 use alloc::vec::Vec;
 
@@ -7,9 +7,9 @@ use bridge_codec::{BissData, MAX_BODY, SsiData, StreamData};
 
 use crate::{Bus, Clocking, FrameWords};
 
-/// Time in microseconds after which a packet is sent although more samples would fit.
+/// Time in microseconds after which a packet is sent even if it is not full.
 const FLUSH_US: u64 = 10_000;
-/// Number of bytes in a packet before the samples.
+/// Number of bytes that precede the samples in a packet.
 const HEAD: usize = 20;
 
 /// A running stream of frames.
@@ -40,7 +40,7 @@ impl ClockedStream {
         }
     }
 
-    /// Returns the width of a value in bytes, and the number of bytes that a sample has in a packet.
+    /// Returns the width of a value and the size of a sample in a packet, both in bytes.
     fn width(&self) -> (u8, usize) {
         match self.clocking {
             Clocking::Ssi(setting) => (setting.clocks.div_ceil(8), usize::from(setting.clocks.div_ceil(8))),
@@ -51,13 +51,13 @@ impl ClockedStream {
     /// Returns the next packet, or `None` if it is neither full nor due.
     pub(crate) fn packet<B: Bus>(&mut self, bus: &B) -> Option<StreamData> {
         let words = u32::from(FrameWords::count(self.bits()));
-        // The number of received words wraps. It is never more than 2³² ahead.
+        // The number of received words wraps around, but is always less than 2³² ahead.
         let taken = (self.next as u32).wrapping_mul(words);
         let mut ready = bus.received().wrapping_sub(taken) / words;
-        // Some words may be replaced while they are read.
+        // The oldest words may be overwritten while they are read.
         let kept = B::CAPACITY / words - B::CAPACITY / words / 8;
         if ready > kept {
-            // Half of them go, so that the stream continues without losing again at once.
+            // Half of the frames are dropped, so that no more are lost directly afterwards.
             let lost = ready - kept / 2;
             self.next += u64::from(lost);
             self.lost = self.lost.saturating_add(lost);
@@ -72,7 +72,7 @@ impl ClockedStream {
             return None;
         }
         let count = ready.min(full);
-        // The number of the first sample shows a gap of more than 65 535 samples.
+        // The number of the first sample reveals gaps of more than 65 535 samples.
         let lost = u16::try_from(core::mem::take(&mut self.lost)).unwrap_or(u16::MAX);
         let first_index = self.next as u32;
         let frames: Vec<FrameWords> = (0..count).map(|at| self.frame(bus, self.next + u64::from(at), words)).collect();

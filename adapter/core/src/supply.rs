@@ -1,9 +1,9 @@
-//! The switched supply of the encoder. The adapter does not make the voltage: it measures what is connected before the
-//! switch, and switches it on only if it is the requested one. The switch itself limits the current and reports an
+//! The switched encoder supply. The adapter does not generate the voltage: it measures the voltage at the input of the
+//! switch, and switches on only if this is the requested voltage. The switch itself limits the current and reports an
 //! overload.
 //!
-//! The supply is off at the start. Only a request or an overload switches it off: neither HELLO nor the end of a host does,
-//! since a write in progress would be interrupted.
+//! The supply is off at the start. Only a request or an overload switches it off. HELLO and the disconnection of the
+//! host do not, because that would interrupt a write in progress.
 
 use bridge_codec::{ErrorCode, SupplyFaults};
 
@@ -18,7 +18,8 @@ pub(crate) struct Supply {
 
 /// Range of voltages that may be requested, in millivolts.
 const RANGE: core::ops::RangeInclusive<u16> = 4_500..=15_000;
-/// Deviation of the measured voltage from the requested one that is accepted, in per cent. That of the divider is included.
+/// Permitted deviation of the measured voltage from the requested voltage, in per cent. It includes the tolerance of
+/// the divider.
 const TOLERANCE: u32 = 10;
 
 impl Supply {
@@ -34,7 +35,7 @@ impl Supply {
         self.faults
     }
 
-    /// Switches the supply on or off. Returns the measured voltage in millivolts, which is 0 if it is off.
+    /// Switches the supply on or off. Returns the measured voltage in millivolts, or 0 if the supply is off.
     pub(crate) fn switch<B: Bus>(&mut self, bus: &mut B, on: bool, millivolt: u16) -> Result<u16, Refusal> {
         if !on {
             self.switch_off(bus);
@@ -46,7 +47,7 @@ impl Supply {
         let measured = bus.supply_millivolt();
         let deviation = u32::from(measured.abs_diff(millivolt));
         if deviation * 100 > u32::from(millivolt) * TOLERANCE {
-            // A supply that is on with another voltage would be wrong as well.
+            // The supply must not stay on with another voltage.
             self.switch_off(bus);
             return Err((ErrorCode::BAD_ARGUMENT, "the connected voltage is another one"));
         }

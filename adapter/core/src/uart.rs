@@ -1,4 +1,4 @@
-//! The serial line: settings, characters as bits, and a transfer of a request and its reply.
+//! The serial line: its settings, the bits of its characters, and transfers of a request and its reply.
 
 use alloc::vec::Vec;
 
@@ -24,25 +24,25 @@ enum Parity {
     Even,
 }
 
-/// A request that is sent, and its reply.
+/// A transfer in progress: sending a request and receiving its reply.
 #[derive(Clone, Debug)]
 pub(crate) struct Transfer {
     /// Sequence number of the host's request.
     pub(crate) seq: u8,
     timeout_us: u32,
     idle_us: u32,
-    /// Time at which the characters have been sent.
+    /// Time at which the last character was sent, or `None` during sending.
     sent_us: Option<u64>,
-    /// Number of characters in the reply so far, and the time of the last change.
+    /// Number of characters received so far, and the time when this number last changed.
     received: (usize, u64),
 }
 
 impl UartSetting {
-    /// Frequency of the state machines at a divisor of 1, which take eight cycles a bit.
+    /// Bit rate of the state machines at a divisor of 1. They take eight cycles per bit.
     const BASE_HZ: u64 = 120_000_000 / 8;
     const BAUD: core::ops::RangeInclusive<u32> = 300..=1_000_000;
 
-    /// Checks the settings of a request.
+    /// Checks the requested settings.
     pub(crate) fn new(baud: u32, parity: u8, turnaround_us: u16) -> Result<Self, Refusal> {
         if !Self::BAUD.contains(&baud) {
             return Err((ErrorCode::BAD_ARGUMENT, "300 to 1000000 baud"));
@@ -61,7 +61,7 @@ impl UartSetting {
         Ok(UartSetting { divisor, parity, turnaround_us, character_us })
     }
 
-    /// Returns the number of bits in a character, with start and stop bit.
+    /// Returns the number of bits in a character, including start and stop bits.
     pub const fn bits(self) -> u32 {
         match self.parity {
             Parity::None => 10,
@@ -69,12 +69,13 @@ impl UartSetting {
         }
     }
 
-    /// Returns the time in microseconds by which a receiver with eight cycles a bit marks an edge late: one to two cycles.
+    /// Returns the mean delay in microseconds with which the receiver marks an edge: one and a half of its eight cycles
+    /// per bit.
     pub const fn mark_delay_us(self) -> u32 {
         self.divisor * 3 / 2 / 256 / (Self::BASE_HZ as u32 * 8 / 1_000_000)
     }
 
-    /// Returns the bits of a character, the start bit lowest.
+    /// Returns the bits of a character with the start bit lowest.
     fn encode(self, byte: u8) -> u32 {
         let is_odd = byte.count_ones() % 2 == 1;
         let stop = match self.parity {
@@ -85,21 +86,22 @@ impl UartSetting {
         u32::from(byte) << 1 | stop << 9
     }
 
-    /// Returns the byte in a word of the receiver, or `None` without a stop bit. The bits are the highest of the word, the
-    /// last one first. The host finds a wrong parity by its checksums.
+    /// Decodes a word of the receiver, or returns `None` if the stop bit is missing. The word contains the character in
+    /// its highest bits, with the last bit at the top. Parity is not checked, because the checksums of the host detect
+    /// such errors.
     fn decode(self, word: u32) -> Option<u8> {
-        // Eight bits of data are left.
+        // Eight data bits remain.
         (word >> 31 == 1).then_some((word >> (33 - self.bits())) as u8)
     }
 }
 
 impl Transfer {
-    /// Maximum number of bytes in a reply, beside its time.
+    /// Maximum number of received bytes in a reply, in addition to the time.
     pub(crate) const MAX_RX: usize = MAX_BODY - 8;
     const MAX_TIMEOUT_US: u32 = 2_000_000;
     const MAX_IDLE_US: u32 = 500_000;
 
-    /// Begins to send. `free_us` is the time before which the line may not be driven.
+    /// Starts a transfer. The line must not be driven before `free_us`.
     pub(crate) fn begin<B: Bus>(
         bus: &mut B,
         setting: UartSetting,
@@ -127,7 +129,7 @@ impl Transfer {
         }
         let first_edge = bus.first_edge_us();
         let is_complete = match first_edge {
-            // The silence begins with the end of the last character, or of the one that has begun.
+            // The silence begins at the end of the last character, even if it is still being received.
             Some(edge) => {
                 let last = if count == 0 { edge + u64::from(setting.character_us) } else { self.received.1 };
                 count == Self::MAX_RX || now > last + u64::from(self.idle_us)
@@ -142,7 +144,7 @@ impl Transfer {
         Some((first_edge.unwrap_or(now), rx))
     }
 
-    /// Returns the time until which the line must not be driven after this transfer.
+    /// Returns the time after this transfer until which the line must not be driven.
     pub(crate) fn free_us(now_us: u64, setting: UartSetting) -> u64 {
         now_us + u64::from(setting.turnaround_us)
     }
@@ -163,13 +165,13 @@ mod tests {
         for (baud, parity) in [(299, 0), (1_000_001, 0), (9_600, 3)] {
             assert!(UartSetting::new(baud, parity, 0).is_err());
         }
-        // One and a half of eight cycles of 104 µs.
+        // A bit takes 104 µs; one and a half of its eight cycles are 19 µs.
         assert_eq!(UartSetting::new(9_600, 2, 0).unwrap().mark_delay_us(), 19);
-        // Reference of HIPERFACE, section 3: a character of 11 bits takes 1.146 ms at 9600 baud.
+        // HIPERFACE reference, section 3: a character of 11 bits takes 1.146 ms at 9600 baud.
         assert_eq!(UartSetting::new(9_600, 2, 0).unwrap().character_us, 1_146);
     }
 
-    /// Start bit 0, data with the lowest bit first, parity, stop bit 1.
+    /// The order of the bits is start bit 0, data with the lowest bit first, parity, stop bit 1.
     #[test]
     fn characters_have_their_bits_in_order() {
         let line = |parity, byte| {
@@ -178,7 +180,7 @@ mod tests {
             (0..setting.bits()).map(|at| if bits >> at & 1 == 1 { '1' } else { '0' }).collect::<alloc::string::String>()
         };
         assert_eq!(line(0, 0x42), "0010000101");
-        // Even: the number of ones with the parity bit is even.
+        // Even parity: the number of ones, including the parity bit, is even.
         assert_eq!(line(2, 0x42), "00100001001");
         assert_eq!(line(2, 0x43), "01100001011");
         assert_eq!(line(1, 0x42), "00100001011");
@@ -190,7 +192,7 @@ mod tests {
         for parity in [0, 2] {
             let setting = UartSetting::new(9_600, parity, 0).unwrap();
             for byte in [0x00, 0x42, 0x80, 0x01, 0xFF] {
-                // The receiver shifts in all bits but the start bit from above.
+                // The receiver shifts in all bits except the start bit from the top.
                 let received = setting.encode(byte) >> 1 << (33 - setting.bits());
                 assert_eq!(setting.decode(received), Some(byte));
                 assert_eq!(setting.decode(received & 0x7FFF_FFFF), None, "without a stop bit");

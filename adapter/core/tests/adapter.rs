@@ -1,4 +1,4 @@
-//! An adapter on a model of the wires, as a host sees it.
+//! Tests of an adapter on a model of the wires, from the perspective of a host.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -50,7 +50,7 @@ fn frames_and_their_status_are_reported() {
     }
 }
 
-/// The encoder answers a read of address 66h with 4Bh: bits of the reference, section 3.
+/// A read of address 66h returns 4Bh, with the bits of the reference, section 3.
 #[test]
 fn a_register_is_read_by_control_bits() {
     let mut bench = Bench::new();
@@ -62,7 +62,7 @@ fn a_register_is_read_by_control_bits() {
     assert_eq!(bench.ask(&read), Message::Reply(Reply::BissRegisterRead { value: 0x4B }));
     let sent: String = bench.model().cdm.iter().map(|bit| if *bit { '1' } else { '0' }).collect();
     assert_eq!(sent, ["0".repeat(14).as_str(), "11000110011000011010000000000000", "0"].concat());
-    // Without an encoder that answers, nothing is written.
+    // If no encoder responds, nothing is written.
     bench.model().cdm.clear();
     let write = Request::BissRegisterWrite { slave: 0, address: 0x6B, value: 0x2A };
     assert_eq!(refusal(bench.ask(&write)), (0x23, ErrorCode::NO_ANSWER));
@@ -83,7 +83,7 @@ fn a_stream_has_every_sample_at_its_time() {
     bench.ask(&Request::SsiStream { period_us: 0 });
     bench.ask(&Request::SsiStream { period_us: 100 });
     let (mut next, mut packets) = (0, 0);
-    // An uneven pace of the main loop changes nothing.
+    // The uneven pace of the main loop has no effect.
     for step in (0..2_000).map(|at| 300 + at * 37 % 2_000) {
         for message in bench.run(step) {
             let Message::Data(StreamData::Ssi(data)) = message else { panic!("{message:?}") };
@@ -98,7 +98,7 @@ fn a_stream_has_every_sample_at_its_time() {
     assert!(next > 20_000 && packets > 200, "{next} samples in {packets} packets");
 }
 
-/// Two of three words are full with 64 clocks.
+/// With 64 clocks, two of the three words are full.
 #[test]
 fn long_words_survive_a_stream() {
     let mut bench = Bench::new();
@@ -178,7 +178,7 @@ fn a_stream_ends_without_its_host() {
     run(&mut bench, 500);
     assert!(!bench.adapter.is_streaming() && bench.model().stream.is_none());
     assert!(bench.adapter.outbox().pending().is_empty());
-    // The connection has gone: at once.
+    // After a disconnection, the stream ends immediately.
     bench.ask(&SSI_25);
     bench.ask(&Request::SsiStream { period_us: 1_000 });
     bench.adapter.host_left();
@@ -221,8 +221,8 @@ fn malformed_packets_are_counted_and_answered() {
     assert_eq!(bench.adapter.faulty_packets(), (1, 3));
 }
 
-/// Random packets and random bytes: the adapter answers each valid packet once, never panics, and works afterwards.
-/// Their number is that of the requirement, a million.
+/// Random packets and random bytes: the adapter answers each valid packet once, never panics, and works afterwards. The
+/// requirement demands a million packets.
 #[test]
 fn a_million_random_packets_are_survived() {
     let count = std::env::var("ADAPTER_FUZZ_PACKETS").map_or(1_000_000, |count| count.parse().unwrap());
@@ -241,7 +241,7 @@ fn a_million_random_packets_are_survived() {
         let mut body: Vec<u8> = (0..length).map(|_| random() as u8).collect();
         let ops = [0x01, 0x02, 0x03, 0x10, 0x11, 0x12, 0x20, 0x21, 0x22, 0x23, 0x24, 0x30, 0x31, 0x33, 0x40, 0x41];
         let op = if kind < 6 { ops[random() as usize % ops.len()] } else { random() as u8 };
-        // Bodies of the right length reach further.
+        // Bodies of the correct length are checked further.
         if kind < 4 {
             let lengths = [0, 3, 0, 8, 0, 4, 8, 0, 2, 3, 4, 4, 1, 0, 7, 12];
             let at = ops.iter().position(|known| *known == op).unwrap();
@@ -272,8 +272,8 @@ fn a_million_random_packets_are_survived() {
             }
         }
     }
-    // Of the damaged ones, one in 65 536 may still have a matching checksum.
-    // The last transfer may still be waiting for its reply.
+    // One in 65 536 damaged packets may still have a matching checksum. The last transfer may still be waiting for its
+    // reply.
     assert!(
         answered + 1 >= valid && answered <= valid + 10 + count / 8 / 1_000,
         "{answered} answers to {valid} packets"

@@ -1,4 +1,4 @@
-//! Sine and cosine of an adapter on a model of the inputs, as a host sees it.
+//! Tests of the sine and cosine of an adapter on a model of the inputs, from the perspective of a host.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -12,7 +12,7 @@ use model::{Bench, refusal};
 fn pairs_are_sampled_back_to_back_at_their_time() {
     let mut bench = Bench::new();
     assert_eq!(refusal(bench.ask(&Request::AnalogStream { on: true })).1, ErrorCode::BAD_ARGUMENT, "not configured");
-    // The value is the time, in a range that does not repeat within a packet.
+    // The value encodes the time, without repeating within a packet.
     bench.model().input = |input, t_us| if input < 2 { (t_us / 2 % 4096) as u16 } else { 999 };
     assert_eq!(bench.ask(&Request::AnalogSkew), Message::Reply(Reply::AnalogSkew { skew_ns: 2_000 }));
     for (wanted, actual) in [(100_000, 100_000), (30_000, 25_000), (1_000, 1_000)] {

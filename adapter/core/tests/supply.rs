@@ -1,4 +1,4 @@
-//! The supply of the encoder at an adapter on a model of the wires, as a host sees it.
+//! Tests of the encoder supply of an adapter on a model of the wires, from the perspective of a host.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -34,7 +34,7 @@ fn a_supply_is_on_from_its_request_to_the_next_one() {
     let supplied = Reply::Supply { on: true, millivolt: 8_050, milliampere: 0 };
     assert_eq!(bench.ask(&on(8_000)), Message::Reply(supplied));
     assert!(bench.model().is_supplied);
-    // HELLO, the end of the host and an hour change nothing.
+    // HELLO, a disconnection of the host and an hour of waiting change nothing.
     assert!(hello(&mut bench).capabilities.contains(Capabilities::SUPPLY_ON));
     bench.adapter.host_left();
     bench.run(3_600_000_000);

@@ -1,5 +1,5 @@
-//! Clocks. The system runs at 120 MHz instead of the usual 125 MHz, because all clocks of SSI (12 MHz / n) and of BiSS
-//! (10 MHz / n) are then whole numbers of cycles, without jitter.
+//! Clocks. The system runs at 120 MHz instead of the usual 125 MHz, because all clock periods of SSI (12 MHz / n) and
+//! BiSS (10 MHz / n) are then whole numbers of cycles, without jitter.
 
 use rp2040_hal as hal;
 
@@ -15,10 +15,10 @@ pub(crate) const SYSTEM_HZ: u32 = 120_000_000;
 /// Frequency of the crystal on the Pico in hertz.
 pub(crate) const CRYSTAL_HZ: u32 = 12_000_000;
 
-/// 12 MHz × 120 / (6 × 2).
+/// Settings of the system PLL: 12 MHz × 120 / (6 × 2) = 120 MHz.
 const SYSTEM: PLLConfig = PLLConfig { vco_freq: HertzU32::MHz(1440), refdiv: 1, post_div1: 6, post_div2: 2 };
 
-/// Starts the crystal and both clock generators.
+/// Starts the crystal oscillator and both PLLs.
 pub(crate) fn start(
     xosc: XOSC,
     clocks: CLOCKS,

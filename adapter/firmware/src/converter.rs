@@ -1,4 +1,5 @@
-//! The analogue inputs. The converter takes all five in turn, as fast as it can: 2 µs each. The DMA copies the values.
+//! The analogue inputs. The converter samples all five in turn at full speed, which takes 2 µs per input. The DMA
+//! copies the values.
 
 use rp2040_hal as hal;
 
@@ -9,22 +10,22 @@ use hal::pac::{ADC, RESETS};
 
 use crate::ring::Ring;
 
-/// Number of the requests of the converter to the DMA.
+/// Number of the converter's DMA request.
 const REQUEST: u8 = 36;
-/// All inputs: sine, cosine, supply voltage, voltage of the board, and temperature.
+/// Mask of all inputs: sine, cosine, supply voltage, voltage of the board, and temperature.
 const INPUTS: u8 = 0b1_1111;
 
-/// The pins of the inputs, without pull-up and pull-down.
+/// A pin used as an input of the converter, without pull-up and pull-down.
 type Input<I> = AdcPin<Pin<I, FunctionSio<SioInput>, PullNone>>;
 
-/// The converter with its pins and the ring of its values.
+/// The converter with its pins and the ring buffer for its values.
 pub(crate) struct Converter {
     adc: ADC,
     ring: Ring,
     _pins: (Input<Gpio26>, Input<Gpio27>, Input<Gpio28>, Input<Gpio29>),
 }
 
-/// The pins before they become inputs.
+/// The pins before they are set up as inputs.
 pub(crate) struct Pins {
     pub(crate) sine: Pin<Gpio26, FunctionNull, PullDown>,
     pub(crate) cosine: Pin<Gpio27, FunctionNull, PullDown>,
@@ -47,15 +48,15 @@ impl Converter {
         Some(Converter { adc, ring, _pins: pins })
     }
 
-    /// Starts to convert all inputs in turn, the sine first. `now_us` is the clock.
+    /// Starts converting all inputs in turn, beginning with the sine. `now_us` reads the clock. Returns the start time.
     pub(crate) fn start(&mut self, now_us: impl Fn() -> u64) -> u64 {
-        // Without a divisor, conversions follow each other.
+        // Without a divisor, there is no pause between conversions.
         self.adc.div().reset();
         self.discard();
-        // Safety: a threshold of one value, whose request the DMA serves.
+        // Safety: the threshold is one value, and the DMA serves the request.
         self.adc.fcs().write(|w| unsafe { w.en().set_bit().dreq_en().set_bit().thresh().bits(1) });
         self.ring.start(self.adc.fifo().as_ptr().cast_const(), REQUEST);
-        // Safety: input 0 is the first of those in the mask.
+        // Safety: input 0 is the first input in the mask.
         let select = |w: &mut hal::pac::adc::cs::W| unsafe {
             w.en().set_bit().ts_en().set_bit().ainsel().bits(0).rrobin().bits(INPUTS);
         };
@@ -80,7 +81,7 @@ impl Converter {
         self.discard();
     }
 
-    /// Empties the FIFO and clears its errors, which are cleared by setting their bits.
+    /// Empties the FIFO and clears its error flags by writing ones to them.
     fn discard(&mut self) {
         while self.adc.fcs().read().empty().bit_is_clear() {
             let _ = self.adc.fifo().read();
@@ -88,11 +89,11 @@ impl Converter {
         self.adc.fcs().write(|w| w.over().clear_bit_by_one().under().clear_bit_by_one());
     }
 
-    /// Measures an input while no conversions run, as the mean of sixteen values.
+    /// Measures an input as the mean of sixteen values. Must only be called while no conversions are running.
     pub(crate) fn measure(&mut self, input: u32) -> u16 {
         let mut sum = 0_u32;
         for _ in 0..16 {
-            // Safety: the number is that of an input.
+            // Safety: the number is a valid input.
             self.adc.cs().write(|w| unsafe {
                 w.en().set_bit().ts_en().set_bit().ainsel().bits(input as u8).start_once().set_bit()
             });

@@ -1,5 +1,5 @@
-//! Firmware of the adapter for the Raspberry Pi Pico (RP2040). What the adapter does is in `adapter-core`; here are the
-//! clocks, the pins, the state machines of the lines, and USB.
+//! Firmware of the adapter for the Raspberry Pi Pico (RP2040). The behaviour of the adapter is in `adapter-core`. This
+//! crate contains the clocks, the pins, the state machines of the lines, and USB.
 
 #![no_std]
 #![no_main]
@@ -37,7 +37,7 @@ use converter::Converter;
 use line::{Line, Pins};
 use supply::Switch;
 
-/// Second stage of the boot loader, which connects the flash.
+/// Second-stage boot loader, which sets up the flash.
 // Safety: the boot loader expects these bytes in this section.
 #[unsafe(link_section = ".boot2")]
 #[used]
@@ -45,18 +45,18 @@ static BOOT2: [u8; 256] = rp2040_boot2::BOOT_LOADER_GENERIC_03H;
 
 #[global_allocator]
 static HEAP: LlffHeap = LlffHeap::empty();
-/// Bytes for packets, of which 32 KiB wait for the host.
+/// Size of the heap in bytes. Up to 32 KiB hold bytes that wait for the host.
 const HEAP_BYTES: usize = 64 * 1024;
 
 const SERIAL_NUMBER: &str = "1";
-/// Longest sleep of the main loop in microseconds: during a transfer, during a stream, and otherwise.
+/// Maximum sleep of the main loop in microseconds during a transfer, during a stream, and otherwise.
 const SLEEP_US: [u32; 3] = [200, 2_000, 100_000];
-/// Time after which the watchdog restarts an adapter that no longer runs.
+/// Time in milliseconds after which the watchdog restarts an unresponsive adapter.
 const WATCHDOG_MS: u32 = 2_000;
 
 #[hal::entry]
 fn main() -> ! {
-    // Without its peripherals, the adapter waits for the watchdog.
+    // Without its peripherals, the adapter waits for the watchdog to restart it.
     let _ = run();
     loop {
         cortex_m::asm::nop();
@@ -79,7 +79,7 @@ fn run() -> Option<()> {
 
     let sio = Sio::new(pac.SIO);
     let pins = hal::gpio::Pins::new(pac.IO_BANK0, pac.PADS_BANK0, sio.gpio_bank0, &mut pac.RESETS);
-    // The driver of the clock line stays off until the clock is high.
+    // The line driver stays off until the clock is high.
     let mut driver = pins.gpio4.into_push_pull_output_in_state(PinState::Low);
     let (words, conversions) = ring::rings(pac.DMA, &mut pac.RESETS);
     let inputs = converter::Pins { sine: pins.gpio26, cosine: pins.gpio27, supply: pins.gpio28, board: pins.gpio29 };
@@ -160,7 +160,7 @@ fn run() -> Option<()> {
     }
 }
 
-/// Returns the reason for this start. The chip cannot tell a low voltage from the connection of the adapter.
+/// Returns the reason for the last start. The chip cannot distinguish a low voltage from power-on.
 fn restart_reason(watchdog: &pac::WATCHDOG, reset: &pac::VREG_AND_CHIP_RESET) -> RestartReason {
     let cause = reset.chip_reset().read();
     let watchdog = watchdog.reason().read();

@@ -1,14 +1,14 @@
-//! Pins of the Pico. The page `docs/adapter.md` has their wiring.
+//! Pins of the Pico. For the wiring, see `docs/adapter.md`.
 
-/// Clock of SSI and MA of BiSS, to the driver.
+/// Output to the driver: clock of SSI, and MA of BiSS.
 pub(crate) const CLOCK: u8 = 2;
-/// Data of SSI and SLO of BiSS, from the receiver.
+/// Input from the receiver: data of SSI, and SLO of BiSS.
 pub(crate) const DATA: u8 = 3;
 /// Serial line: to the driver, from the receiver, and direction (high: the driver is on).
 pub(crate) const SERIAL_OUT: u8 = 8;
 pub(crate) const SERIAL_IN: u8 = 9;
 pub(crate) const DIRECTION: u8 = 10;
-/// Input of the converter with the voltage before the switch of the supply, by way of a divider.
+/// Converter input that measures the input voltage of the supply switch through a divider.
 pub(crate) const SUPPLY_INPUT: u32 = 2;
-/// Connects the two machines of BiSS. Nothing must be wired to it.
+/// Signal between the two BiSS state machines. The pin must not be connected.
 pub(crate) const DONE: u8 = 5;

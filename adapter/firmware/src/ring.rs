@@ -1,8 +1,8 @@
-//! Values of a stream in memory. The DMA copies them from a FIFO without the processor and counts them, so that none can be
-//! missed without being noticed.
+//! Ring buffers for the values of a stream. The DMA copies and counts the values without the processor, so that lost
+//! values are always noticed.
 //!
-//! Two channels take turns, each for 2³¹ values, and start each other. Both write to the same ring, whose length divides
-//! 2³¹.
+//! Two channels alternate every 2³¹ values and start each other. Both write to the same ring, whose length is a divisor
+//! of 2³¹.
 
 use core::cell::UnsafeCell;
 
@@ -10,27 +10,27 @@ use rp2040_hal as hal;
 
 use hal::pac::{DMA, RESETS};
 
-/// Number of words of a clocked bus, and of converted values, in their rings.
+/// Capacity of the two rings: words of a clocked bus, and converted values.
 pub(crate) const WORDS: u32 = BYTES / 4;
 pub(crate) const CONVERSIONS: u32 = BYTES / 2;
 
-/// Length of a ring, which is the longest one of the DMA.
+/// Length of a ring in bytes, which is the maximum supported by the DMA.
 const BYTES: u32 = 1 << ADDRESS_BITS;
 const ADDRESS_BITS: u32 = 15;
-/// Number of values for which a channel runs.
+/// Number of values that a channel copies before the other one continues.
 const TURN: u32 = 1 << 31;
 
-/// Memory at an address that a ring of the DMA requires.
+/// Memory with the alignment required by a DMA ring.
 #[repr(C, align(32768))]
 struct Memory(UnsafeCell<[u8; BYTES as usize]>);
 
-// Safety: the DMA writes it, and the processor only reads it, by volatile reads of whole values.
+// Safety: the DMA writes this memory. The processor only reads it, with volatile reads of whole values.
 unsafe impl Sync for Memory {}
 
 static WORD_MEMORY: Memory = Memory(UnsafeCell::new([0; BYTES as usize]));
 static CONVERSION_MEMORY: Memory = Memory(UnsafeCell::new([0; BYTES as usize]));
 
-/// A ring of values with its channels of the DMA.
+/// A ring of values with its two DMA channels.
 pub(crate) struct Ring {
     memory: &'static Memory,
     channels: [usize; 2],
@@ -38,11 +38,11 @@ pub(crate) struct Ring {
     size: u32,
 }
 
-/// Takes the DMA out of reset. Returns the ring for words of a clocked bus, and the one for converted values.
+/// Takes the DMA out of reset. Returns the ring for words of a clocked bus and the ring for converted values.
 pub(crate) fn rings(dma: DMA, resets: &mut RESETS) -> (Ring, Ring) {
     resets.reset().modify(|_, w| w.dma().clear_bit());
     while resets.reset_done().read().dma().bit_is_clear() {}
-    // The registers belong to the rings from here on.
+    // From here on, only the rings use the registers.
     drop(dma);
     let words = Ring { memory: &WORD_MEMORY, channels: [0, 1], size: 2 };
     let conversions = Ring { memory: &CONVERSION_MEMORY, channels: [2, 3], size: 1 };
@@ -51,13 +51,13 @@ pub(crate) fn rings(dma: DMA, resets: &mut RESETS) -> (Ring, Ring) {
 
 /// Returns the registers of the DMA.
 pub(crate) fn dma() -> &'static hal::pac::dma::RegisterBlock {
-    // Safety: `rings` has taken the DMA, and each user has its own channels. The registers of all channels only have bits
-    // to be set, one for each channel.
+    // Safety: `rings` has taken the DMA, and each user has its own channels. Shared registers only contain bits to set,
+    // one for each channel.
     unsafe { &*DMA::ptr() }
 }
 
 impl Ring {
-    /// Starts to copy the values of a FIFO, whose requests have the given number.
+    /// Starts copying the values of a FIFO that uses the given DMA request number.
     pub(crate) fn start(&mut self, fifo: *const u32, request: u8) {
         let others = self.channels.into_iter().rev();
         for (channel, other) in self.channels.into_iter().zip(others) {
@@ -67,7 +67,7 @@ impl Ring {
                 registers.ch_read_addr().write(|w| w.bits(fifo as u32));
                 registers.ch_write_addr().write(|w| w.bits(self.memory.0.get() as u32));
                 registers.ch_trans_count().write(|w| w.bits(TURN));
-                // Without starting it.
+                // This register sets up the channel without starting it.
                 registers.ch_al1_ctrl().write(|w| {
                     w.bits(
                         1 | self.size << 2              // enabled
@@ -99,10 +99,10 @@ impl Ring {
         while dma().chan_abort().read().bits() & mask != 0 {}
     }
 
-    /// Returns the number of values since the start, modulo 2³².
+    /// Returns the number of copied values since the start, modulo 2³².
     pub(crate) fn received(&self) -> u32 {
         let mut count = self.count();
-        // Between two turns neither channel runs for a moment, and the count may be that of the wrong one.
+        // While the channels alternate, neither runs for a moment, and the count may be read from the wrong channel.
         loop {
             let again = self.count();
             if again.wrapping_sub(count) < WORDS {
@@ -125,7 +125,7 @@ impl Ring {
     pub(crate) fn value(&self, number: u32) -> u32 {
         let at = ((number << self.size) % BYTES) as usize;
         let address = self.memory.0.get().cast::<u8>();
-        // Safety: the place is within the ring and a multiple of the size, and the value is read as a whole.
+        // Safety: the address is within the ring and aligned to the size, and the value is read as a whole.
         unsafe {
             let address = address.add(at);
             if self.size == 2 {

@@ -1,4 +1,4 @@
-//! Pins that tell which parts are built: a part connects its pin to ground.
+//! Strap pins that indicate the fitted parts. Each fitted part connects its pin to ground.
 
 use bridge_codec::Capabilities;
 use embedded_hal::digital::InputPin as _;
@@ -7,7 +7,7 @@ use rp2040_hal as hal;
 use hal::gpio::bank0::{Gpio18, Gpio19, Gpio20};
 use hal::gpio::{FunctionNull, Pin, PullDown};
 
-/// Returns what this build can do. SSI and BiSS are in every build.
+/// Returns the capabilities of this build. Every build has SSI and BiSS.
 pub(crate) fn capabilities(
     serial: Pin<Gpio18, FunctionNull, PullDown>,
     supply: Pin<Gpio19, FunctionNull, PullDown>,
@@ -17,7 +17,7 @@ pub(crate) fn capabilities(
         Capabilities::SSI.union(Capabilities::BISS).union(Capabilities::BISS_REGISTERS).union(Capabilities::STATUS);
     let (mut serial, mut supply) = (serial.into_pull_up_input(), supply.into_pull_up_input());
     let mut analog = analog.into_pull_up_input();
-    // The pull-up needs a moment.
+    // The pull-up needs a moment to take effect.
     cortex_m::asm::delay(1_000);
     let parts = [
         (serial.is_low() == Ok(true), Capabilities::UART),

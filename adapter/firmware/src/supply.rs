@@ -1,4 +1,4 @@
-//! The switch of the encoder's supply: its pins, and the voltage before it.
+//! The switch of the encoder supply: its pins and its input voltage.
 
 use embedded_hal::digital::{InputPin as _, OutputPin as _};
 use rp2040_hal as hal;
@@ -6,18 +6,18 @@ use rp2040_hal as hal;
 use hal::gpio::bank0::{Gpio14, Gpio15};
 use hal::gpio::{FunctionNull, FunctionSio, Pin, PinState, PullDown, PullNone, PullUp, SioInput, SioOutput};
 
-/// Full scale of the converter behind a divider by six, in millivolts.
+/// Full-scale input voltage of the converter, with the divider by six, in millivolts.
 const FULL_SCALE_MILLIVOLT: u32 = 6 * 3_300;
 
 /// The pins of the switch. A resistor keeps it off until the firmware drives its pin.
 pub(crate) struct Switch {
     enable: Pin<Gpio14, FunctionSio<SioOutput>, PullNone>,
-    /// Low during an overload.
+    /// Fault pin of the switch, which is low during an overload.
     fault: Pin<Gpio15, FunctionSio<SioInput>, PullUp>,
 }
 
 impl Switch {
-    /// The switch is off.
+    /// Sets up the pins. The switch is off.
     pub(crate) fn new(enable: Pin<Gpio14, FunctionNull, PullDown>, fault: Pin<Gpio15, FunctionNull, PullDown>) -> Self {
         let enable: Pin<_, _, PullNone> = enable.into_push_pull_output_in_state(PinState::Low).into_pull_type();
         Switch { enable, fault: fault.into_pull_up_input() }
@@ -33,7 +33,7 @@ impl Switch {
     }
 }
 
-/// Returns the voltage before the divider in millivolts.
+/// Converts a value of the converter to the input voltage of the divider in millivolts.
 pub(crate) fn millivolt(value: u16) -> u16 {
     // At most 19 800.
     (u32::from(value) * FULL_SCALE_MILLIVOLT / 4096) as u16

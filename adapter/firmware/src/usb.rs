@@ -1,6 +1,6 @@
-//! The serial port over USB. The interrupt serves requests of the USB host and takes its bytes, even while the main loop
-//! waits for an encoder. When they fill the memory, the interrupt is masked until the main loop has read some of them, and
-//! the USB host waits.
+//! The serial port over USB. The interrupt handler serves the requests of the USB host and receives its bytes, even
+//! while the main loop waits for an encoder. When the buffer is full, the interrupt is masked until the main loop has
+//! read some bytes. Meanwhile, the USB host waits.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -14,18 +14,19 @@ use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
 use usbd_serial::SerialPort;
 
-/// Shared ID for serial ports of open projects; see `docs/adapter.md`. The texts tell the devices apart.
+/// Shared USB ID for serial ports of open projects; see `docs/adapter.md`. The descriptor strings distinguish the
+/// devices.
 const ID: UsbVidPid = UsbVidPid(0x16C0, 0x27DD);
 const MANUFACTURER: &str = "encoder-studio.example";
 pub(crate) const PRODUCT: &str = "Encoder adapter";
 
-/// Whether something has happened since the last look.
+/// Whether an event has occurred since the last sleep.
 static EVENT: AtomicBool = AtomicBool::new(false);
 static PORT: Mutex<RefCell<Option<Port>>> = Mutex::new(RefCell::new(None));
 
-/// Length of a USB packet.
+/// Maximum length of a USB packet in bytes.
 const PACKET: usize = 64;
-/// Bytes of the host that are kept for the main loop.
+/// Size of the buffer for received bytes that the main loop has not read yet.
 const KEPT: usize = 8 * PACKET;
 
 struct Port {
@@ -36,7 +37,7 @@ struct Port {
 }
 
 impl Port {
-    /// Serves the USB host. Returns whether there was room for its bytes.
+    /// Serves the USB host. Returns whether all received bytes fit in the buffer.
     fn serve(&mut self) -> bool {
         self.device.poll(&mut [&mut self.serial]);
         while let Some(room) = self.received.get_mut(self.count..).filter(|room| room.len() >= PACKET) {
@@ -68,11 +69,11 @@ fn with<R>(act: impl FnOnce(&mut Port) -> R) -> Option<R> {
 }
 
 fn unmask() {
-    // Safety: the handler uses only what it locks.
+    // Safety: the handler only uses state that it locks.
     unsafe { NVIC::unmask(Interrupt::USBCTRL_IRQ) };
 }
 
-/// Reads received bytes and returns their number.
+/// Reads received bytes into the buffer and returns their number.
 pub(crate) fn read(buffer: &mut [u8; PACKET]) -> usize {
     let count = with(|port| {
         let count = port.count.min(PACKET);
@@ -87,11 +88,11 @@ pub(crate) fn read(buffer: &mut [u8; PACKET]) -> usize {
     count.unwrap_or(0)
 }
 
-/// Passes bytes to the USB host and returns the number of accepted ones.
+/// Passes bytes to the USB host and returns the number of accepted bytes.
 pub(crate) fn write(bytes: &[u8]) -> usize {
     with(|port| {
         let count = if bytes.is_empty() { 0 } else { port.serial.write(bytes).unwrap_or(0) };
-        // An error means that the host has not fetched the previous packet yet. The interrupt continues then.
+        // An error means that the host has not fetched the previous packet yet. The interrupt handler continues later.
         let _ = port.serial.flush();
         count
     })
@@ -106,14 +107,14 @@ pub(crate) fn is_open() -> bool {
 /// Sleeps until an interrupt, unless there was one since the last call.
 pub(crate) fn sleep() {
     critical_section::with(|_| {
-        // An interrupt that occurs from here on stays pending, and ends the sleep.
+        // An interrupt from here on stays pending and ends the sleep.
         if !EVENT.swap_false() {
             cortex_m::asm::wfi();
         }
     });
 }
 
-/// The processor has no exchange in one step, so it is done where interrupts are off.
+/// Atomic swap with interrupts disabled, because the processor has no atomic exchange.
 trait SwapFalse {
     fn swap_false(&self) -> bool;
 }
@@ -134,7 +135,7 @@ fn USBCTRL_IRQ() {
     EVENT.store(true, Ordering::Relaxed);
 }
 
-/// Ends a sleep; see `wake`.
+/// Ends the current or next sleep; see `wake`.
 pub(crate) fn note_event() {
     EVENT.store(true, Ordering::Relaxed);
 }

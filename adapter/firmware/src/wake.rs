@@ -16,7 +16,7 @@ pub(crate) fn start(timer: &mut Timer) {
     if let Some(mut alarm) = timer.alarm_0() {
         alarm.enable_interrupt();
         critical_section::with(|section| ALARM.borrow(section).replace(Some(alarm)));
-        // Safety: the handler uses only what it locks.
+        // Safety: the handler only uses state that it locks.
         unsafe { NVIC::unmask(Interrupt::TIMER_IRQ_0) };
     }
 }
@@ -25,7 +25,7 @@ pub(crate) fn start(timer: &mut Timer) {
 pub(crate) fn after(us: u32) {
     critical_section::with(|section| {
         if let Some(alarm) = ALARM.borrow_ref_mut(section).as_mut() {
-            // An alarm that is already due rings at once.
+            // An alarm that is already due goes off immediately.
             let _ = alarm.schedule(us.micros());
         }
     });

@@ -1,5 +1,5 @@
-//! Detection of a table's format from its first lines: delimiter, decimal separator, first row of numbers, names,
-//! units, columns. Columns are named as in SICK 8010701.
+//! Detection of a table's format from its first lines: delimiter, decimal separator, first row of numbers, names, units
+//! and columns. The columns are named as in SICK 8010701.
 
 use super::CaptureError;
 use super::encoding::decode_head;
@@ -33,7 +33,7 @@ pub struct Layout {
     pub decimal_comma: bool,
     /// Line number of the first row of numbers in the file, counted from 1.
     pub first_row: u64,
-    /// Column names; empty without a header.
+    /// Column names, empty without a header.
     pub names: Vec<String>,
     pub columns: Columns,
     pub time_unit: TimeUnit,
@@ -64,7 +64,7 @@ impl Delimiter {
     }
 }
 
-/// Line before the data.
+/// A line that precedes the data.
 struct HeaderLine {
     row: u64,
     fields: Vec<Vec<u8>>,
@@ -141,7 +141,7 @@ fn drop_unsuitable_columns(columns: Columns, first: Option<&HeaderLine>, decimal
     Columns { reference_angle: angle, absolute, ..columns }
 }
 
-/// Returns the head without a truncated last line; `read` is the number of bytes read.
+/// Returns the head without a truncated last line. `read` is the number of bytes read.
 fn complete_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
         Some(end) if read + 3 >= HEAD_BYTES => head.get(..=end).unwrap_or(head),

@@ -1,4 +1,4 @@
-//! Tables as written by instruments, and files that are not tables.
+//! Tests with tables as written by instruments, and with files that are not tables.
 
 use super::super::import::TableImport;
 use super::*;
@@ -22,7 +22,7 @@ fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
     whole
 }
 
-/// Each of them contains 0 s, 0.25 V, 0.5 V and then 0.001 s, −0.3 V, 0.4 V.
+/// All of these tables contain the rows 0 s, 0.25 V, 0.5 V and 0.001 s, −0.3 V, 0.4 V.
 #[test]
 fn equivalent_tables_parse_the_same() {
     let ways: [(&str, &[u8]); 17] = [
@@ -55,7 +55,7 @@ fn equivalent_tables_parse_the_same() {
         assert_eq!(capture.wires.is_some(), label == "four channels", "{label}");
     }
     let (_, capture) = read("t,SIN,REFSIN,COS,REFCOS\n0,0.1,2.5,3,2.5\n1,0.2,2.5,2.9,2.5\n").unwrap();
-    // As in the table: (0.1 − 2.5) + 2.5 is another number.
+    // The voltages are taken from the table: (0.1 − 2.5) + 2.5 would be a different number.
     assert_eq!(capture.wires.unwrap().sin_v, [0.1, 0.2]);
 }
 
@@ -168,10 +168,10 @@ fn start_and_increment_define_the_times() {
         assert!((time - expected).abs() < 1e-12, "{time}");
     }
     assert_eq!((capture.sine_v, capture.cosine_v), (vec![0.1, 0.3, 0.5], vec![0.2, 0.4, 0.6]));
-    // In millivolts, and with other separators.
+    // The same in millivolts, with other separators.
     let (_, capture) = read("X;CH1;CH2;START;INCREMENT\nSequence;mV;mV;0;0,5\n0;1;2;;\n2;3;4;;\n").unwrap();
     assert_eq!((capture.time_s, capture.sine_v), (vec![0.0, 1.0], vec![0.001, 0.003]));
-    // Sample numbers are never taken for seconds.
+    // Sample numbers are never interpreted as seconds.
     for second in ["Sequence,Volt,Volt,,", "Sequence,Volt,Volt,now,soon", "Sequence,Volt,Volt,0,0"] {
         let text = format!("X,CH1,CH2,Start,Increment\n{second}\n0,0.1,0.2,,\n1,0.3,0.4,,\n");
         assert_eq!(read(text).unwrap_err(), CaptureError::NoSampleClock { row: 2 }, "{second}");
@@ -181,7 +181,7 @@ fn start_and_increment_define_the_times() {
     assert_eq!(read_in_pieces(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
 }
 
-/// Issue 22.13: rows without a value are left out and counted; so is a truncated last line. Six rows are enough for a
+/// Issue 22.13: rows without a value and a truncated last line are skipped and counted. Six rows are enough for a
 /// measurement.
 #[test]
 fn rows_without_a_value_are_skipped() {
@@ -216,7 +216,7 @@ fn rows_without_a_value_are_skipped() {
     assert_eq!(read(most).unwrap_err(), CaptureError::NoValues { left_out: 7, rows: 13, row: 8 });
 }
 
-/// Issue 22.13: a table in UTF-16, and units in a second row.
+/// Issue 22.13: a table in UTF-16 and a second header row with units are accepted.
 #[test]
 fn encodings_and_rows_of_units_do_not_reject_a_table() {
     let text = "Zeit (\u{b5}s)\tSinus\tKosinus\r\n0\t0,25\t0,5\r\n1000\t-0,3\t0,4\r\n";
@@ -255,7 +255,7 @@ fn leading_rows_without_a_value_do_not_hide_the_header() {
     assert_eq!((layout.names, capture.left_out, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
 }
 
-/// Issue 22.13: a truncated last line is one line; the text after an open quotation mark is not.
+/// Issue 22.13: a truncated last line is skipped, but not the text of several lines after an open quotation mark.
 #[test]
 fn an_unclosed_quotation_mark_swallows_no_rows() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
@@ -268,12 +268,13 @@ fn an_unclosed_quotation_mark_swallows_no_rows() {
         read_in_pieces(4096, long.as_bytes(), &TableHints::default()).unwrap_err(),
         CaptureError::OpenQuote { row: 8 }
     );
-    // Closed at the end of the file, over two lines.
+    // A quotation that spans two lines and is closed at the end of the file.
     let (_, capture) = read(format!("t,sin,cos,note\n{six}6,7,8,\"two\nlines\"")).unwrap();
     assert_eq!((capture.sine_v.len(), capture.left_out), (7, 0));
 }
 
-/// Issue 22.13: an oscilloscope's sample numbers have a time whatever the channels are called, and are whole numbers.
+/// Issue 22.13: an oscilloscope's sample numbers are converted to times regardless of the channel names, and must be
+/// whole numbers.
 #[test]
 fn sample_numbers_are_integers_in_the_first_column() {
     let (layout, capture) = read("X,sin,cos,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n1,3,4,,\n").unwrap();
@@ -285,7 +286,7 @@ fn sample_numbers_are_integers_in_the_first_column() {
     assert_eq!(read_in_pieces(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
 }
 
-/// Issue 22.13: 9.9E37 and 9.91E37 are the notation of SCPI instruments for an overload and a missing value.
+/// Issue 22.13: SCPI instruments write 9.9E37 for an overload and 9.91E37 for a missing value.
 #[test]
 fn scpi_overload_values_count_as_missing() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";

@@ -139,7 +139,7 @@ pub enum FindingKind {
         /// Peak amplitude in the second capture, in volts.
         to_v: f64,
     },
-    /// The second of two captures contains an interference line that is weaker in the first or missing there.
+    /// The second of two captures contains an interference line that is weaker or missing in the first one.
     InterferenceRose {
         frequency_hz: f64,
         /// Peak in the first capture, in volts, or 0 if no interference was visible.
@@ -157,7 +157,7 @@ pub enum FindingKind {
     },
 }
 
-/// Level of the wires of a channel that does not change.
+/// Voltage levels of the two wires of a constant channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StuckLevel {
     /// Both wires are at the same level, because one is open or they are shorted to each other.

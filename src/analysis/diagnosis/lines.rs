@@ -18,7 +18,7 @@ use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 /// Highest multiple of the mains frequency that is attributed to the mains.
 const MULTIPLES: f64 = 10.0;
-/// Spacing of the spectrum's lines above which none is attributed to the mains.
+/// Line spacing of the spectrum above which no line is attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
 /// Preferred minimum length of the examined record in seconds, equal to ten periods of 50 Hz mains.
@@ -81,7 +81,7 @@ pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> O
     let all = samples.time_s.get(..count)?;
     let wanted = (PREFERRED_SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
     let length = wanted.clamp(SAMPLES.0, SAMPLES.1).min(count);
-    // The middle of the record, where a motion is steadiest.
+    // The middle of the record is used, because the motion is steadiest there.
     let start = (count - length) / 2;
     let rate_hz = sample_rate_hz(all.get(start..start + length)?).ok()?;
     if analysis.coverage.periods * length as f64 / (count as f64) < MIN_PERIODS {
@@ -150,7 +150,7 @@ fn signal(both: &[f64]) -> Vec<bool> {
     let first = HARMONIC_HALF_WIDTH.min(both.len());
     let peak =
         (first..both.len()).max_by(|a, b| magnitude_at(both, *a).total_cmp(&magnitude_at(both, *b))).unwrap_or(0);
-    // An uneven motion widens a line, and each harmonic in proportion to its order.
+    // An uneven motion widens each harmonic in proportion to its order.
     let above = |at: usize| magnitude_at(both, at) > WIDTH * magnitude_at(both, peak);
     let up = (peak..both.len()).take_while(|at| above(*at)).count();
     let down = (0..=peak).rev().take_while(|at| above(*at)).count();
@@ -196,7 +196,7 @@ fn peak_candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usiz
 /// a sum of four squared normal variables, whose median is 3.3567 times their variance.
 fn noise_from_median(median: f64, samples: usize) -> f64 {
     const MEDIAN: f64 = 3.356_694;
-    // A line is 4/n times a sum whose real and imaginary parts each have the variance σ²·Σw²/2, Σw² = 3n/8.
+    // A line is 4/n times a sum whose real and imaginary parts each have the variance σ²·Σw²/2, where Σw² = 3n/8.
     median * samples as f64 / 4.0 / (MEDIAN * 3.0 * samples as f64 / 16.0).sqrt()
 }
 

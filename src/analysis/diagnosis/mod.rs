@@ -26,7 +26,7 @@ pub const MIN_LINE: f64 = 0.002;
 /// A disturbance of at least this fraction of the amplitude is a warning instead of a notice. It corresponds to an
 /// error of 0.6 electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
-/// Range of the ratio of both amplitudes in which the weaker channel has lost one of its two wires.
+/// Range of the amplitude ratio that indicates that the weaker channel has lost one of its two wires.
 const HALF_AMPLITUDE_RATIO: (f64, f64) = (0.4, 0.6);
 /// Maximum voltage difference between two wires at the same level.
 const SAME_LEVEL_V: f64 = 0.1;
@@ -36,7 +36,7 @@ const RAILS_V: (f64, f64) = (0.5, 4.5);
 const MANY_SPIKES: f64 = 1e-3;
 /// Minimum number of consecutive outliers that indicate an intermittent contact. Fewer outliers are a spike.
 const INTERMITTENT_SAMPLES: usize = 16;
-/// Thresholds of the amplitude modulation over a revolution: for a report, and for a warning.
+/// Amplitude modulation over a revolution from which it is reported as a notice and as a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// Fraction of the residual's mean square that other findings must explain.

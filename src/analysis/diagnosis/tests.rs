@@ -1,4 +1,4 @@
-//! Calculated signals with one fault each, and good signals without findings.
+//! Tests with calculated signals that have one fault each, and with good signals.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ mod trust;
 const RATE: f64 = 100_000.0;
 const COUNT: usize = 40_000;
 
-/// Sine and cosine of 0.5 V; for each sample: time, angle in periods.
+/// A calculated capture of sine and cosine with an amplitude of 0.5 V.
 struct Made {
     time: Vec<f64>,
     sine: Vec<f64>,
@@ -18,11 +18,11 @@ struct Made {
     periods: Option<u32>,
 }
 
-/// Returns 40 000 samples in 0.4 s, with 0.5 mV of noise; `motion` gives periods from seconds, `disturbed` changes sine
-/// and cosine.
+/// Returns 40 000 samples over 0.4 s with 0.5 mV of noise. `motion` converts seconds to periods, and `disturbed`
+/// changes sine and cosine.
 fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) -> (f64, f64)) -> Made {
     let mut random = fastrand::Rng::with_seed(3);
-    // Four even numbers have a variance of a third.
+    // The sum of four uniformly distributed numbers has a variance of a third.
     let mut noise = || 5e-4 * 3.0_f64.sqrt() * ((0..4).map(|_| random.f64()).sum::<f64>() - 2.0);
     let mut made = Made { time: vec![], sine: vec![], cosine: vec![], references: None, periods: None };
     for at in 0..COUNT {
@@ -36,7 +36,7 @@ fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) ->
     made
 }
 
-/// 1234.5 periods per second.
+/// A steady motion of 1234.5 periods per second.
 fn steady(time: f64) -> f64 {
     1234.5 * time
 }
@@ -62,7 +62,7 @@ impl Made {
         diagnose(&record, Analysis::from_samples(record.samples).as_ref(), &Limits::HIPERFACE)
     }
 
-    /// Returns the only finding, apart from uncertain parameters if it is a disturbance.
+    /// Returns the only finding. If it is a disturbance, uncertain parameters are also permitted.
     #[track_caller]
     fn finding_text(&self) -> DiagnosisFinding {
         let mut found = self.diagnosed().findings;
@@ -101,7 +101,7 @@ fn a_good_signal_has_no_findings() {
 
 #[test]
 fn amplitude_variation_over_a_revolution_is_not_interference() {
-    // 16 periods per revolution: 77 Hz beside the signal on both sides.
+    // 16 periods per revolution: lines 77 Hz above and below the signal.
     let wobbling = |_, angle: f64, (sine, cosine)| {
         let amplitude = 1.0 + 0.04 * (angle / 16.0).cos();
         (sine * amplitude, cosine * amplitude)
@@ -112,10 +112,10 @@ fn amplitude_variation_over_a_revolution_is_not_interference() {
     let finding = capture.finding_text();
     let FindingKind::Modulation { share } = finding.kind else { panic!("{finding:?}") };
     assert_eq!(finding.severity, Severity::Notice);
-    // The mean over a 36th of a revolution reduces it by a thousandth.
+    // Averaging over a 36th of a revolution reduces the modulation by a thousandth.
     near(share, 0.04, 3e-4);
     capture.periods = Some(2_000);
-    // Less than a revolution does not show it, so the distance from the ellipse is reported.
+    // Less than a revolution does not reveal the modulation, so the distance from the ellipse is reported.
     let finding = capture.finding_text();
     assert!(matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))), "{finding:?}");
 }
@@ -129,7 +129,7 @@ fn interference_is_reported_with_frequency_and_amplitude() {
                 panic!("{finding:?}")
             };
             near(frequency_hz, hertz, 0.5);
-            // The noise moves a line by 2·0.5 mV·√(1.5/80 000) = 4 µV.
+            // The noise changes the amplitude of a line by 2·0.5 mV·√(1.5/80 000) = 4 µV.
             near(found, volts, 4e-5);
             near(share, volts / 0.5, 1e-4);
             assert_eq!((finding.severity, common), (severity, false));
@@ -192,7 +192,7 @@ fn a_third_harmonic_is_found_at_any_motion() {
     let third =
         |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
     for made in [made(steady, third), made(|time| 30.0 * time * time, third)] {
-        // With few periods of an uneven motion the ellipse absorbs a part of it, which is reported as well.
+        // With few periods of an uneven motion, the ellipse absorbs a part of the disturbance, which is also reported.
         let finding = made.diagnosed().findings[0];
         let FindingKind::Harmonics { order, share } = finding.kind else { panic!("{finding:?}") };
         assert_eq!((order, finding.severity), (4, Severity::Warning));
@@ -204,7 +204,7 @@ fn a_third_harmonic_is_found_at_any_motion() {
 fn a_clipped_channel_is_reported_with_its_voltage() {
     let cut = |_, _, (sine, cosine): (f64, f64)| (sine, cosine.min(0.45));
     let mut capture = made(steady, cut);
-    // A converter at its limit has no noise.
+    // A converter at its limit outputs no noise.
     capture.cosine.iter_mut().for_each(|value| *value = value.min(0.45));
     let found = capture.diagnosed().findings;
     let cut_off = found.iter().find_map(|finding| match finding.kind {
@@ -214,7 +214,7 @@ fn a_clipped_channel_is_reported_with_its_voltage() {
     let (channel, volts, samples) = cut_off.unwrap();
     assert_eq!(channel, SignalChannel::Cosine);
     near(volts, 0.45, 1e-9);
-    // arccos(0.9)/π of the time, and the samples within 0.2 % below.
+    // The signal is clipped for arccos(0.9)/π of the time. Samples within 0.2 % below the limit also count.
     near(samples, 0.1436, 0.003);
 }
 
@@ -274,7 +274,7 @@ fn spikes_are_reported_and_are_not_interference() {
     let finding = capture.finding_text();
     let FindingKind::Spikes { count: 20, volts } = finding.kind else { panic!("{finding:?}") };
     assert!(volts > 1.0 && finding.severity == Severity::Notice);
-    // One of the spikes is among them.
+    // One of the spikes is in this range.
     for at in 24_000..24_300 {
         (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
     }
@@ -330,11 +330,11 @@ fn comparing_captures_reports_worse_findings() {
     else {
         panic!("{rose:?}")
     };
-    // Even numbers over 10 mV deviate by 10/√12 mV.
+    // Uniformly distributed numbers over 10 mV have a standard deviation of 10/√12 mV.
     near(*to_v, (0.01 * 0.01 / 12.0 + 5e-4 * 5e-4_f64).sqrt(), 6e-5);
 }
 
-/// Returns the amplitude, offset of the sine, phase error in radians.
+/// Returns a capture of an ellipse with the given amplitude, offset of the sine, and phase error in radians.
 fn ellipse(amplitude: f64, offset: f64, phase: f64) -> Made {
     made(steady, move |_, angle, (_, cosine)| (amplitude * 0.5 * (angle - phase).sin() + offset, amplitude * cosine))
 }
@@ -408,7 +408,7 @@ fn missing_comparisons_are_reported() {
     let died = compare(&good, &dead);
     assert_eq!(died.untold, [ComparisonObstacle::NoEllipseAfter]);
     assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { kind: FindingKind::Dead { .. }, .. }]), "{died:?}");
-    // The offset of the first capture is not known.
+    // The offset in the first capture is unknown.
     let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
     assert_eq!(
         mended,

@@ -1,4 +1,4 @@
-//! The fit against section 7 of the reference, and against signals whose parameters are known.
+//! Tests of the fit with the values of section 7 of the reference, and with signals of known parameters.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ const REFERENCE: Ellipse = Ellipse {
     phase_error_rad: 0.052_359_877_559_829_89, // 3°
 };
 
-/// Returns the samples of the model at evenly spread angles from `start` periods on.
+/// Returns samples of the model at evenly spaced angles, beginning at `start` periods.
 fn signals(ellipse: &Ellipse, count: usize, start: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
     (0..count).map(|i| ellipse.point_at(TAU * (start + periods * i as f64 / count as f64))).unzip()
 }
@@ -64,16 +64,16 @@ fn fits_of_360_and_6_points_recover_the_parameters() {
     }
 }
 
-/// With 1 mV rms of noise on 360 points, section 7 found deviations of 1e-5 V, 4e-5 V, 6e-4, 0.0083° and 1e-4 V. A
-/// parameter of a fit to n points scatters by about σ·√(2/n) = 7.5e-5 V; the limits are five times that, twice for α,
-/// r.
+/// With 1 mV rms of noise on 360 points, section 7 states deviations of 1e-5 V, 4e-5 V, 6e-4, 0.0083° and 1e-4 V. A
+/// parameter fitted to n points scatters by about σ·√(2/n) = 7.5e-5 V. The limits are five times this value, and twice
+/// as much for α and r.
 #[test]
 fn noise_moves_the_parameters_within_its_statistics() {
     let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..50 {
         let (mut sine, mut cosine) = signals(&REFERENCE, 360, random.f64(), 1.0);
         for value in sine.iter_mut().chain(&mut cosine) {
-            // The sum of twelve even numbers: variance 1.
+            // The sum of twelve uniformly distributed numbers has a variance of 1.
             *value += 1e-3 * ((0..12).map(|_| random.f64()).sum::<f64>() - 6.0);
         }
         let found = Ellipse::fit(&sine, &cosine).unwrap();
@@ -88,7 +88,7 @@ fn noise_moves_the_parameters_within_its_statistics() {
 
 #[test]
 fn the_fit_is_independent_of_unit_level_and_rest() {
-    // Counts of a converter; 2.5 V with a signal of millivolts; and ten thousand samples of a shaft at rest.
+    // Converter counts, a signal of millivolts on 2.5 V, and ten thousand samples of a shaft at rest.
     let wide = Ellipse { amplitude_v: 31_000.0, offset_cosine_v: 32_768.0, offset_sine_v: 32_700.0, ..REFERENCE };
     let (sine, cosine) = signals(&wide, 1000, 0.0, 1.0);
     assert_close(&Ellipse::fit(&sine, &cosine).unwrap(), &wide, 1e-8);

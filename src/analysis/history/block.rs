@@ -16,7 +16,7 @@ struct BucketLevel {
     start: usize,
 }
 
-/// Levels between the samples and the whole block, coarsest first, as they are stored.
+/// Levels between the samples and the whole block, coarsest first, in the order of storage.
 const LEVELS: [BucketLevel; 3] = [
     BucketLevel { size: PYRAMID_FACTOR * PYRAMID_FACTOR * PYRAMID_FACTOR, start: 0 },
     BucketLevel { size: PYRAMID_FACTOR * PYRAMID_FACTOR, start: PYRAMID_FACTOR },
@@ -94,8 +94,8 @@ pub(super) struct SampleBlock<T> {
     buckets: Box<[Bucket]>,
     /// Bucket for the whole block, valid once the block is full.
     top: Bucket,
-    /// Base of the buckets, or `None` until a bucket contains a value. The base is the median of the first few values,
-    /// because all other distances would be coarse if the base were a single outlier.
+    /// Base of the buckets, or `None` until a bucket contains a value. The base is the median of the first few values.
+    /// If an outlier were the base, all other distances would be coarse.
     base: Option<T>,
     flags: FlagBlock,
     /// Spread of the whole block, present if the block is full and contains a value.
@@ -333,7 +333,7 @@ impl<T: Number> SampleBlock<T> {
 struct BucketSearch {
     samples: ValueRange,
     found: Bucket,
-    /// Bucket whose values need not be searched, because they do not widen the result.
+    /// Range already covered by the result. Buckets within it need not be searched.
     enough: Bucket,
 }
 

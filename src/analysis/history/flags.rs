@@ -1,4 +1,4 @@
-//! Flags of single samples, and of a block of samples with a summary. Flags are independent of the values.
+//! Flags of single samples, and the flags of a block with a summary per group. Flags are independent of the values.
 
 use std::ops::{BitOr, BitOrAssign, Range};
 

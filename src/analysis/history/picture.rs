@@ -128,7 +128,7 @@ impl History {
     pub fn divide_into_pixels(&self, grid: &Grid) -> GridColumns {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.pixel_start(pixel));
-            // The first and last edges stay exact, because they are those of the picture.
+            // The first and last edges stay exact, because they are the edges of the picture.
             let index = if pixel == 0 || pixel == grid.pixel_count() {
                 exact
             } else {
@@ -180,7 +180,7 @@ impl<T: Number> HistoryPainter<'_, T> {
         if self.picture.raw {
             (from..to).for_each(|index| self.add_sample(index));
         } else {
-            // The end values are far apart in memory. Fetched together, they do not wait for each other.
+            // The end values are far apart in memory. Fetching them together lets the memory accesses overlap.
             let ends: Vec<Option<(T, T)>> =
                 pixels.clone().map(|(from, to)| self.series.first_and_last(from.index..to.index)).collect();
             for ((from, to), ends) in pixels.zip(ends) {

@@ -32,7 +32,7 @@ fn period_of(value: f64, range: f64) -> f64 {
 /// Appends the parts of a pixel column. Returns whether the last part contains the last value.
 fn push_parts(wrapped: &mut Vec<Pixel>, pixel: Pixel, values: ReducedSamples, range: f64) -> bool {
     let [begin, end] = [values.first, values.last].map(|own| period_of(own, range));
-    // The extremes may be slightly too far outside, but a count is whole.
+    // The extremes are rounded outward, but counts are whole numbers.
     let (low, high) = (period_of(values.min.ceil(), range).min(begin.min(end)), period_of(values.max.floor(), range));
     let high = high.max(begin.max(end));
     let part = |period: f64, joined: bool| {

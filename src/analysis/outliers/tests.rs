@@ -1,4 +1,4 @@
-//! Captures with outliers, and captures that only appear to have them.
+//! Tests with captures that have outliers, and with captures that only appear to have them.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ struct Made {
     cosine: Vec<f64>,
 }
 
-/// Returns `count` samples over this many periods, with noise of that deviation.
+/// Returns `count` samples over the given number of periods, with noise of the given standard deviation in volts.
 fn made(count: usize, periods: f64, noise_v: f64) -> Made {
     let mut random = fastrand::Rng::with_seed(7);
     let mut noise = || noise_v * ((0..12).map(|_| random.f64()).sum::<f64>() - 6.0);
@@ -53,26 +53,27 @@ fn a_single_spike_is_excluded_and_reported() {
     capture.sine[100] = 5.0;
     let told = capture.assert_ellipse_fits(1e-9);
     assert_eq!((told.stretches.first(), told.count, told.longest), (Some(&(100..101)), 1, 1));
-    // The sine was 0.45 V and is 5 V; on the corrected circle that is r/cos α times as much, mostly outward.
+    // The sine changes from 0.45 V to 5 V. On the corrected circle, the change is multiplied by r/cos α and points
+    // mostly outward.
     assert!(told.farthest_v > 4.0 && told.farthest_v < 5.2, "{told:?}");
     let (raw, _) = told.all.expect("the ellipse through all of them is there to be seen");
     assert!((raw.amplitude_v - 0.5).abs() > 0.01, "{raw:?}");
 }
 
-/// 1 mV of noise on 100 000 samples: a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV, r and α by twice that, as
-/// shares of 0.5 V; six of them.
+/// With 1 mV of noise on 100 000 samples, a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV, and r and α scatter by
+/// twice this value relative to 0.5 V. The limits are six times the scatter.
 #[test]
 fn spikes_in_a_long_capture_do_not_change_the_fit() {
     let mut capture = made(100_000, 100.0, 1e-3);
     for at in 0..40 {
         capture.cosine[at * 2_399 + 17] += if at % 2 == 0 { 0.4 } else { -3.0 };
     }
-    // A contact that opens for 30 samples, and both ends of the capture.
+    // A contact that opens for 30 samples, and sparks at both ends of the capture.
     for at in (50_000..50_030).chain([0, 99_999]) {
         (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
     }
     let told = capture.assert_ellipse_fits(6.0 * 1.8e-5);
-    // Some of the sparks are along the ellipse and not away from it.
+    // Some sparks move the sample along the ellipse instead of away from it.
     assert!(told.count <= 72 && told.count >= 66, "{}", told.count);
     assert_eq!(told.longest, 30);
     assert_eq!((told.stretches.first(), told.stretches.last()), (Some(&(0..1)), Some(&(99_999..100_000))));
@@ -80,7 +81,7 @@ fn spikes_in_a_long_capture_do_not_change_the_fit() {
     assert!((analysis.coverage.periods - 100.0).abs() < 0.01, "{:?}", analysis.coverage);
     assert!((analysis.coverage.residual_rms - 0.002).abs() < 0.0002, "{:?}", analysis.coverage);
     assert!(matches!(analysis.error.basis, ErrorBasis::Motion { .. }), "{:?}", analysis.error.basis);
-    // Noise of 1 mV in 0.5 V is 0.11°; the error that remains is far less.
+    // Noise of 1 mV in 0.5 V corresponds to 0.11°. The remaining error is far smaller.
     assert!(analysis.error.corrected_pp_deg < 0.02, "{}", analysis.error.corrected_pp_deg);
     assert_eq!(analysis.samples, 100_000);
 }
@@ -107,7 +108,7 @@ fn samples_of_the_signal_are_not_outliers() {
     let mut often = made(20_000, 20.0, 5e-4);
     (0..20_000).step_by(10).for_each(|at| often.sine[at] += 0.3);
     let rest = |share: usize| {
-        // The shaft stands still, and turns for the last part.
+        // The shaft is at rest and turns during the last part only.
         let (still, turning) = (made(100_000, 0.0, 5e-4), made(100_000 / share, 10.0, 5e-4));
         Made { sine: [still.sine, turning.sine].concat(), cosine: [still.cosine, turning.cosine].concat() }
     };
@@ -131,7 +132,7 @@ fn a_spike_does_not_revive_a_dead_channel() {
     capture.sine.iter_mut().for_each(|value| *value = 2e-4 * value.signum());
     capture.sine[2_345] = 4.0;
     assert_eq!(capture.analysed(), Err(FitError::Dead(SignalChannel::Sine).into()));
-    // Nor does it make one dead.
+    // A spark does not make a working channel appear dead either.
     let mut capture = made(5_000, 5.0, 5e-4);
     capture.sine[2_345] = 40.0;
     assert_eq!(capture.assert_ellipse_fits(1e-4).count, 1);

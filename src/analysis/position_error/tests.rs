@@ -1,4 +1,4 @@
-//! Added errors are found, and other deviations are not mistaken for errors.
+//! Tests that added errors are found, and that other deviations are not mistaken for errors.
 
 use super::*;
 use crate::analysis::ellipse::{FitError, SignalChannel};
@@ -21,8 +21,8 @@ struct Made {
     cosine: Vec<f64>,
 }
 
-/// Returns samples of a motion, which gives the periods at a fraction of the time, with a disturbance of the angle in
-/// radians.
+/// Returns samples of a motion with a disturbance of the angle in radians. `motion` converts a fraction of the time to
+/// periods.
 fn made(ellipse: &Ellipse, count: usize, motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64) -> f64) -> Made {
     let time: Vec<f64> = (0..count).map(|at| at as f64 / count as f64).collect();
     let angle = |t: &f64| TAU * motion(*t);
@@ -34,7 +34,7 @@ impl Made {
     fn add_noise(mut self, rms: f64, seed: u64) -> Self {
         let mut random = fastrand::Rng::with_seed(seed);
         for value in self.sine.iter_mut().chain(&mut self.cosine) {
-            // The sum of twelve even numbers: variance 1.
+            // The sum of twelve uniformly distributed numbers has a variance of 1.
             *value += rms * ((0..12).map(|_| random.f64()).sum::<f64>() - 6.0);
         }
         self
@@ -45,7 +45,7 @@ impl Made {
     }
 }
 
-/// Section 6: peak to peak of the raw error in electrical degrees.
+/// Peak-to-peak values of the raw error match section 6, in electrical degrees.
 #[test]
 fn raw_errors_match_section_6() {
     let rows = [
@@ -58,7 +58,7 @@ fn raw_errors_match_section_6() {
     for (label, ellipse, expected) in rows {
         for periods in [1.0, 3.7, -2.5, 400.0] {
             let told = made(&ellipse, 8000, |t| 0.1 + periods * t, |_| 0.0).analysed().unwrap();
-            // The largest of 720 points misses the peak by at most a few 1e-5 of it.
+            // The largest of 720 points is below the peak by at most a few parts in 1e5.
             assert!(
                 (told.error.raw_peak_to_peak_deg() - expected).abs() < 2e-4,
                 "{label}: {}",
@@ -73,8 +73,8 @@ fn raw_errors_match_section_6() {
     assert!((first - 0.573).abs() < 1e-4 && second < 0.003, "{first} {second}");
 }
 
-/// Section 7: mean removed, the error of the reference runs from 353.9708° − 360° at 0° and so on; computed point by
-/// point with Python at 720 angles: 9.97087° peak to peak.
+/// The error of the ellipse in section 7 is 353.9708° − 360° at 0°. Its peak-to-peak value of 9.97087° was computed
+/// with Python at 720 angles.
 #[test]
 fn the_reference_error_is_found_and_corrected() {
     let told = made(&REFERENCE, 360, |t| t, |_| 0.0).analysed().unwrap();
@@ -99,13 +99,13 @@ fn the_reference_error_is_found_and_corrected() {
     assert!(told.error.corrected_pp_deg < 1e-9);
 }
 
-/// An error of the angle of 0.3° at the fourth harmonic is in the raw and in the corrected curve, with noise of 1 mV in
-/// 0.5 V: 0.115° per sample, of which an amplitude from n samples keeps 0.115°·√(2/n).
+/// An angle error of 0.3° at the fourth harmonic appears in both the raw and the corrected curve. The noise of 1 mV in
+/// 0.5 V is 0.115° per sample, which changes an amplitude determined from n samples by 0.115°·√(2/n).
 #[test]
 fn harmonics_are_not_corrected() {
     for (count, periods) in [(2000, 1.0), (5000, 17.3), (200_000, 999.0)] {
         let amplitude = 0.3_f64.to_radians();
-        // Over a single period an accelerating motion cannot be distinguished from an error: that one is even.
+        // Over a single period, acceleration cannot be distinguished from an error, so that motion is uniform.
         let motion = |t: f64| periods * t + if periods > 2.0 { 0.1 * t * t } else { 0.0 };
         let capture = made(&REFERENCE, count, motion, |angle| amplitude * (4.0 * angle).sin()).add_noise(1e-3, 3);
         let told = capture.analysed().unwrap();

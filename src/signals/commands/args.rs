@@ -1,4 +1,4 @@
-//! Arguments of `analyse`.
+//! Arguments of the `analyse` command.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -39,15 +39,15 @@ pub(super) struct AnalyseArgs {
 /// Options of a report of a capture.
 #[derive(Args)]
 pub(super) struct ReportOptions {
-    /// Capture: encoder family whose limits apply.
+    /// For a capture: encoder family whose limits apply.
     #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
     pub(super) limits: Limits,
-    /// Capture: signal periods per revolution, for the speed and for errors in mechanical angles.
+    /// For a capture: signal periods per revolution, used to determine the speed and errors in mechanical angles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(super) periods: Option<u32>,
 }
 
-/// Families of encoders.
+/// Encoder families with known signal limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Limits {
     /// 0.9 … 1.1 V peak to peak, references at 2.0 … 3.0 V.

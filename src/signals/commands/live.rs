@@ -1,4 +1,4 @@
-//! Samples of an adapter for `analyse`.
+//! Sampling by an adapter for the `analyse` command.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -53,7 +53,7 @@ pub enum TaskResult {
     },
     /// A task could not be started, or ended without a result.
     Failed(FailedTask),
-    /// A large value was dropped.
+    /// A large value was dropped in the background.
     LetGo,
 }
 

@@ -100,7 +100,7 @@ impl AdapterLink {
         let (before, patience) = (services.sessions_closing_on_link(&url), services.world.patience.job);
         let open: OpenAdapterFn = Box::new(move || {
             if let Some(earlier) = earlier {
-                // This waits for the disconnection only, because the channel carries no messages.
+                // This only waits for the sender to be dropped, because the channel carries no messages.
                 let _ = earlier.recv_timeout(patience);
             }
             // The connection can only be opened after its previous users have released it.
@@ -162,7 +162,7 @@ impl SignalFeed {
         }
     }
 
-    /// Returns the identity and actual sampling of the adapter. The virtual encoder has none.
+    /// Returns the identity and actual sampling of the adapter, or `None` for the virtual encoder.
     pub(super) fn streaming_adapter(&self) -> Option<&StreamingAdapter> {
         match self {
             SignalFeed::Virtual(_) => None,

@@ -111,8 +111,8 @@ mod tests {
         }
     }
 
-    /// The filter with 10 kΩ and 47 pF has 102.4 kHz, and 1024 periods at 5859.375 rpm are 100 kHz with a shaft lag of
-    /// 1/1024 (section 1).
+    /// Rows of section 1: the filter of 10 kΩ and 47 pF at 102.4 kHz, and 1024 periods at 5859.375 rpm, which are 100
+    /// kHz with a shaft lag of 1/1024 of the electrical lag.
     #[test]
     fn rows_match_section_1() {
         let rows = [

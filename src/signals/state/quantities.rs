@@ -226,8 +226,8 @@ mod tests {
     fn quantities_match_section_7_with_limits() {
         let list = signal_quantities(&section_7_example(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
-        // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 per
-        // revolution 2 revolutions per second.
+        // The amplitudes are 2·0.5 and 2·0.5/1.05. Offsets are fractions of 0.5 V. 2 periods in 20 ms are 100 Hz; with
+        // 50 periods per revolution, this is 2 revolutions per second.
         for (word, value, verdict) in [
             ("quality.amplitude_cosine", 1.0, Some(Verdict::Ok)),
             ("quality.amplitude_sine", 0.952_381, Some(Verdict::Ok)),
@@ -249,7 +249,7 @@ mod tests {
         }
         let (millivolts, _, unit) = find("quality.offset_sine").also.unwrap();
         assert!((millivolts - -30.0).abs() < 1e-6 && unit == Unit::Millivolts);
-        // Raw vectors of section 7: 0.44595 … 0.53764 V, of which the shorter one is below 0.45 V.
+        // Raw vectors of section 7: 0.44595 V to 0.53764 V. The shortest is below 0.45 V.
         let least = find("quality.vector_least");
         assert!((least.value - 0.445_95).abs() < 2e-5 && least.verdict == Some(Verdict::Warn), "{least:?}");
         assert!((find("quality.vector_most").value - 0.537_64).abs() < 2e-5);
@@ -273,7 +273,7 @@ mod tests {
             .analysis
             .clone()
             .unwrap();
-        // Issue 22.13: without the periods per turn there are no mechanical angles and no speed.
+        // Issue 22.13: without the periods per revolution, there are no mechanical angles and no speed.
         let bare = error_quantities(&analysis, None);
         assert!(bare.len() == 2 && bare.iter().all(|own| own.unit == Unit::Degrees && own.also.is_none()), "{bare:?}");
         let list = error_quantities(&analysis, Some(1024));

@@ -21,7 +21,7 @@ pub(super) struct RecentSamples {
 /// Newest samples of a given duration.
 pub(super) struct Window {
     chunks: Vec<Arc<ChannelSamples>>,
-    /// Number of samples at the start of the first chunk that are too old and are skipped.
+    /// Number of samples to skip at the start of the first chunk, because they are too old.
     skip: usize,
     period_ns: i64,
 }

@@ -173,7 +173,7 @@ mod tests {
         let analysis = analysed(&capture);
         let told = compute_nonlinearities(&capture, &analysis, 64).unwrap().unwrap();
         let list = nonlinearity_quantities(&told);
-        // Section 6: an offset of 1 % is ±0.573 electrical degrees; of one of 64 periods 32.23″. 0.01° are 36″.
+        // Section 6: an offset of 1 % causes ±0.573 electrical degrees, which is 32.23″ for 64 periods. 0.01° is 36″.
         for (at, seconds, tolerance) in [(0, 32.23, 0.2), (1, 0.0, 0.2), (2, 36.0, 0.2), (3, 36.0, 0.2)] {
             let (found, _, unit) = list[at].also.unwrap();
             assert!((found - seconds).abs() < tolerance && unit == Unit::ArcSeconds, "{:?}", list[at]);
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(told.raw.mean.len() * 2, told.raw.deviation.len());
         assert!(told.raw.mean.len() <= CURVE_SECTIONS && told.raw.mean.len() > CURVE_SECTIONS / 2);
         let most = told.raw.deviation.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
-        // The ends of both parts meet on the way; the mean of a sine over 1.25 turns is 1/(2.5·π).
+        // The extremes of both parts coincide somewhere. The mean of a sine over 1.25 turns is 1/(2.5·π).
         assert!((most - (0.01 * (1.0 - 0.127_324) + 0.573 / 64.0)).abs() < 2e-4, "{most}");
     }
 

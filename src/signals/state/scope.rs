@@ -168,7 +168,7 @@ mod tests {
             sine_v: vec![0.3, 0.0, -0.3],
             cosine_v: vec![0.4, 0.5, 0.4],
             wires: Some(Wires {
-                // As measured, whatever the differences are.
+                // The wires are drawn as measured, regardless of the differences.
                 sin_v: vec![2.9, 2.5, 2.2],
                 refsin_v: vec![2.5; 3],
                 cos_v: vec![2.8, 2.9, 2.8],

@@ -304,7 +304,7 @@ mod tests {
             assert!((result.residual_periods - residual).abs() < 6e-5, "{told:?}");
             assert_eq!(told.to_text().1.id().strip_prefix("synchronise."), Some(verdict));
         }
-        // 339.02 of 1024 periods, and nothing else for many turns.
+        // 339.02 of 1024 periods, regardless of the number of turns.
         for turns in ["1", "4096"] {
             let degrees = form("0x2A5F", "0.02", "1024", turns).compute_result().unwrap().to_degrees().unwrap();
             assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
@@ -326,7 +326,7 @@ mod tests {
         assert_eq!(nothing.compute_result().unwrap_err().id(), "synchronise.no_signal");
     }
 
-    /// Quarter counters with a phase, and 29 rpm for a millisecond with 1024 periods, match section 4.
+    /// Quadrature counters with a phase match section 4, as does the speed limit of 29 rpm for 1 ms with 1024 periods.
     #[test]
     fn counters_and_check_speed_are_computed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
@@ -359,7 +359,7 @@ mod tests {
         }
     }
 
-    /// Two readings half a step apart in opposite directions are both 2.5 steps ahead on average.
+    /// Two readings with leads half a step above and below 2.5 steps yield a mean lead of 2.5 steps.
     #[test]
     fn readings_measure_the_offset() {
         let mut page = SynchroniseState::default();
@@ -373,7 +373,7 @@ mod tests {
             }
         };
         assert_eq!(page.measured_offset(), None);
-        // Step 10 at 8 steps (90°), and step 31 at 28 steps (315°).
+        // Step 10 at a phase of 8 steps (90°), and step 31 at a phase of 28 steps (315°).
         let whose = |number, serial: &str| SineCosineOrigin {
             session: SessionId(number),
             serial_number: Some(serial.to_owned()),
@@ -385,7 +385,7 @@ mod tests {
         assert!((page.measured_offset().unwrap() - 2.5).abs() < 1e-9);
         page.handle_action(SynchroniseAction::UseOffset);
         assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
-        // d = 31 − 28; without the offset of 2.5 half a step remains.
+        // d = 31 − 28 = 3 steps. After the offset of 2.5 steps is subtracted, half a step remains.
         let told = page.form.compute_result().unwrap();
         assert!((told.difference_steps - 3.0).abs() < 0.01);
         assert!((told.result.unwrap().residual_periods * 32.0 - 0.5).abs() < 0.01);

@@ -112,7 +112,7 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
             circuit.operating_points(ROWS).iter().map(|point| table_row(theme, point)).collect();
         let columns = column_widths(ui, theme, &heads.map(|id| translate(theme, id)), &rows);
         let room = ui.available_width() - columns.iter().sum::<f32>();
-        // The last column ends before the edge of a wide card.
+        // In a wide card, the last column does not extend to the edge.
         let between = (room / columns.len() as f32).clamp(theme.space.inside, theme.space.around);
         let line = |ui: &mut Ui, cells: Vec<RichText>| {
             ui.horizontal(|ui| {
@@ -147,7 +147,7 @@ fn table_row(theme: &Theme, point: &OperatingPoint) -> [String; 5] {
     ]
 }
 
-/// Returns the width of each column: that of its longest cell or its heading.
+/// Returns the width of each column, which fits its heading and its widest cell.
 fn column_widths(ui: &Ui, theme: &Theme, heads: &[String; 5], rows: &[[String; 5]]) -> [f32; 5] {
     let width = |words: &str, font: FontId| {
         ui.painter().layout_no_wrap(words.to_owned(), font, theme.palette.text.into()).size().x.ceil()

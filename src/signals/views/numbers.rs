@@ -11,7 +11,7 @@ use crate::ui::{Theme, controls};
 /// is in the tooltip.
 const MIN_SECOND_UNIT_WIDTH: f32 = 390.0;
 /// Minimum width in points for the column of limits. In a narrower window, each limit is displayed next to its verdict
-/// icon. Its unit, which is that of the value, is omitted.
+/// icon, without a unit, because the value has the same unit.
 const MIN_LIMITS_WIDTH: f32 = 350.0;
 const LIMITS_WIDTH: f32 = 110.0;
 

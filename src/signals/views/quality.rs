@@ -100,7 +100,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
     });
 }
 
-/// Lissajous image as a texture, which is kept until the samples or the colour change.
+/// Cached texture of a Lissajous image. It is replaced if the samples or the colour change.
 #[derive(Default)]
 pub(super) struct Picture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 

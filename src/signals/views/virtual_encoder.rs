@@ -60,7 +60,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         reset = labelled_button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "virtual.reset")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
-        // The rows are low, since all of them must fit beside the curves that they affect.
+        // The rows are low, because all of them must fit beside the curves that they affect.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.visuals_mut().widgets.inactive.bg_fill = theme.palette.line.into();

@@ -1,4 +1,4 @@
-//! Wires with an encoder on a virtual clock, and a host. Not every test uses all of it.
+//! A model of the wires with an encoder, a virtual clock and a host. Not every test uses every item.
 
 #![allow(dead_code)]
 
@@ -7,35 +7,35 @@ use std::collections::VecDeque;
 use adapter_core::{Adapter, Bus, Clocking, Correction, Frame, FrameWords, Identity, UartSetting};
 use bridge_codec::{Capabilities, ErrorCode, Message, Packet, Receiver, Request, RestartReason};
 
-/// Wires of an encoder whose value is a function of time.
+/// Wires to an encoder whose values are functions of time.
 pub(crate) struct Model {
     pub(crate) now_us: u64,
     pub(crate) clocking: Option<Clocking>,
-    /// Period and start of the stream.
+    /// Period and start of the running stream in microseconds.
     pub(crate) stream: Option<(u32, u64)>,
-    /// Value of an SSI word at a time in microseconds.
+    /// Function from a time in microseconds to the SSI word.
     pub(crate) ssi: fn(u64) -> u64,
     /// Four levels before the data of a BiSS frame.
     pub(crate) biss_head: u64,
     pub(crate) biss: fn(u64) -> u64,
-    /// Control bits of the encoder, and those of the host.
+    /// Control bits of the encoder and of the host.
     pub(crate) cds: VecDeque<bool>,
     pub(crate) cdm: Vec<bool>,
     /// Start of the conversions, and whether one was missed.
     pub(crate) conversions: Option<u64>,
     pub(crate) has_overrun: bool,
-    /// Value of an input at a time in microseconds.
+    /// Function from an input and a time in microseconds to the converted value.
     pub(crate) input: fn(u32, u64) -> u16,
-    /// Voltage before the switch of the supply, its state, and whether it reports a fault.
+    /// Voltage at the input of the supply switch, state of the switch, and whether it reports a fault.
     pub(crate) input_millivolt: u16,
     pub(crate) is_supplied: bool,
     pub(crate) has_fault: bool,
-    /// Characters that were sent, and the end of their transmission; the reply with its delay.
+    /// Sent characters, the end of their transmission, and the reply with its delay.
     pub(crate) sent: Vec<u32>,
     pub(crate) sent_us: u64,
     pub(crate) reply: Vec<u32>,
     pub(crate) reply_delay_us: u64,
-    /// Start of each single frame in microseconds.
+    /// Start times of all single frames in microseconds.
     pub(crate) frames: Vec<u64>,
 }
 
@@ -58,7 +58,7 @@ impl Model {
     }
 }
 
-/// Splits a frame into words, first bit first.
+/// Splits a frame into words, starting with the first bit.
 fn split(value: u128, bits: u8) -> FrameWords {
     let mut words = [0; 3];
     for at in 0..usize::from(bits) {
@@ -239,7 +239,7 @@ impl Bench {
         self.adapter.bus_mut()
     }
 
-    /// Lets time pass and returns what the adapter has sent.
+    /// Advances the clock by a number of microseconds and returns the messages sent by the adapter.
     pub(crate) fn run(&mut self, us: u64) -> Vec<Message> {
         self.model().now_us += us;
         self.adapter.poll();
@@ -268,7 +268,7 @@ impl Bench {
     }
 }
 
-/// Returns the operation and the code of a refusal.
+/// Returns the operation and the error code of a rejection.
 pub(crate) fn refusal(message: Message) -> (u8, ErrorCode) {
     match message {
         Message::Error { op, code, .. } => (op, code),

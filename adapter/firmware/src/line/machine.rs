@@ -20,12 +20,12 @@ impl<SM: ValidStateMachine> Machine<SM> {
         Machine { machine, rx, tx, start, idle }
     }
 
-    /// Sets the number of system clocks in a cycle.
+    /// Sets the number of system clocks per cycle.
     pub(super) fn set_divisor(&mut self, divisor: u16) {
         self.machine.clock_divisor_fixed_point(divisor, 0);
     }
 
-    /// Sets the number of system clocks in a cycle, with 256ths.
+    /// Sets the number of system clocks per cycle as a whole number and 256ths.
     pub(super) fn set_divisor_256(&mut self, whole: u16, fraction: u8) {
         self.machine.clock_divisor_fixed_point(whole, fraction);
     }
@@ -36,7 +36,7 @@ impl<SM: ValidStateMachine> Machine<SM> {
         self.execute(InstructionOperands::PULL { if_empty: false, block: false });
     }
 
-    /// Loads Y, by way of OSR. The machine must be waiting.
+    /// Loads Y through OSR. The machine must be waiting.
     pub(super) fn load_y(&mut self, value: u32) {
         self.load_osr(value);
         self.execute(InstructionOperands::MOV {
@@ -63,7 +63,7 @@ impl<SM: ValidStateMachine> Machine<SM> {
         });
     }
 
-    /// Sets the output pins of the machine.
+    /// Sets the output pins of the machine to high.
     pub(super) fn set_output_high(&mut self) {
         self.execute(InstructionOperands::MOV {
             destination: MovDestination::PINS,
@@ -72,32 +72,32 @@ impl<SM: ValidStateMachine> Machine<SM> {
         });
     }
 
-    /// Returns whether the machine waits at the begin of its program.
+    /// Returns whether the machine waits at the beginning of its program.
     pub(super) fn is_at_start(&self) -> bool {
         self.machine.instruction_address() == u32::from(self.start)
     }
 
-    /// Returns the address of the input, and the number of its requests to the DMA.
+    /// Returns the address of the input FIFO and the number of its DMA request.
     pub(super) fn input(&self) -> (*const u32, u8) {
         (self.tx.fifo_address(), self.tx.dreq_value())
     }
 
-    /// Begins the program again.
+    /// Restarts the program from the beginning.
     pub(super) fn restart(&mut self) {
         self.execute(InstructionOperands::JMP { condition: JmpCondition::Always, address: self.start });
     }
 
-    /// Adds a word to the input of the machine.
+    /// Adds a word to the input FIFO of the machine.
     pub(super) fn send(&mut self, word: u32) {
         self.tx.write(word);
     }
 
-    /// Returns whether the machine has taken all words.
+    /// Returns whether the machine has consumed all words.
     pub(super) fn has_taken_all(&self) -> bool {
         self.tx.is_empty()
     }
 
-    /// Returns the next word, for which it waits.
+    /// Waits for the next word and returns it.
     pub(super) fn receive(&mut self) -> u32 {
         loop {
             if let Some(word) = self.rx.read() {
@@ -106,12 +106,12 @@ impl<SM: ValidStateMachine> Machine<SM> {
         }
     }
 
-    /// Forgets the words that have been received.
+    /// Discards all received words.
     pub(super) fn discard(&mut self) {
         while self.rx.read().is_some() {}
     }
 
-    /// Returns the address of the output, and the number of its requests to the DMA.
+    /// Returns the address of the output FIFO and the number of its DMA request.
     pub(super) fn output(&self) -> (*const u32, u8) {
         (self.rx.fifo_address(), self.rx.dreq_value())
     }

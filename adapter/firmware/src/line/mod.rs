@@ -1,5 +1,5 @@
-//! The clock and data lines. PIO 1 has the machines of SSI and PIO 0 those of BiSS, each with a pacer. The clock pin is
-//! connected to one of them.
+//! The clock and data lines. PIO 1 runs the state machines of SSI, and PIO 0 runs those of BiSS, each with a pacer. The
+//! clock pin is connected to one of the two.
 
 mod machine;
 mod serial;
@@ -23,14 +23,14 @@ use crate::supply::{self, Switch};
 use machine::Machine;
 use serial::Serial;
 
-/// Cycles from the start of a frame until the first falling edge, for SSI and BiSS.
+/// Number of cycles from the start of a frame to the first falling edge, for both SSI and BiSS.
 const START_CYCLES: u32 = 3;
 const BISS_START_CYCLES: u32 = 5;
-/// System clocks in a microsecond. It is also the divisor of a pacer, which counts microseconds.
+/// Number of system clocks per microsecond. A pacer counts microseconds, so this is also its divisor.
 const PER_US: u16 = (SYSTEM_HZ / 1_000_000) as u16;
-/// Microseconds that a pacer needs beside its counter.
+/// Time in microseconds that a pacer needs in addition to its count.
 const PACER_US: u32 = 3;
-/// The flag that starts a frame.
+/// Number of the PIO flag that starts a frame.
 const START: u8 = 1;
 
 /// The pins of the lines.
@@ -43,7 +43,7 @@ pub(crate) struct Pins<C: Function, D: Function, E: Function> {
     pub(crate) direction: Pin<Gpio10, C, PullNone>,
 }
 
-/// The clock and data lines with all that drives them, and the analogue inputs.
+/// The clock and data lines with their state machines, the serial line, the supply, and the analogue inputs.
 pub(crate) struct Line {
     timer: Timer,
     ring: Ring,
@@ -63,7 +63,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Loads the programs and starts the machines, which wait. The clock is high.
+    /// Loads the programs and starts the machines, which wait with the clock high.
     pub(crate) fn new(
         pio0: PIO0,
         pio1: PIO1,
@@ -169,7 +169,7 @@ impl Line {
         })
     }
 
-    /// Returns the time from the start of a frame until its first falling edge, rounded to microseconds.
+    /// Returns the time from the start of a frame to its first falling edge, rounded to microseconds.
     fn start_us(&self) -> u64 {
         let cycles = match self.clocking {
             Some(Clocking::Ssi(setting)) => START_CYCLES * u32::from(setting.divisor),
@@ -195,7 +195,7 @@ impl Line {
         }
     }
 
-    /// Returns the number of bits in a frame, and its longest duration in microseconds.
+    /// Returns the number of bits in a frame and its maximum duration in microseconds.
     fn extent(&self) -> (u8, u32) {
         match self.clocking {
             Some(Clocking::Ssi(setting)) => (setting.clocks, setting.burst_us()),
@@ -205,7 +205,7 @@ impl Line {
     }
 }
 
-/// Builds a pacer of a PIO block with a state machine.
+/// Sets up a state machine of a PIO block as a pacer.
 macro_rules! pacer {
     ($block:ident, $machine:ident) => {{
         let program = $block.install(&pio::pio_file!("pio/pacer.pio").program)?;
@@ -253,7 +253,7 @@ impl Bus for Line {
             let cycles = (u32::from(timeout_us) + 1) * u32::from(PER_US) / u32::from(divisor);
             self.ma.send(cycles);
         }
-        // Nothing comes between the time and the frame.
+        // The time must be read directly before the frame starts.
         let t_us = critical_section::with(|_| {
             let t_us = self.now_us();
             self.begin_frame();
@@ -294,7 +294,7 @@ impl Bus for Line {
     fn stop(&mut self) {
         self.ssi_pacer.restart();
         self.biss_pacer.restart();
-        // The last frame ends.
+        // Wait until the last frame has ended.
         let end = self.now_us() + u64::from(self.extent().1) + 2;
         self.wait_until(end);
         self.ring.stop();
@@ -316,7 +316,7 @@ impl Bus for Line {
         if !self.is_converting {
             return supply::millivolt(self.converter.measure(SUPPLY_INPUT));
         }
-        // The latest conversion of the input in the running round.
+        // The latest conversion of the input.
         let latest = self.converter.converted().saturating_sub(1);
         let number = latest - (latest + AnalogSetting::INPUTS - SUPPLY_INPUT) % AnalogSetting::INPUTS;
         supply::millivolt(self.converter.value(number))
@@ -344,7 +344,7 @@ impl Bus for Line {
     }
 
     fn first_edge_us(&mut self) -> Option<u64> {
-        // The hardware has the lower half of the time, which has passed a moment ago.
+        // The hardware records only the lower half of the time, which is in the recent past.
         let now = self.now_us();
         self.serial.first_edge().map(|time| now - u64::from((now as u32).wrapping_sub(time)))
     }
@@ -387,7 +387,7 @@ impl Bus for Line {
 
 /// Connects the clock pin to the machines of a bus.
 fn connect_clock(clocking: Clocking) {
-    // Safety: only this function changes the function of the pin, which `Line` owns. Both machines keep it high.
+    // Safety: only this function changes the function of the pin, which `Line` owns. Both machines keep the pin high.
     let bank = unsafe { &*IO_BANK0::ptr() };
     bank.gpio(CLOCK.into()).gpio_ctrl().modify(|_, w| match clocking {
         Clocking::Ssi(_) => w.funcsel().pio1(),

@@ -1,5 +1,5 @@
-//! The serial line: two state machines of PIO 1, and four channels of the DMA. The processor only begins a transfer and
-//! looks at its result, so that neither characters nor the time of the reply depend on the main loop.
+//! The serial line, which uses two state machines of PIO 1 and four DMA channels. The processor only starts a transfer
+//! and reads its result. The characters and the time of the reply therefore do not depend on the main loop.
 
 use core::cell::UnsafeCell;
 
@@ -14,25 +14,25 @@ use crate::ring::dma;
 
 /// Maximum number of characters of a request and of a reply.
 const LENGTH: usize = 512;
-/// Channels of the DMA: sending, the mark of the first edge, its time, and the characters of the reply.
+/// DMA channels: sending, the mark of the first edge, the time of this edge, and the characters of the reply.
 const SEND: usize = 4;
 const MARK: usize = 5;
 const STAMP: usize = 6;
 const RECEIVE: usize = 7;
-/// Request that is always present.
+/// Number of the DMA request that is always active.
 const ALWAYS: u8 = 63;
-/// Content of the memory of a character that has not arrived. Received bits are the highest of a word.
+/// Placeholder for a character that has not arrived. Received characters only use the highest bits of a word.
 const NOTHING: u32 = 1;
 
-/// Memory that both the DMA and the processor use.
+/// Memory shared by the DMA and the processor.
 struct Shared<const N: usize>(UnsafeCell<[u32; N]>);
 
-// Safety: the processor writes it while no channel runs, and reads it by volatile reads of whole words.
+// Safety: the processor writes this memory only while no channel runs, and reads it with volatile reads of whole words.
 unsafe impl<const N: usize> Sync for Shared<N> {}
 
 static SENT: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
 static RECEIVED: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
-/// The mark of the first edge, which has no meaning, and the lower half of its time.
+/// The mark of the first edge, whose value is meaningless, and the lower half of its time.
 static EDGE: Shared<2> = Shared(UnsafeCell::new([0; 2]));
 
 impl<const N: usize> Shared<N> {
@@ -41,13 +41,13 @@ impl<const N: usize> Shared<N> {
     }
 
     fn read(&self, at: usize) -> u32 {
-        // Safety: the place is within the memory.
+        // Safety: the index is within the memory.
         if at < N { unsafe { self.address().add(at).read_volatile() } } else { 0 }
     }
 
     fn write(&self, at: usize, word: u32) {
         if at < N {
-            // Safety: the place is within the memory.
+            // Safety: the index is within the memory.
             unsafe { self.address().add(at).write_volatile(word) };
         }
     }
@@ -57,11 +57,11 @@ impl<const N: usize> Shared<N> {
 pub(super) struct Serial {
     pub(super) sender: Machine<(PIO1, SM1)>,
     pub(super) receiver: Machine<(PIO1, SM2)>,
-    /// Content of the memory of the time before the first edge: a time that has passed.
+    /// Placeholder for the time before the first edge: a time in the past.
     no_edge: u32,
     /// Delay of the mark in microseconds.
     mark_delay_us: u32,
-    /// Number of characters that were found so far.
+    /// Number of characters received so far.
     count: usize,
 }
 
@@ -75,13 +75,13 @@ impl Serial {
         self.mark_delay_us = setting.mark_delay_us();
         self.sender.set_divisor_256(whole, fraction);
         self.receiver.set_divisor_256(whole, fraction);
-        // At most eleven bits, and for the receiver without the start bit.
+        // At most eleven bits. The receiver omits the start bit.
         let bits = setting.bits() as u8;
         self.sender.set_y(bits - 1);
         self.receiver.set_y(bits - 2);
     }
 
-    /// Sends characters, and then receives. `now` is the lower half of the clock.
+    /// Starts sending characters and then receiving. `now` is the lower half of the clock.
     pub(super) fn begin(&mut self, characters: &[u32], now: u32) {
         self.end();
         (self.no_edge, self.count) = (now.wrapping_sub(1), 0);
@@ -94,7 +94,7 @@ impl Serial {
             SENT.write(at, *word);
         }
         let (fifo, request) = self.receiver.output();
-        // Each starts the next one: the mark, the time at which it came, and the characters.
+        // Each channel starts the next one: the mark, its time, and the characters.
         let timer = timer_address();
         channel(MARK, fifo as u32, EDGE.address(), 1, Copied { request, chain: STAMP, advance: 0 });
         channel(
@@ -109,7 +109,7 @@ impl Serial {
         let (fifo, request) = self.sender.input();
         let words = Copied { request, chain: SEND, advance: READS };
         channel(SEND, SENT.address() as u32, fifo.cast_mut(), count as u32, words);
-        // Safety: the channels are set up. Those of the time and of the characters follow.
+        // Safety: the channels are set up. The channels of the time and the characters are started by chaining.
         unsafe { dma().multi_chan_trigger().write(|w| w.bits(1 << MARK | 1 << SEND)) };
     }
 
@@ -118,7 +118,7 @@ impl Serial {
         !is_busy(SEND) && self.sender.has_taken_all() && self.sender.is_at_start()
     }
 
-    /// Returns the lower half of the time of the first edge.
+    /// Returns the lower half of the first edge's time, or `None` before the edge.
     pub(super) fn first_edge(&self) -> Option<u32> {
         Some(EDGE.read(1)).filter(|time| *time != self.no_edge).map(|time| time.wrapping_sub(self.mark_delay_us))
     }
@@ -134,7 +134,7 @@ impl Serial {
         RECEIVED.read(at)
     }
 
-    /// Ends a transfer, and prepares the receiver for the next one.
+    /// Ends a transfer and prepares the receiver for the next one.
     pub(super) fn end(&mut self) {
         let channels = [SEND, MARK, STAMP, RECEIVE];
         let mask = channels.iter().fold(0, |mask, channel| mask | 1 << channel);
@@ -153,14 +153,14 @@ impl Serial {
     }
 }
 
-/// Addresses that advance during a copy.
+/// Flags for advancing the read or write address during a copy.
 const READS: u32 = 1 << 4;
 const WRITES: u32 = 1 << 5;
 
-/// How a channel copies.
+/// Options of a DMA copy.
 struct Copied {
     request: u8,
-    /// Channel that is started at the end; its own number for none.
+    /// Channel to start at the end. A channel's own number starts none.
     chain: usize,
     advance: u32,
 }
@@ -168,7 +168,7 @@ struct Copied {
 /// Sets up a channel that copies words, without starting it.
 fn channel(number: usize, from: u32, to: *mut u32, count: u32, copied: Copied) {
     let registers = dma().ch(number);
-    // Safety: the addresses are a FIFO, the timer and memory that is never freed, which has room for the count.
+    // Safety: the addresses are a FIFO, the timer, and memory that is never freed and has room for the count.
     unsafe {
         registers.ch_read_addr().write(|w| w.bits(from));
         registers.ch_write_addr().write(|w| w.bits(to as u32));

@@ -1,4 +1,4 @@
-//! Captures with unreliable numbers, and the resulting findings.
+//! Tests of the findings for captures with unreliable numbers.
 
 use super::*;
 
@@ -18,7 +18,7 @@ fn analysed(made: &Made) -> Analysis {
 fn missing_samples_are_reported_and_do_not_change_the_frequency() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     for column in [&mut capture.time, &mut capture.sine, &mut capture.cosine] {
-        // 2.003 ms, a quarter of a period short of a whole number of them.
+        // 2.12 ms are removed, which is not a whole number of periods.
         column.drain(10_000..10_212);
     }
     let finding = capture.finding_text();
@@ -39,11 +39,11 @@ fn a_backward_time_step_is_reported() {
 
 #[test]
 fn a_reversing_shaft_has_the_mean_speed_of_both_directions() {
-    // 12 periods in both directions, eight times per second: 0.4 s are 3.2 of these, 153.6 periods and the path of the
-    // rest.
+    // The angle swings by 12 periods to both sides, eight times per second: 3.2 swings in 0.4 s.
     let capture = made(|time| 12.0 * (TAU * 8.0 * time).sin(), plain);
     assert_eq!(found(&capture), [FindingKind::Reversed { times: 6 }]);
-    // 6 turning points: 12 + 5·24 to the last one at −12, and back to 12·sin(6.4π) = 11.413.
+    // There are 6 turning points. The path is 12 + 5·24 periods to the last one at −12, and then 23.413 back to
+    // 12·sin(6.4π) = 11.413.
     near(analysed(&capture).frequency_hz().unwrap(), (12.0 + 5.0 * 24.0 + 23.413) / 0.399_99, 0.05);
 }
 
@@ -77,7 +77,8 @@ fn a_disturbance_makes_the_parameters_uncertain() {
 
 #[test]
 fn a_harmful_correction_is_reported() {
-    // In opposite phase: the distance from the ellipse repeats twice per period, which looks like a gain of 1.04.
+    // Harmonics in opposite phase: the deviation from the ellipse repeats twice per period, which looks like a gain
+    // ratio of 1.04.
     let third =
         |_, angle: f64, (sine, cosine)| (sine - 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
     let other =
@@ -85,7 +86,7 @@ fn a_harmful_correction_is_reported() {
     for capture in [made(steady, third), made(steady, other)] {
         let found = found(&capture);
         let [FindingKind::CorrectionHarms { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
-        // 0.02·sin 2θ, and with the gain the same amount again: Python gives 2.29° and 4.59°.
+        // The error is 0.02·sin 2θ, and the correction of the gain adds the same amount. Python yields 2.29° and 4.59°.
         near(*raw_deg, 2.29, 0.02);
         near(*corrected_deg, 4.59, 0.1);
     }

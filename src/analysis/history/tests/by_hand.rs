@@ -1,4 +1,4 @@
-//! Cases that are small enough to be worked out by hand.
+//! Tests of cases that are small enough to be worked out by hand.
 
 use super::super::{BLOCK, BatchError, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Value};
 use crate::analysis::SampleTime;
@@ -17,7 +17,7 @@ fn picture(history: &History, from: i64, to: i64, pixels: usize) -> HistoryPictu
     picture
 }
 
-/// Returns a sample every 10 ns.
+/// Returns a history with one sample every 10 ns.
 fn history(values: &[f64], flags: &[Flags]) -> History {
     let mut history = History::new(&[Kind::Real], values.len());
     let times = times((0..values.len() as i64).map(|k| 10 * k));
@@ -197,7 +197,7 @@ fn a_grid_is_anchored_at_multiples_of_its_width() {
     assert_eq!(picture(&history, 9, 0, 5).pixels.len(), 2, "the samples on both sides");
 }
 
-/// Blocks of 4096; for 5000 samples two and the one being filled are kept.
+/// Blocks have 4096 samples. For a capacity of 5000, two blocks are kept in addition to the block being filled.
 #[test]
 fn the_next_oldest_sample_is_predicted() {
     let mut history = History::new(&[Kind::Whole], 5_000);

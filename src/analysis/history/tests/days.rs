@@ -1,5 +1,5 @@
-//! Long runs in virtual time, and their memory use. These are shorter than a day's samples, so that they can be run
-//! unoptimised; `benches/history.rs` runs the whole day.
+//! Tests of long runs in virtual time and their memory use. The runs are shorter than a day, so that they also finish
+//! in unoptimised builds; `benches/history.rs` runs a whole day.
 
 use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind};
 use crate::analysis::{Motion, PositionUnwrapper, SampleTime};
@@ -45,7 +45,8 @@ fn memory_is_close_to_the_raw_columns() {
 fn times_are_exact_over_ten_days() {
     let mut history = History::new(&[Kind::Whole], 10_000);
     let ten_days = 10 * 86_400_000;
-    // An hour's batch each time, of which the history keeps the last seconds: 1 kHz, and the clock's odd nanoseconds.
+    // Each batch covers an hour, and the history keeps the last seconds. The rate is 1 kHz with a jitter of a few
+    // nanoseconds.
     let at = |k: i64| SampleTime::from_nanoseconds(k * MILLISECOND + k % 7);
     for start in (0..ten_days).step_by(3_600_000) {
         let numbers: Vec<i64> = (start..start + 5_000).collect();
@@ -68,7 +69,7 @@ fn times_are_exact_over_ten_days() {
 fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
     const BATCH: i64 = 5_000;
     const RANGE: i64 = 4096 * 4096;
-    // Steps per millisecond: about 6000 rpm, so the position wraps every 41 s.
+    // Speed in steps per millisecond. This is about 6000 rpm, so the position wraps every 41 s.
     const SPEED: i64 = 409;
     let mut history = History::new(&[Kind::Whole, Kind::Real], 200_000).with_longest_pause(10 * MILLISECOND);
     let mut unwrap = PositionUnwrapper::rotary(RANGE).unwrap();
@@ -104,7 +105,8 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
         most = most.max(history.memory());
     }
     assert!(most < 200_000 * 24 * 135 / 100, "{most}");
-    // The remaining samples, at three zooms: every gap is a break, and no column is higher than the encoder turns.
+    // In pictures of the remaining samples at three zooms, every gap is a break, and no column exceeds the travel of
+    // the encoder.
     let all = history.indices();
     let (from, to) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap().saturating_add_ns(1));
     let kept = all.clone().filter(|index| history.sample(0, *index).unwrap().flags == Flags::BREAK).count();

@@ -45,7 +45,7 @@ impl Model {
         self.flags[range].iter().fold(Flags::NONE, |all, flags| all | *flags)
     }
 
-    /// Returns the required picture, without any rounding, and whether it consists of samples.
+    /// Returns the exact picture without rounding, and whether it consists of single samples.
     pub(super) fn picture(&self, first: usize, grid: &Grid) -> (Vec<Pixel>, bool) {
         let mut edges: Vec<usize> = (0..=grid.pixel_count()).map(|pixel| self.edge(first, grid, pixel)).collect();
         let (from, to) = (edges[0], edges[grid.pixel_count()]);
@@ -85,8 +85,8 @@ impl Model {
         (ranges.into_iter().map(pixel).collect(), raw)
     }
 
-    /// Returns the first sample of a pixel column: the first after its edge, or the beginning of 512, 64 or 8 samples
-    /// that is no earlier than a sixteenth of a column before the edge.
+    /// Returns the first sample of a pixel column. This is the first sample after its edge, or the start of a bucket of
+    /// 512, 64 or 8 samples, at most a sixteenth of a column before the edge.
     fn edge(&self, first: usize, grid: &Grid, pixel: usize) -> usize {
         let edge = grid.pixel_start(pixel);
         let exact = self.between(first, edge, edge).start;
@@ -97,7 +97,7 @@ impl Model {
         starts.into_iter().find(near).filter(|_| inner).unwrap_or(exact)
     }
 
-    /// Returns the range of the values in the blocks between two times, by which the rounding is measured.
+    /// Returns the value range of the blocks between two times. The permitted rounding is relative to this range.
     pub(super) fn around(&self, first: usize, from: SampleTime, to: SampleTime) -> f64 {
         let range = self.between(first, from, to.saturating_add_ns(1));
         let blocks = range.start / BLOCK * BLOCK..range.end.next_multiple_of(BLOCK).min(self.times.len());

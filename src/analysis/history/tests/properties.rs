@@ -24,7 +24,7 @@ struct Run {
     count: usize,
     shape: Shape,
     offset: i64,
-    /// One in this many has a flag; 0: none.
+    /// Mean distance between flagged samples, or 0 for no flags.
     flagged: usize,
     broken: bool,
     batch: usize,
@@ -96,7 +96,7 @@ fn build(kind: Kind, runs: &[Run], capacity: usize) -> (History, Model) {
             let flags =
                 if remarkable { [Flags::BAD, Flags::WARNING, Flags::BREAK][random.usize(0..3)] } else { Flags::NONE };
             let value = value(kind, run.shape, run.offset, at, &mut random);
-            // The history must draw the consequences itself.
+            // The history must set the implied breaks itself.
             model.times.push(now);
             model.values.push(value);
             model.flags.push(flags);
@@ -140,7 +140,7 @@ fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
     }
 }
 
-/// Checks that the extremes enclose the true ones with little slack, and that everything else is equal.
+/// Checks that the extremes enclose the true extremes closely, and that everything else is equal.
 fn check(found: &[Pixel], wanted: &[Pixel], around: impl Fn(&Pixel) -> f64) -> Result<(), TestCaseError> {
     prop_assert_eq!(found.len(), wanted.len());
     for (found, wanted) in found.iter().zip(wanted) {
@@ -218,7 +218,7 @@ proptest! {
             prop_assert_eq!((Some(found.min), Some(found.max)), (least, most));
             let largest = good.iter().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
             if largest < 1e150 {
-                // Two passes about the first value, which loses nothing to an offset.
+                // Two passes relative to the first value, so that an offset does not reduce the precision.
                 let n = good.len() as f64;
                 let from_first: Vec<f64> = good.iter().map(|value| minus(*value, good[0])).collect();
                 let mean = from_first.iter().sum::<f64>() / n;
@@ -248,7 +248,7 @@ proptest! {
         }
     }
 
-    /// A view that stays gives the same columns while more is appended and the oldest is evicted.
+    /// An unchanged view yields the same columns while samples are appended and the oldest samples are evicted.
     #[test]
     fn an_unchanged_view_keeps_its_columns(kind in kinds(), runs in runs(), more in runs()) {
         let capacity = 60_000;
@@ -260,7 +260,7 @@ proptest! {
         let (later, _) = build(kind, &[runs, more].concat(), capacity);
         let mut later_picture = HistoryPicture::default();
         later.render_column(1, &later.divide_into_pixels(&grid), &mut later_picture);
-        // The samples of complete blocks that are still stored are identical to the last bit.
+        // The results for stored complete blocks are identical to the last bit.
         let settled = history.time(history.indices().end / BLOCK as u64 * BLOCK as u64).map_or(end, SampleTime::as_nanoseconds);
         let oldest = later.time(later.indices().start).unwrap();
         if !picture.raw && !later_picture.raw {
@@ -272,14 +272,14 @@ proptest! {
             prop_assert_eq!(old.iter().rev().take(old.len().saturating_sub(cut)).collect::<Vec<_>>(),
                 new.iter().rev().take(old.len().saturating_sub(cut)).collect::<Vec<_>>());
         }
-        // A view that moves by whole columns has the same columns again.
+        // A view that moves by whole columns yields the same columns.
         let width = grid.width();
         let moved = Grid::new(SampleTime::from_nanoseconds(10 * width), SampleTime::from_nanoseconds(60 * width), 50);
         prop_assert_eq!(moved.width(), width);
         let mut moved_picture = HistoryPicture::default();
         history.render_column(1, &history.divide_into_pixels(&moved), &mut moved_picture);
         if !picture.raw && !moved_picture.raw {
-            // The ends of a picture are exact; between them a column may begin a sixteenth of its width earlier.
+            // The ends of a picture are exact. Between them, a column may begin a sixteenth of its width earlier.
             let (from, to) = (moved.pixel_start(1), grid.pixel_start(grid.pixel_count() - 1).saturating_add_ns(-(width / 16)));
             let inside = |pixel: &&Pixel| pixel.from >= from && pixel.from < to;
             let still: Vec<&Pixel> = picture.pixels.iter().filter(inside).collect();

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::args::DirectionOption;
 use crate::devices::hiperdrive::protocol::{ByteOrder, KIND};
 
-/// Option that selects a drive behind a hub; only a hub has several drives.
+/// Option that selects a drive behind a hub.
 #[derive(Args)]
 pub(super) struct DriveOption {
     /// hiperdrive: number of the drive behind a hub, 1 to 8. Default: the first drive, or the one in the parameter
@@ -15,7 +15,7 @@ pub(super) struct DriveOption {
     pub(super) drive: Option<u8>,
 }
 
-/// Options of `do`.
+/// Options of the `do` command.
 #[derive(Args)]
 pub(super) struct DoOptions {
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub(super) struct DoOptions {
     pub(super) all: bool,
 }
 
-/// Options of `decode`.
+/// Options of the `decode` command.
 #[derive(Args)]
 pub(super) struct WordOptions {
     #[command(flatten)]
@@ -35,7 +35,7 @@ pub(super) struct WordOptions {
     pub(super) order: Option<ByteOrderArg>,
 }
 
-/// Hub option of `simulate`.
+/// Hub option of the `simulate` command.
 #[derive(Args)]
 pub(super) struct HubOption {
     /// hiperdrive: serve a hub with this number of ports instead of an adapter.
@@ -85,7 +85,7 @@ impl From<ByteOrderArg> for ByteOrder {
     }
 }
 
-/// The actions of drives.
+/// Actions of an adapter or a hub and its drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum HiperdriveAction {
     /// check the device, supply and address, and for each drive the request, line, errors and range

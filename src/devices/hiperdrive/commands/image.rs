@@ -9,8 +9,8 @@ use crate::devices::hiperdrive::protocol::{
     ParameterRow, Pkw, Task, Value, to_turns_and_steps,
 };
 
-/// Decodes process data and returns one meaning for each layout of this length. If the direction is known, only layouts
-/// of that direction are used. The result is empty if no layout matches.
+/// Decodes process data and returns one meaning for each layout whose length matches. If the direction is known, only
+/// layouts of that direction are used. The result is empty if no layout matches.
 ///
 /// # Errors
 /// Returns an error with the reason if the data cannot have been sent in the known direction.
@@ -50,7 +50,7 @@ fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
 }
 
 /// Returns the meanings of the process data in a cyclic packet. The packet's direction is used if no direction is
-/// known. The result is empty if no layout has this length.
+/// known. The result is empty if no layout has the length of the data.
 pub(super) fn explain_cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {

@@ -144,7 +144,7 @@ impl DriveFact {
 ///
 /// Entries in the error buffer survive a power cycle, so only the newest ones are treated as errors. Their number is
 /// the fault count since the last acknowledgement, but at least one during a fault. A drive outside its limits and a
-/// communication error are treated as warnings. See reference 4.
+/// communication error are treated as warnings. See section 4 of the reference.
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.is_set(StatusBit::Fault);

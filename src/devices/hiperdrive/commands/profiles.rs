@@ -95,8 +95,8 @@ fn read_profile(common: &CommonArgs) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 
-/// Lists the profile items that the device does not have. A port without a drive is listed as one item, no matter how
-/// many parameters it has.
+/// Lists the profile items that the device does not have. A port without a drive is listed as one item, regardless of
+/// the number of its parameters.
 fn missing_items(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {

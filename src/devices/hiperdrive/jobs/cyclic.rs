@@ -33,8 +33,7 @@ struct CyclicCommands {
     lost: Mutex<Option<ConnectionLoss>>,
 }
 
-/// Item type of a channel that never carries a value. The channel only signals, by disconnecting, that the thread has
-/// ended.
+/// Item type of a channel that never carries a value. The disconnection of the channel signals the end of the thread.
 enum Never {}
 
 /// A cyclic connection without a thread, driven by its owner. Tests run it in virtual time.
@@ -55,7 +54,7 @@ const END_TIMEOUT: Duration = Duration::from_millis(1500);
 const MAX_PACKETS_AT_ONCE: usize = 64;
 
 impl Cyclic {
-    /// Starts the thread for an open connection; `port` must be directed at the target.
+    /// Starts the thread for an open connection. `port` must be directed at the target.
     ///
     /// # Errors
     /// Returns an error if the system cannot create a thread. In this case, no data has been sent.
@@ -100,7 +99,7 @@ impl Cyclic {
     /// reason if the connection was lost.
     pub fn close(self) -> Option<ConnectionLoss> {
         self.commands.end.store(true, Ordering::SeqCst);
-        // The channel disconnects when the thread ends; a thread that takes longer is not awaited.
+        // The channel disconnects when the thread ends. After the time-out, the thread is no longer awaited.
         let _ = self.ended.recv_timeout(END_TIMEOUT);
         self.connection_loss()
     }

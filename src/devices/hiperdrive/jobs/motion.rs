@@ -30,7 +30,7 @@ struct Shared {
 
 struct Cell {
     intent: MotionIntent,
-    /// The limits of each drive, which are not stored anywhere else.
+    /// Limits of each drive. This is the only copy of them.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
@@ -41,7 +41,7 @@ struct Cell {
     view: MotionSnapshot,
     /// Whether the program is shutting down. While it is, no motion is allowed.
     is_shutting_down: bool,
-    /// Whether the target holds a cyclic connection that this session opened.
+    /// Whether the target holds a cyclic connection opened by this session.
     connected: bool,
 }
 
@@ -291,7 +291,7 @@ impl Motion {
         self.lock().is_shutting_down
     }
 
-    /// Returns whether the target holds a cyclic connection that this session opened and has not closed.
+    /// Returns whether the target holds a cyclic connection opened by this session and not yet closed.
     pub fn is_connected(&self) -> bool {
         self.lock().connected
     }

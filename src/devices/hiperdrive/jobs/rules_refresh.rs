@@ -1,5 +1,5 @@
-//! Repeated reading of the limits while drives may be moved, because another master may change them. The limits read
-//! are those of the displayed drive and of the drive moved last. The interval is independent of other polling.
+//! Repeated reading of the limits while drives may be moved, because another master may change them. Only the limits of
+//! the displayed drive and of the drive moved last are read. The interval is independent of other polling.
 
 use std::time::Duration;
 
@@ -32,7 +32,7 @@ fn due_groups(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize>
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
-/// Returns how many time slots of a group have begun by the given time.
+/// Returns the number of time slots of a group that have begun by the given time.
 fn turns_begun(group: usize, at: Moment, turn: Duration) -> u128 {
     let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
@@ -136,7 +136,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: while a drive moves, some group is due in every turn of 60 ms.
+    /// Issue 21.13: while a drive moves, one of the groups becomes due at least every 60 ms.
     #[test]
     fn a_group_is_due_every_60_ms_during_motion() {
         let mut read = [at(0); GROUPS];

@@ -152,7 +152,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: 130 ms without a reply are too long, counted from the first unanswered request.
+    /// Issue 21.13: 130 ms without a reply is too long, counted from the first unanswered request.
     #[test]
     fn silence_counts_from_the_first_unanswered_request() {
         let mut watch = ReplyMonitor::default();
@@ -171,7 +171,7 @@ mod tests {
         assert!(!watch.is_silent(at(1001)));
     }
 
-    /// A line that delivers only the bytes put into it.
+    /// A line that only delivers the bytes stored in it.
     #[derive(Default)]
     struct Line(Vec<u8>);
 
@@ -194,8 +194,8 @@ mod tests {
         }
     }
 
-    /// Issue 21.13: an unanswered request or bytes that are not a frame lock motion, and a reply unlocks it. The reply
-    /// is the one to RegisterSession in the reference (9), received in two parts.
+    /// Issue 21.13: an unanswered request or bytes that are not a frame lock motion, and a reply unlocks it. The test
+    /// receives the reply to RegisterSession from the reference (section 9) in two parts.
     #[test]
     fn a_silent_session_locks_motion() {
         let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
@@ -235,7 +235,7 @@ mod tests {
         assert!(!locked());
     }
 
-    /// A device that takes 300 ms for each reply is allowed 600 ms, and less again after it has become faster.
+    /// A device that takes 300 ms for each reply is allowed 600 ms, and less once it has become faster.
     #[test]
     fn a_slow_device_gets_a_longer_timeout() {
         let mut watch = ReplyMonitor::default();

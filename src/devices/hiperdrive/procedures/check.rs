@@ -66,7 +66,7 @@ impl fmt::Display for CheckStep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// Number of times a value was read, and the longest reply time.
+    /// Reply times: the number of readings, the longest reply time, and the number of late frames.
     Replies {
         requested: u32,
         /// Longest reply time in milliseconds.
@@ -169,7 +169,7 @@ const SUPPLY_RANGE: std::ops::RangeInclusive<i64> = 204..=288;
 /// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference 8.9).
 const TEMPERATURE_RANGE: std::ops::RangeInclusive<i64> = -10..=70;
 
-/// Runs the check, which ends early only if the device fails.
+/// Runs the check to its end, unless the device fails.
 ///
 /// # Errors
 /// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.

@@ -87,7 +87,7 @@ pub struct DriveStatus {
 
 impl DriveStatus {
     /// Returns the number of newest entries in the error buffer that are present errors. The buffer survives a power
-    /// cycle, so the others are earlier ones. There is at least one present error during a fault.
+    /// cycle, so all other entries are earlier errors. During a fault, there is at least one present error.
     pub fn present_error_count(&self) -> usize {
         usize::from(self.faults).max(usize::from(self.status.is_set(StatusBit::Fault)))
     }
@@ -239,7 +239,7 @@ const STATUS_PARAMETERS: u64 = 15;
 /// Returns an error from [`identify`] if the status cannot be read.
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = read_topology(master)?;
-    // For each port, one read shows whether a drive is present. The other reads are those of its status.
+    // For each port, one read determines whether a drive is present. The remaining reads are for its status.
     let mut steps =
         ProgressSteps { done: 0, total: (1 + STATUS_PARAMETERS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
@@ -269,7 +269,7 @@ fn read_drive_status(
     steps: &mut ProgressSteps<'_>,
 ) -> Result<DriveStatus, Error> {
     let mut read = |base| master.read_number(steps.next(drive_parameter(base, number)?));
-    // These parameters are words of 16 bits.
+    // These parameters have 16 bits.
     let mut word = |base| Ok::<_, Error>(read(base)? as u16);
     let mut buffer = Vec::new();
     for error in NEWEST_ERROR..=OLDEST_ERROR {
@@ -296,7 +296,7 @@ fn read_drive_status(
 /// fails.
 pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
     let status = StatusWord::new(read_word(master, STATUS, drive)?);
-    // The types of both parameters have this width.
+    // Both casts match the types of the parameters.
     let speed = master.read_number(drive_parameter(SPEED, drive)?)? as i16;
     let position = master.read_number(drive_parameter(POSITION, drive)?)? as i32;
     Ok(DriveReading { at: master.now(), drive, actual: ActualValues { status, speed, position } })

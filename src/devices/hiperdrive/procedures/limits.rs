@@ -224,7 +224,8 @@ mod tests {
     #[test]
     fn parameters_lock_or_permit_motion() {
         let whole = Some((-33_488_896, 33_488_896));
-        // A degree of 65536 steps per turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
+        // At 65536 steps per turn, a degree is 182.04 steps. At 256 / 400 · 256 = 163.84 steps per turn, it is less
+        // than one step.
         let permit = |limits, locks: &[MotionLock], endless, degree| Permit {
             limits,
             locks: locks.to_vec(),
@@ -252,8 +253,8 @@ mod tests {
         assert!(!other.is_endless_run_allowed(), "its factory values are not known");
     }
 
-    /// Issue 21.3: an invalid scale, range or time-out is treated like one that was not read. Types and ranges are
-    /// those of the manual: 152 is 0 or 1, 160 is above 158, and 186 is 1 to 100, or 255 for never (reference 4).
+    /// Issue 21.3: an invalid scale, range or time-out is treated like one that was not read. According to section 4 of
+    /// the reference, 152 is 0 or 1, 160 is above 158, and 186 is 1 to 100, or 255 for no time-out.
     #[test]
     fn invalid_parameter_values_permit_no_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], MotionLock);
@@ -308,7 +309,7 @@ mod tests {
             (vec![], None),
             "what moves goes on"
         );
-        // A group that was being read when the doubt arose.
+        // The reading of one group had already begun when the doubt arose.
         limits.update(rules(&[]), HDA30A, [at(999), at(1100), at(1100), at(1100)]);
         assert_eq!((limits.read_times(), limits.is_valid(at(1100))), (None, false));
         limits.update(rules(&[]), HDA30A, [at(1200); GROUPS]);

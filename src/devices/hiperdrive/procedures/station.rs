@@ -96,7 +96,7 @@ impl Station {
     /// Returns an error with the allowed values if a value is invalid.
     pub fn from_query(query: &UrlQuery, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
-        // A server with a different port for messages uses this port for cyclic data as well.
+        // A server with a non-standard port for messages also uses this port for cyclic data.
         let beside = tcp.filter(|port| *port != EXPLICIT_PORT).unwrap_or(IMPLICIT_PORT);
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }

@@ -1,4 +1,5 @@
-//! Temperatures of the device (parameter 11) and of a drive (119), which are watched together with the position.
+//! Temperatures of the device (parameter 11) and of a drive (parameter 119), which are watched together with the
+//! position.
 
 use super::identify::{device_parameter, drive_parameter};
 use super::{DriveReading, Error, Master};

@@ -161,7 +161,7 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
         master.read_number(drive_parameter(DENOMINATOR, drive)?)?,
     );
     // A drive at standstill readjusts its position by less than five degrees, which is 1/72 of a turn. A turn has 256 ·
-    // 154 / 156 steps.
+    // numerator / denominator steps.
     let near = (256 * numerator / denominator.max(1) / 72).max(64);
     let position = master.read_number(number)?;
     if (position - reads).abs() <= near {

@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(plan.ops, [Op::Network { from: now.clone(), to: wanted.clone() }]);
         assert_eq!((plan.ops[0].write_cycles(), plan.base.network.as_ref()), (1, Some(&now)));
         assert_eq!(plan_warnings(&plan), []);
-        // DHCP assigns an address: none is written.
+        // No address is written, because DHCP assigns one.
         let plan = plan_network(&wanted, Some(0), &settings(AddressSource::Dhcp, [10, 0, 0, 9])).unwrap();
         let to = NetworkSettings { source: AddressSource::Dhcp, ..wanted.clone() };
         assert_eq!(plan.ops, [Op::Network { from: wanted.clone(), to }]);

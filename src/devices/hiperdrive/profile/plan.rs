@@ -107,8 +107,7 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// Removes the final save from the plan. Without the save, the written values are lost at power-off unless they are
-    /// saved later.
+    /// Removes the final save from the plan. The written values are then lost at power-off unless they are saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();
@@ -147,8 +146,8 @@ impl Op {
         }
     }
 
-    /// Returns the changed items with their old and new values, for the logbook. The terms are those of the manual in
-    /// every window language.
+    /// Returns the changed items with their old and new values, for the logbook. The item names do not depend on the
+    /// language of the window.
     pub fn changed_items(&self) -> Vec<ChangedItem> {
         let text = |value: &i64| value.to_string();
         let name = |number: ParameterNumber| number.row().map(|row| row.name).unwrap_or_default();

@@ -112,7 +112,7 @@ pub struct ProcessImageError {
     pub got: usize,
 }
 
-/// Length in bytes of the data of one drive, which is also that of the parameter words.
+/// Number of bytes for one drive. The parameter words have the same length.
 const BYTES_PER_DRIVE: usize = 8;
 
 impl ByteOrder {
@@ -158,7 +158,7 @@ impl Topology {
         }
     }
 
-    /// Returns the topology as spelled in parameter 13.
+    /// Returns the string with which parameter 13 denotes the topology.
     pub const fn category(self) -> &'static str {
         match self {
             Topology::Adapter => "HIPERDRIVE SINGLE",

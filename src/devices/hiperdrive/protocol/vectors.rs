@@ -38,7 +38,7 @@ fn published_control_words_match() {
         (0x0401, ControlWord::OPERATIONAL),
         (0x0409, ControlWord::ENABLED),
         (0x0481, ControlWord::ACKNOWLEDGE),
-        // ZSW12 is clear in 2A37 and set in 3E37: an equal bit 6 holds, the opposite starts.
+        // ZSW12 is clear in 2A37 and set in 3E37. An equal bit 6 starts nothing, and the opposite starts a job.
         (0x0439, ControlWord::without_job_start(status(0x2A37))),
         (0x0479, ControlWord::with_job_start(status(0x2A37))),
         (0x0479, ControlWord::without_job_start(status(0x3E37))),
@@ -61,7 +61,7 @@ fn published_control_words_match() {
     assert_eq!(names(0x0509), "0 on, 3 enable operation, 8 jog 1, 10 control by PLC");
 }
 
-/// Reference 9, negative: bits 1, 2, 11, 13 to 15; 047F as PROFIdrive has it.
+/// Reserved bits (1, 2, 11, 13 to 15) are rejected as in section 9 of the reference, for example PROFIdrive's 047F.
 #[test]
 fn reserved_bits_are_refused() {
     for bit in [1, 2, 11, 13, 14, 15] {
@@ -74,7 +74,7 @@ fn reserved_bits_are_refused() {
     assert_eq!(legal, 1 << 10);
 }
 
-/// The word of a stop clears the jog bits, since a stop ends no jog step.
+/// The stop word clears the jog bits, because a stop does not end a jog step.
 #[test]
 fn the_stop_word_depends_on_the_mode() {
     for (before, stopped) in [
@@ -96,8 +96,7 @@ fn the_stop_word_depends_on_the_mode() {
     );
 }
 
-/// Reference 3 and 8.10: a job starts on a difference of levels, a run on an edge, and neither while a condition is
-/// missing.
+/// A job starts on a difference of levels, a run on an edge, and neither without its conditions (reference 3 and 8.10).
 #[test]
 fn words_start_a_job_or_a_run() {
     let cases = [
@@ -112,7 +111,7 @@ fn words_start_a_job_or_a_run() {
         ("fault", 0x0439, 0x0479, 0x2ABF, None),
         ("run", 0x1419, 0x1459, 0x2A37, Some(MotionStart::Run)),
         ("runs already", 0x1459, 0x1459, 0x1A37, None),
-        // The run has set ZSW12 and its stop left bit 6 clear: without bit 12 that is a job to a stale target.
+        // The run set ZSW12, and its stop left bit 6 clear. Clearing bit 12 therefore starts a job to a stale target.
         ("out of speed mode", 0x1419, 0x0439, 0x3E37, Some(MotionStart::Job)),
         ("out of it through 0400", 0x1419, 0x0400, 0x3E37, None),
         ("jog 1", 0x0409, 0x0509, 0x2A37, Some(MotionStart::JogOne)),
@@ -137,14 +136,14 @@ fn published_status_words_match() {
         (0x3E37, State::Enabled),
         (0x2AB8, State::Fault),
         (0x2A70, State::Locked),
-        // A fault takes precedence over everything, the lock over the rest.
+        // A fault takes precedence over all other states, and the lock over the remaining ones.
         (0x2AFF, State::Fault),
         (0x2A77, State::Locked),
     ];
     for (word, state) in cases {
         assert_eq!(status(word).state(), state, "{word:04X}");
     }
-    // Bits 4, 5, 9, 11 of a drive that was detected; 13 at standstill.
+    // Bits 4, 5, 9 and 11 are set for a detected drive, and bit 13 at standstill.
     let standing = StatusWord::FOUND.with_bit(S::Standstill, true);
     assert_eq!((standing.to_u16(), standing.is_present()), (0x2A30, true));
     let set: Vec<u8> = standing.set_bits().map(StatusBit::bit_number).collect();
@@ -166,7 +165,7 @@ fn the_state_machine_matches_the_reference() {
         (NotReady, 0x0000, 0x0001, NotReady),
         (Ready, 0x0400, 0x0000, NotReady),
         (Ready, 0x0400, 0x0401, Operational),
-        // One step at a time.
+        // The state advances one step at a time.
         (Ready, 0x0400, 0x0409, Operational),
         (Operational, 0x0401, 0x0400, Ready),
         (Operational, 0x0401, 0x0409, Enabled),
@@ -184,7 +183,7 @@ fn the_state_machine_matches_the_reference() {
         (Locked, 0x0401, 0x0401, Locked),
         (Locked, 0x0401, 0x0400, Ready),
         (Locked, 0x0401, 0x0000, NotReady),
-        // Bit 0 is already clear: there is no falling edge.
+        // Bit 0 is already clear, so there is no falling edge.
         (Locked, 0x0400, 0x0400, Locked),
     ];
     for (from, before, now, to) in cases {
@@ -207,7 +206,7 @@ fn the_state_machine_matches_the_reference() {
     }
     let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.can_be_moved_with_keys()).collect();
     assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
-    // The word of a row has the effect of the row, starting from the word that keeps its state.
+    // The word of a row has the effect of the row if it follows the word that keeps the state.
     for (state, kept) in
         [(NotReady, 0), (Ready, 0x400), (Operational, 0x401), (Enabled, 0x409), (Fault, 0x481), (Locked, 0x401)]
     {
@@ -223,7 +222,7 @@ fn the_state_machine_matches_the_reference() {
     }
 }
 
-/// Returns the status word of a state in reference 3.
+/// Returns the status word that section 3 of the reference states for a drive state.
 fn status_word_for(state: State) -> StatusWord {
     let word = match state {
         State::NotReady => 0x2A30,
@@ -237,7 +236,7 @@ fn status_word_for(state: State) -> StatusWord {
     status(word)
 }
 
-/// Words as in reference 3; no step is done before its word.
+/// The words match section 3 of the reference, and no step is complete before its word.
 #[test]
 fn recipes_reach_their_target_state() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
@@ -263,7 +262,7 @@ fn recipes_reach_their_target_state() {
     assert_eq!(unlocked, (vec![0x0401, 0x0400], State::Ready));
 }
 
-/// Reference 9: target 2.5 turns = 163840, 100 %, both byte orders; −1 turn = −65536 with 50 and 75 %.
+/// Examples of reference 9: 2.5 turns (163840) at 100 % in both byte orders, and −1 turn (−65536) at 50 % and 75 %.
 #[test]
 fn published_process_data_to_a_drive_match() {
     let setpoint = |control: u16, speed, torque, target| Setpoint {
@@ -294,7 +293,7 @@ fn published_process_data_to_a_drive_match() {
         assert_eq!(hex(&with.emit(SINGLE)), format!("{text} {zeros}"));
         assert_eq!(with.drives[0].control_word(), Ok(setpoint.control));
     }
-    // 0400, 0 %, 100000 = 186A0h.
+    // Control word 0400, 0 %, and the position 100000 = 186A0h.
     let actual = ActualValues { status: status(0x3E37), speed: 0, position: 100_000 };
     let image = OutputImage { drives: vec![Setpoint::holding(actual).into()], pkw: None };
     assert_eq!(hex(&image.emit(WITHOUT_PKW)), "00 04 00 00 A0 86 01 00");
@@ -313,7 +312,7 @@ fn published_process_data_from_a_drive_match() {
     let cases = [
         ("37 1A 20 03 A0 86 01 00", 0x1A37, 800, 100_000),
         ("37 3E 00 00 00 80 02 00", 0x3E37, 0, 163_840),
-        // Calculated by hand: −1.5 rpm = −15 = FFF1h, −1 step.
+        // Calculated by hand: a speed of −1.5 rpm is −15 = FFF1h, and the position is −1 step.
         ("37 1A F1 FF FF FF FF FF", 0x1A37, -15, -1),
     ];
     for (text, word, speed, position) in cases {
@@ -328,8 +327,7 @@ fn published_process_data_from_a_drive_match() {
     assert_eq!(to_turns_and_steps(actual.position), (1, 34_464));
 }
 
-/// Reference 2: 16 and 8 bytes for an adapter, 40 and 72 for the hubs, 8 less without parameter words, which are at 32
-/// and 64.
+/// Lengths of reference 2: 16 or 8 bytes for an adapter, 40 and 72 for hubs, or 8 less without parameter words.
 #[test]
 fn published_lengths_match() {
     let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };
@@ -343,7 +341,7 @@ fn published_lengths_match() {
         assert_eq!(Topology::from_category(topology.category()), Some(topology));
     }
     assert_eq!(Layout::all_with_length(24).count(), 0);
-    // Drive 3 of a hub at 16, the parameter words after the drives; unset values are zero.
+    // The data of drive 3 begin at byte 16, and the parameter words follow the drives. Unset values are zero.
     for (topology, at) in [(four, 32), (eight, 64)] {
         let drives =
             vec![OutputData::default(), OutputData::default(), OutputData { target: -1, ..OutputData::default() }];

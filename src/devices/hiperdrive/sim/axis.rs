@@ -151,8 +151,8 @@ mod tests {
         panic!("it never ends: {axis:?}");
     }
 
-    /// At 35 rpm, 0.1 s up and 0.1 s down cover 1/60 · 35 · 0.1 = 0.0583 turns together. A turn takes
-    /// 0.2 + (1 − 0.0583) / 0.5833 s.
+    /// At 35 rpm, 0.1 s of acceleration and 0.1 s of braking cover 1/60 · 35 · 0.1 = 0.0583 turns together. A turn
+    /// takes 0.2 + (1 − 0.0583) / 0.5833 s.
     #[test]
     fn a_turn_takes_the_expected_time() {
         let mut axis = Axis::default();
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(ticks_until(&mut axis, to(5000.0), &load).1, TickOutcome::Held { above: true });
         assert_eq!(axis.place(), 1000.0);
         assert_eq!(ticks_until(&mut axis, to(-300.0), &load).1, TickOutcome::There);
-        // Reversed at full speed, it overshoots and returns.
+        // A spindle that is reversed at full speed overshoots and returns.
         for _ in 0..300 {
             axis.tick(AxisSetpoint::Speed(-TURN), &load);
         }

@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// The settings read from a station are those configured.
+    /// A station returns the configured settings.
     #[test]
     fn a_station_has_its_configured_settings() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
@@ -246,7 +246,8 @@ mod tests {
         (status.with_bit(StatusBit::SetpointAcknowledged, false).to_u16(), error)
     }
 
-    /// Reference 3 and 9: the status word is 3E37 when done, compared without bit 12, and 2AB8 for a fault.
+    /// The status words match sections 3 and 9 of the reference: 3E37 when done, compared without bit 12, and 2AB8 for
+    /// a fault.
     #[test]
     fn drives_show_their_configured_faults() {
         for (query, status, error) in [

@@ -1,4 +1,4 @@
-//! Injected faults of writing a parameter.
+//! Injected faults during the write of a parameter.
 
 use super::parameters::ParameterError;
 use crate::devices::hiperdrive::protocol::ParameterNumber;

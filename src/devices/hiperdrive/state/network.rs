@@ -233,7 +233,7 @@ mod tests {
         NetworkSettings { source, interface }
     }
 
-    /// Manual 5: the switches select among the five ways to obtain an address.
+    /// The switches select one of five ways to obtain an address (manual, section 5).
     #[test]
     fn the_switches_select_the_address_source() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);
@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(with(97), [PowerUpAddress::Stored(stored); 4]);
         assert_eq!(with(98), [PowerUpAddress::Bootp; 4]);
         assert_eq!(with(99), [PowerUpAddress::Dhcp; 4]);
-        // A device without switches.
+        // A device may have no switches.
         assert_eq!(sources.map(|own| PowerUpAddress::from_settings(None, &settings(own, "10.0.0.7"))), object);
         let empty = settings(AddressSource::Stored, "0.0.0.0");
         assert_eq!(PowerUpAddress::from_settings(AddressSwitch::parse(0), &empty), PowerUpAddress::NothingStored);

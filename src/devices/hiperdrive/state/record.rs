@@ -96,7 +96,7 @@ impl Record {
     }
 }
 
-/// Returns the meaning of recorded positions, with millimetres first if the drive turns a spindle.
+/// Returns the units of recorded positions, with millimetres first if the drive turns a spindle.
 fn position_scales(ruler: Ruler) -> PositionScales {
     let mut meaning = PositionScales::for_steps_per_turn(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.from_steps(1, PositionUnit::Millimetres) {

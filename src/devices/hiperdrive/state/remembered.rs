@@ -15,7 +15,7 @@ pub(super) struct ExchangedValues {
     measure: PositionUnit,
     unsaved: BTreeMap<u16, i64>,
     unconfirmed: BTreeSet<DriveNumber>,
-    /// Scales under which limits are unconfirmed, as last read.
+    /// Latest scales of the drives whose limits are unconfirmed.
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 
@@ -44,7 +44,7 @@ impl StoredDriveData for HiperdriveDevice {
             next.set_control_count(drive.get(), 1);
         }
         for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
-            // Limits that another window has marked again are not the ones confirmed here.
+            // Limits that another window has marked again have not been confirmed here.
             if kept.control_count(drive) == before.kept.control_count(drive) {
                 next.set_unconfirmed(drive, false);
             }

@@ -46,8 +46,8 @@ pub(super) fn content(
     Ok(ReportContent { title, key, sections })
 }
 
-/// Returns the errors of a drive, newest first, and whether it is outside its limits. Errors that were acknowledged are
-/// earlier ones.
+/// Returns the errors of a drive, newest first, and whether it is outside its limits. Acknowledged errors are listed as
+/// earlier errors.
 pub fn status_lines(drive: &DriveStatus) -> Vec<StatusLine> {
     let place = TEXTS.text("report.hd_drive").with("drive", drive.number.get());
     let present = drive.present_error_count();

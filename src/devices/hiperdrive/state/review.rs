@@ -118,7 +118,8 @@ pub(super) fn operation_texts(
     words
 }
 
-/// Describes a value. Positions are given in millimetres, or else in turns, under the scale in effect at that time.
+/// Describes a value. Positions are given in millimetres if the pitch is known, and otherwise in turns, under the scale
+/// of the image.
 fn value_meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.drive1_number(), number.drive()) {
         (LOWER_LIMIT | UPPER_LIMIT | 170 | 176 | REFERENCE, Some(drive)) => {

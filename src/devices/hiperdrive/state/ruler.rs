@@ -67,7 +67,7 @@ impl Ruler {
     /// Returns the number of decimals that distinguishes all steps.
     pub fn decimal_places(self, measure: PositionUnit) -> usize {
         let unit = self.steps_per_unit(measure).unwrap_or(1.0);
-        // At most 9: steps per turn have five digits in addition to those of 256.
+        // At most 9, because the steps per turn are at most 256 times a five-digit number.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
     }
 
@@ -88,7 +88,7 @@ mod tests {
     const SPINDLE: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: Some(Length { nanometres: 4_000_000 }) };
 
     fn hundredths() -> Ruler {
-        // 400 steps per turn of 4 mm: reference 5.
+        // 400 steps per turn of 4 mm (reference, section 5).
         Ruler { scale: PositionScale::new(400, 256).unwrap(), ..SPINDLE }
     }
 
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(hundredths().to_steps(-0.005, PositionUnit::Millimetres), Ok(-1));
         assert_eq!(SPINDLE.to_steps(90.0, PositionUnit::Degrees), Ok(16_384));
         assert_eq!(Ruler::FACTORY.to_steps(1.0, PositionUnit::Millimetres), Err(PositionRangeError::NoPitch));
-        // 32,768 turns do not fit into 32 bits: 2³¹ / 65536.
+        // 32,768 turns do not fit into 32 bits, because 2³¹ / 65536 = 32768.
         let beyond = SPINDLE.to_steps(32_768.0, PositionUnit::Turns).unwrap_err();
         assert!(
             matches!(beyond, PositionRangeError::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
@@ -121,7 +121,7 @@ mod tests {
     fn decimals_distinguish_adjacent_steps() {
         assert_eq!(hundredths().decimal_places(PositionUnit::Millimetres), 2);
         assert_eq!(SPINDLE.decimal_places(PositionUnit::Steps), 0);
-        // 65536 steps per turn, 182.04 per degree, 16384 per millimetre.
+        // The scale is 65536 steps per turn, 182.04 per degree, and 16384 per millimetre.
         assert_eq!(SPINDLE.decimal_places(PositionUnit::Turns), 5);
         assert_eq!(SPINDLE.decimal_places(PositionUnit::Degrees), 3);
         assert_eq!(SPINDLE.decimal_places(PositionUnit::Millimetres), 5);
@@ -130,11 +130,11 @@ mod tests {
     #[test]
     fn a_position_is_rescaled_to_another_scale() {
         let to = PositionScale::new(400, 256).unwrap();
-        // 511 turns: 33 488 896 of 65536 each are 204 400 of 400 each.
+        // 511 turns are 33 488 896 steps at 65536 per turn, and 204 400 steps at 400 per turn.
         assert_eq!(SPINDLE.rescale_position(33_488_896, to), 204_400);
         assert_eq!(SPINDLE.rescale_position(-33_488_896, to), -204_400);
         assert_eq!(hundredths().rescale_position(204_400, PositionScale::FACTORY), 33_488_896);
-        // Half a step rounds away from zero: 82 of 65536 are 0.5005 of 400.
+        // Half a step is rounded away from zero: 82 steps at 65536 per turn are 0.5005 steps at 400 per turn.
         assert_eq!(
             (SPINDLE.rescale_position(82, to), SPINDLE.rescale_position(81, to), SPINDLE.rescale_position(-82, to)),
             (1, 0, -1)

@@ -2,8 +2,8 @@
 //! of a plan. This module does not write anything to a device.
 //!
 //! Every edit creates a complete new state, to which undo can return. Edits survive a new reading. In all states of the
-//! history, edited values stay, and the other values are updated from the device. Values that were not read cannot be
-//! edited, and earlier edits of them wait until they are read. A profile can gain values that it did not have.
+//! history, edited values are kept, and all other values are updated from the device. Values that were not read cannot
+//! be edited, and earlier edits of them wait until they are read. A profile can gain values that it did not have.
 
 mod edit;
 mod mark;

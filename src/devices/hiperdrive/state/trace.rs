@@ -190,7 +190,7 @@ mod tests {
         )
     }
 
-    /// Messages of reference 9: get 107, set 158, and a reply that belongs to the request before the last one.
+    /// Messages of the reference, section 9: a read of 107, a write of 158, and a reply to the last request but one.
     #[test]
     fn a_reply_shows_the_value_of_its_own_request() {
         let mut decoder = FrameDecoder::default();

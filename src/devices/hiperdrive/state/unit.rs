@@ -56,7 +56,7 @@ pub struct HiperdriveDevice {
     pub(super) unsaved: UnsavedChanges,
     /// Values exchanged with the settings, or `None` before the first exchange.
     pub(super) exchanged: Option<ExchangedValues>,
-    /// Limit marks set by another window since control was taken.
+    /// Marks of unconfirmed limits set by another window since control was taken.
     pub(super) marks: SettingsReadState,
     /// Last reading of each drive while it was not under control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,

@@ -1,5 +1,5 @@
-//! Values that have been written to a device but not saved, each with the saved value of its parameter. A device does
-//! not reveal its saved values, and an interrupted set-up may date from the previous day.
+//! Values that have been written to a device but not saved, each with the saved value of its parameter. They are stored
+//! here because a device does not reveal its saved values, and an interrupted set-up may date from the previous day.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 pub(super) struct UnsavedChanges {
     /// Saved values, by number, of the parameters written since the last save.
     before: BTreeMap<u16, i64>,
-    /// Number of times that this program has set the position of each drive.
+    /// Number of times that this program has set the position, for each drive.
     set: BTreeMap<DriveNumber, u32>,
     sets: Vec<DriveNumber>,
 }
@@ -108,8 +108,8 @@ mod tests {
         image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
     }
 
-    /// Issue 21.6 (h): the saved values are known from the values written over them, even by an earlier run of the
-    /// program, until the next save.
+    /// Issue 21.6 (h): until the next save, the saved values are remembered when other values are written over them,
+    /// even by an earlier run of the program.
     #[test]
     fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();

@@ -1,4 +1,5 @@
-//! The bar above every page: drive selection of a hub, control, STOP, and the note that STOP is not an emergency stop.
+//! The bar above every page: the drive selection of a hub, control, the STOP button, and the note that STOP is not an
+//! emergency stop.
 
 use egui::{RichText, Stroke, Ui, vec2};
 
@@ -97,7 +98,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec
 fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.polled_state(drive) };
-    // All signs have the same width, so that no button moves when a drive changes its state.
+    // All state symbols have the same width, so that no button moves when a drive changes its state.
     let (sign, colour) = match state {
         Some(State::Moving) => (icons::PLAY, palette.accent),
         Some(State::Fault) => (icons::WARNING_CIRCLE, palette.bad),

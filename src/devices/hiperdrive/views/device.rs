@@ -1,4 +1,4 @@
-//! The device page: identity of the device and its drives, check, wiring.
+//! The device page: identity of the device and its drives, device check, and wiring.
 
 use egui::Ui;
 

@@ -35,7 +35,7 @@ pub(super) struct MotionUiState {
 const ENTRY_WIDTH: f32 = 88.0;
 const PERCENT_WIDTH: f32 = 56.0;
 const UNIT_SELECTOR_WIDTH: f32 = 64.0;
-/// Width from which speed and torque share one row, and width of the note between them.
+/// Minimum width at which speed and torque share one row, and width of the note between them.
 const ONE_ROW: f32 = 660.0;
 const NOTE_WIDTH: f32 = 112.0;
 const MESSAGE_HEIGHT: f32 = 32.0;

@@ -1,4 +1,4 @@
-//! Runs at a speed, to the end of the range or, for experts, without an end.
+//! Runs at a constant speed, to the end of the range or, for experts, without an end.
 
 use egui::{RichText, Ui};
 

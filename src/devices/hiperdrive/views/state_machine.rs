@@ -1,4 +1,4 @@
-//! The seven states of a drive and their transitions (HIPERDRIVE reference, 3).
+//! The seven states of a drive and their transitions (HIPERDRIVE reference, section 3).
 //!
 //! * **Size**: the available width, with five states in a row, and fault and lock below them.
 //! * **Keyboard**: Tab moves through the reachable states. Space or Enter requests one.

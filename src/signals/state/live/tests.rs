@@ -72,7 +72,7 @@ fn measurements_under_other_limits_are_judged_again() {
     let mut signals = started(&mut services);
     let before = signals.diagnosis_settings();
     signals.handle_action(SignalsAction::SetFamily(Family::AfsAfm60), &mut services);
-    // 0.84 V are too little for HIPERFACE only.
+    // 0.84 V is too low for HIPERFACE only.
     signals.handle_measurement(signals.source.runs, measurement(before), &mut services);
     assert!(!signals.findings().is_empty());
     signals.handle_action(SignalsAction::Source(SourceAction::Stop), &mut services);

@@ -39,14 +39,14 @@ pub enum ParameterResult {
 
 #[derive(Clone, Copy, Debug, Default)]
 enum Phase {
-    /// Nothing is requested, but the device has not yet confirmed that.
+    /// Nothing is requested, but the device has not confirmed this yet.
     #[default]
     Clear,
     /// The request has been cleared since the given time, and a parameter waits to be read.
     Clearing {
         since: Moment,
     },
-    /// Nothing is requested, and the device has confirmed that.
+    /// Nothing is requested, and the device has confirmed this.
     Ready,
     Reading {
         number: ParameterNumber,
@@ -58,7 +58,7 @@ enum Phase {
 const LIMIT: Duration = Duration::from_secs(1);
 
 impl ParameterWords {
-    /// Sets the parameters to read. Readings of all others are dropped.
+    /// Sets the parameters to read. Readings of all other parameters are dropped.
     pub fn set_watched(&mut self, watched: &[ParameterNumber]) {
         if self.watched != watched {
             self.watched = watched.to_vec();
@@ -172,7 +172,7 @@ mod tests {
         own.receive(at(48), words(IS_350));
         let reading = ParameterReading { at: at(48), result: ParameterResult::Number(350) };
         assert_eq!(own.readings().get(&number(166)), Some(&reading));
-        // The old reply is repeated until the device shows that nothing is requested.
+        // The old reply is repeated until the device confirms that nothing is requested.
         for ms in [50, 60] {
             assert_eq!(own.request(at(ms)), words(CLEAR));
             own.receive(at(ms + 5), words(IS_350));
@@ -189,7 +189,7 @@ mod tests {
         own.request(at(0));
         own.receive(at(1), words(CLEAR));
         own.request(at(10));
-        // Another parameter, an answer of writing an array, nothing.
+        // Replies to other requests: another parameter, the write of an array, and no request.
         for other in ["A5 10 00 00 5E 01 00 00", "A6 40 00 00 5E 01 00 00", CLEAR] {
             own.receive(at(11), words(other));
         }
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn numbers_have_the_size_and_sign_of_their_parameter() {
-        // 11 is I16, 119 I8, 107 I32: −5 each, with other bits set where the number has none.
+        // Parameter 11 is I16, 119 is I8, and 107 is I32. Each reply contains −5, with arbitrary bits above the number.
         let cases =
             [(11, "0B 10 00 00 FB FF 00 00"), (119, "77 10 00 00 FB 00 00 00"), (107, "6B 20 00 00 FB FF FF FF")];
         for (parameter, reply) in cases {

@@ -1,4 +1,4 @@
-//! Tests of the cyclic engine with the packets of the reference (section 9) and with arbitrary ones.
+//! Tests of the cyclic connection with the packets of the reference (section 9) and with arbitrary packets.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ fn at(ms: u64) -> Moment {
     Moment::START + Duration::from_millis(ms)
 }
 
-/// Returns the packets of the reference (section 9): 00020001 in both directions; 10 ms.
+/// Returns the connection of the reference (section 9): ID 00020001 and an interval of 10 ms in both directions.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> OpenedConnection {
     let owner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
     let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::to_assemblies(104, 100, 101) };
@@ -46,7 +46,7 @@ const TO_TARGET: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 0
 const TO_ORIGINATOR: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 \
                              00 00 00 00 00 00 00 00";
 
-/// Returns a report of the first drive with its sequence number.
+/// Returns a packet with a report of the first drive and the given sequence number.
 fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
     let mut bytes = hex(TO_ORIGINATOR);
     bytes[10..14].copy_from_slice(&sequence.to_le_bytes());
@@ -63,10 +63,10 @@ fn packets_match_the_reference() {
     assert_eq!(connection.next_packet(at(0), &image), hex(TO_TARGET));
     let came = connection.on_packet(at(4), &hex(TO_ORIGINATOR)).unwrap();
     assert_eq!((came.drives[0].status.to_u16(), came.drives[0].position), (0x2A37, 163_840));
-    // In the next one both counts are one higher.
+    // In the next packet, both counts are one higher.
     let second = connection.next_packet(at(10), &image);
     assert_eq!((second[10], second[18]), (2, 2));
-    // A target that sends a header before its data.
+    // A target may send a header before its data.
     let mut with = hex(TO_ORIGINATOR);
     with.splice(20..20, [1, 0, 0, 0]);
     (with[10], with[16]) = (2, 0x16);
@@ -74,7 +74,8 @@ fn packets_match_the_reference() {
     assert_eq!((connection.statistics().sent, connection.statistics().received), (2, 2));
 }
 
-/// Reference 2: 8 bytes per drive, and 8 of parameter words at the end if present; 14 to 78 bytes of data per packet.
+/// The images match section 2 of the reference: 8 bytes per drive, followed by 8 bytes of parameter words if present. A
+/// packet contains 14 to 78 bytes of data.
 #[test]
 fn the_connection_determines_the_image_layout() {
     for (topology, pkw, data) in [
@@ -90,7 +91,7 @@ fn the_connection_determines_the_image_layout() {
             let mut drives = vec![OutputData::default(); topology.drives().into()];
             drives.last_mut().unwrap().control = 0x0401;
             let packet = connection.next_packet(at(0), &OutputImage { drives, pkw: None });
-            // 14 bytes of addresses, 4 of the item, 6 of count and header.
+            // The overhead is 14 bytes of addresses, 4 bytes for the item, and 6 bytes for count and header.
             assert_eq!(packet.len(), 24 + data, "{topology:?} {pkw}");
             let place = 24 + 8 * (usize::from(topology.drives()) - 1);
             assert_eq!(packet[place..place + 2], word, "{topology:?} {pkw} {order:?}");
@@ -98,8 +99,8 @@ fn the_connection_determines_the_image_layout() {
     }
 }
 
-/// Each deadline is one interval after the previous one, however late that packet was; after a long pause one packet is
-/// sent, not all of them.
+/// Each deadline is one interval after the previous one, regardless of delays. After a long pause, only one of the
+/// missed packets is sent.
 #[test]
 fn deadlines_do_not_drift() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(5));
@@ -138,7 +139,7 @@ impl Bench {
         self.intent = MotionIntent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// Returns the control word of the interval.
+    /// Runs one interval and returns the control word that was sent, if any.
     fn cycle(&mut self) -> Option<u16> {
         if self.answers {
             self.sequence += 1;
@@ -178,8 +179,9 @@ impl Bench {
     }
 }
 
-/// Reference, issue and manual: three intervals without a packet are a loss. The stop word is still sent, since only
-/// the return path may be cut. Then off, then nothing more, whatever arrives.
+/// Three intervals without a packet are a loss according to the reference, the issue and the manual. The stop word is
+/// still sent, since only the return path may be interrupted. Then the drives are switched off. Afterwards, nothing is
+/// sent, whatever arrives.
 #[test]
 fn a_lost_connection_stops_and_stays_lost() {
     let mut bench = Bench::jogs();
@@ -197,24 +199,24 @@ fn a_lost_connection_stops_and_stays_lost() {
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
-/// A computer that was busy for 70 ms has not listened, and cannot tell that nothing arrived: received packets are
-/// still queued. After the target's time-out (80 ms here) the drives have stopped by themselves.
+/// A computer that was busy for 70 ms does not know whether packets have arrived, because they may still be queued.
+/// After the target's time-out (80 ms in this test), the drives have stopped on their own.
 #[test]
 fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     for (away, lost) in [(70, false), (100, true)] {
         let mut bench = Bench::jogs();
-        // Packets received meanwhile are queued when the thread wakes up.
+        // When the thread wakes up, the packets received in the meantime are queued.
         bench.answers = false;
         bench.ms += away;
         assert_eq!(bench.cycles(1).join(" "), "1419", "the first word that leaves again");
         bench.answers = true;
         bench.cycles(3);
         assert_eq!(bench.drives.connection_loss().is_some(), lost, "{away} ms");
-        // Without a known position nothing continues to move.
+        // Without a known position, no motion continues.
         let how = if lost { ActionEnd::Lost } else { ActionEnd::Deaf };
         assert_eq!(bench.drives.dead_man_switches().next().unwrap().last_end(), Some((1, how)), "{away} ms");
     }
-    // Nothing more arrives after it either.
+    // No packets arrive after the pause either.
     let mut bench = Bench::jogs();
     bench.answers = false;
     bench.ms += 40;
@@ -224,8 +226,7 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     assert!(bench.drives.connection_loss().is_some(), "listened for 40 ms");
 }
 
-/// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing
-/// before.
+/// Issue 21.13: at rest, missing packets are tolerated until the target's own time-out (80 ms in this test).
 #[test]
 fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     let mut bench = Bench::new();
@@ -238,7 +239,7 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
         bench.answers = true;
         bench.cycles(3);
     }
-    // No motion starts meanwhile.
+    // No motion starts in the meantime.
     bench.answers = false;
     bench.cycles(4);
     bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::DEFAULT_JOG, outward: false });
@@ -248,7 +249,7 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(90) }));
 }
 
-/// Closing: stop, standstill, off three times.
+/// Closing sends stop words until standstill, and then switches the drives off with three packets.
 #[test]
 fn ending_the_connection_stops_and_switches_off() {
     let mut bench = Bench::jogs();
@@ -261,7 +262,7 @@ fn ending_the_connection_stops_and_switches_off() {
     assert!(bench.ms - begun <= 250, "{} ms", bench.ms - begun);
 }
 
-/// A drive that does not stop: after the ladder the connection is to be closed.
+/// If a drive does not stop, the connection ends after the last level of the stop sequence.
 #[test]
 fn a_drive_that_does_not_stop_ends_the_connection() {
     let mut bench = Bench::jogs();
@@ -276,7 +277,7 @@ fn a_drive_that_does_not_stop_ends_the_connection() {
     assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::DoesNotStand(DriveNumber::FIRST)));
 }
 
-/// One drive moves at a time: an act for another one stops the first.
+/// Only one drive moves at a time. An action for another drive stops the first.
 #[test]
 fn only_one_drive_moves_at_a_time() {
     let second = DriveNumber::new(2).unwrap();
@@ -294,7 +295,7 @@ fn only_one_drive_moves_at_a_time() {
         intent.refreshed = at(ms);
         let Some(packet) = drives.poll(at(ms), &intent, permit) else { continue };
         let words = [0, 8, 16, 24].map(|place| u16::from_le_bytes([packet[24 + place], packet[25 + place]]));
-        // For every place, including those without a drive, the reply that follows from its word.
+        // Each port, with or without a drive, replies according to its control word.
         let mut image = Vec::new();
         for (word, moves) in words.into_iter().zip(&mut moves) {
             let level = [(0x0400, 1), (0x0001, 2), (0x0008, 4)]
@@ -322,7 +323,7 @@ fn only_one_drive_moves_at_a_time() {
 }
 
 proptest! {
-    /// Any packet is counted, and a malformed one neither moves a drive nor keeps the connection alive.
+    /// Every packet is counted. A malformed packet neither moves a drive nor keeps the connection alive.
     #[test]
     fn arbitrary_packets_move_no_drive(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
         let mut bench = Bench::new();
@@ -335,14 +336,14 @@ proptest! {
         let after = bench.drives.statistics();
         prop_assert_eq!(after.malformed + after.received + after.stale, before.malformed + before.received + packets.len() as u64);
         prop_assert_eq!(after.received, before.received);
-        // At rest it is kept as long as the target waits, which is eight intervals here.
+        // At rest, the connection is kept as long as the target waits, which is eight intervals in this test.
         bench.cycles(8);
         prop_assert!(bench.drives.connection_loss().is_none());
         bench.cycles(2);
         prop_assert!(bench.drives.connection_loss().is_some());
     }
 
-    /// A report that is cut, has a bit flipped, is repeated or late: no panic, and it counts at most once.
+    /// A truncated, damaged, repeated or late report does not panic and is counted at most once.
     #[test]
     fn damaged_reports_count_at_most_once(
         reports in prop::collection::vec((0u32..40, 0usize..37, 0usize..400, 0u8..4), 1..60)

@@ -14,7 +14,7 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Rest {
-        /// Time from which the drive has been moving, although it should be at rest.
+        /// Time since which the drive has been moving although it should be at rest.
         moves: Option<Moment>,
     },
     Lead(StateSequencer),
@@ -31,7 +31,7 @@ pub(super) enum Stage {
     Go {
         since: ReportMark,
         acknowledged: bool,
-        /// Point in time from which the drive has been at rest.
+        /// Point in time since which the drive has been at rest.
         standing_since: Option<ReportMark>,
     },
     Paused {

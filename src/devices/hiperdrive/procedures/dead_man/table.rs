@@ -1,5 +1,5 @@
-//! Executes the table of phases and events in docs/motion.md, which specifies how a motion ends (issue 21, *What must
-//! hold*).
+//! Tests of the table in docs/motion.md, which specifies for each phase and event how a motion ends (issue 21, *What
+//! must hold*).
 
 use std::time::Duration;
 
@@ -59,7 +59,7 @@ impl TestBench {
         (0..count).for_each(|_| self.run_cycle());
     }
 
-    /// Creates a bench whose dead-man is in the given phase of the documented table.
+    /// Creates a bench and brings its dead-man control to a phase named in the table.
     fn in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: SpeedTorque::DEFAULT_JOG };
         let jog =
@@ -73,7 +73,7 @@ impl TestBench {
             "up to a motion" | "moving (run)" | "stopping" => bench.request(jog),
             _ => bench.request(job),
         }
-        // Armed, then started: two reports each.
+        // Arming and starting take two reports each.
         bench.run_cycles(5);
         if !is_below && name != "starting" {
             bench.status = MOVING;
@@ -111,7 +111,7 @@ impl TestBench {
             "released" => self.request(MotionRequest::Stop),
             "not refreshed for 250 ms" => {
                 self.refreshes = false;
-                // The packet after 250 ms is the first that may end it.
+                // The motion must not end before the first packet after 250 ms.
                 self.run_cycles(25);
                 let moves = self.man.last_end().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
                 assert!(moves, "not before");
@@ -120,7 +120,7 @@ impl TestBench {
             "no status from the drive" => {
                 self.is_connected = false;
                 self.man.handle_contact_loss(self.now);
-                // The change of state alone takes longer.
+                // A mere change of state tolerates a longer silence.
                 let leads = matches!(self.man.phase(), Phase::Leading(_));
                 self.run_cycles(if leads { 36 } else { 0 });
             }
@@ -140,7 +140,7 @@ impl TestBench {
             }
             "standstill" => {
                 self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDSTILL };
-                // A start is allowed a second, a drive at standstill half a second.
+                // A drive has one second to start. At standstill, the motion ends after half a second.
                 self.run_cycles(if paused { 0 } else { 110 });
             }
             other => panic!("{other} is no event"),
@@ -171,7 +171,7 @@ fn motions_end_as_documented() {
                 format!("{how:?}").split([' ', '(', '{']).next().unwrap_or_default().to_owned()
             });
             assert_eq!(&name, expected, "{} while {phase}", row[0]);
-            // Regardless of how the action has ended, the word sent is a word for standstill.
+            // However the action has ended, the control word must be a standing word.
             assert!(ended.is_none() || bench.man.last_setpoint().control.is_at_rest(), "{} while {phase}", row[0]);
         }
     }

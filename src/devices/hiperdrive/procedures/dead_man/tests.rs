@@ -15,22 +15,22 @@ use crate::units::Moment;
 
 const FULL: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 
-/// Bits 1, 2, 11 and 13 to 15, and those of jog steps.
+/// Bits that are never sent: the reserved bits 1, 2, 11 and 13 to 15, and the bits of jog steps.
 const NEVER: u16 = 0b1110_1011_0000_0110;
 
-/// Input of an interval.
+/// Events of one interval.
 #[derive(Clone, Debug)]
 struct Tick {
     ms: u64,
-    /// Status word and position; `None`: nothing was received.
+    /// Received status word and position, or `None` if nothing was received.
     heard: Option<(u16, i32)>,
-    /// A new act, for this drive or another.
+    /// A new action. The flag is set if it is for this drive.
     act: Option<(bool, MotionRequest)>,
-    /// The act is refreshed.
+    /// Whether the action is refreshed.
     refreshed: bool,
     locked: bool,
     endless: bool,
-    /// The number decreases, or the request changes under its number.
+    /// A request that replaces the current one without a new number.
     meddled: Option<MotionRequest>,
 }
 
@@ -84,7 +84,7 @@ fn heard(said: Option<(u16, i32)>) -> Option<ActualValues> {
     said.map(|(status, position)| ActualValues { status: StatusWord::new(status), speed: 0, position })
 }
 
-/// Every relevant status before every relevant word: a standing word starts nothing.
+/// A standing word starts no motion for any relevant status and previous control word.
 #[test]
 fn a_standstill_word_starts_no_motion() {
     let befores: Vec<ControlWord> =
@@ -99,13 +99,13 @@ fn a_standstill_word_starts_no_motion() {
             }
         }
     }
-    // Ten bits that may be set: half of them without bit 3; with it and without jog (32 of 128 · 4): of positioning three
-    // quarters of bits 4 and 5, of speed mode half of bit 6.
+    // Ten bits may be set. Half of the words lack bit 3. With bit 3 and without jog bits, the standing words are three
+    // quarters of those for positioning (bits 4 and 5) and half of those for speed mode (bit 6).
     assert_eq!(standing, 512 + 48 + 32);
 }
 
-/// The trap of reference 3: after a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5
-/// are set, and the drive is below operational before it is enabled again.
+/// After a run, no word clears bit 12 while the drive is enabled and bits 4 and 5 are set, and the drive leaves the
+/// operational state before it is enabled again. Otherwise, it would start a stale job (reference, section 3).
 #[test]
 fn leaving_speed_mode_passes_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
@@ -119,7 +119,7 @@ fn leaving_speed_mode_passes_through_ready() {
         let intent =
             MotionIntent { drive: DriveNumber::FIRST, request: wish, number: 1 + u64::from(at >= 20), refreshed: now };
         let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.to_u16();
-        // It acknowledges a run with bit 12, and forgets it only below operational.
+        // The drive acknowledges a run with bit 12, and discards it only below the operational state.
         status = match word {
             0x1459 => 0x1A37,
             0x1419 if status & 0x1000 != 0 => 0x3A37,
@@ -134,7 +134,7 @@ fn leaving_speed_mode_passes_through_ready() {
     assert_eq!((man.last_setpoint().target, man.last_end()), (77, Some((1, ActionEnd::Stopped))));
 }
 
-/// Between two calls of a thread that was suspended, a stop may have been requested, followed by something else.
+/// While the thread was suspended between two calls, a stop may have been requested and replaced by another request.
 #[test]
 fn an_unseen_stop_still_ends_the_job() {
     let permit = Permit::for_range(-1000, 1000);
@@ -157,14 +157,14 @@ fn an_unseen_stop_still_ends_the_job() {
             look(&mut man, number, MotionRequest::Pause, 0x1A37);
             assert!(matches!(man.phase(), Phase::Paused { .. }));
         }
-        // The act between them was a stop.
+        // The skipped action was a stop.
         let word = look(&mut man, number + 2, next, 0x1A37);
         assert!(word.is_at_rest() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
         assert_eq!(man.last_end(), Some((number, ActionEnd::Stopped)));
     }
 }
 
-/// Drive that replies as configured, with ten milliseconds per call and a request that is always fresh.
+/// A bench with given reports of the drive, ten milliseconds per call, and a request that is always refreshed.
 struct DeadManBench {
     man: DeadMan,
     now: Moment,
@@ -183,7 +183,7 @@ impl DeadManBench {
         self.intent = MotionIntent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// Calls the dead-man control `times` times with the same report.
+    /// Calls the dead-man control `times` times with the same report, and returns the last setpoint.
     fn look(&mut self, times: u32, status: u16, position: i32) -> Setpoint {
         for _ in 0..times {
             self.now = self.now + Duration::from_millis(10);
@@ -196,8 +196,8 @@ impl DeadManBench {
 
 const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
-/// Issue 21.3: parameters that are doubted while a drive is still being brought up are read before it moves; a running
-/// motion continues, and a paused one does not resume.
+/// Issue 21.3: if parameters become doubtful while a drive is being enabled, they are read before the drive moves. A
+/// running motion continues, and a paused one does not resume.
 #[test]
 fn doubted_limits_delay_the_start_of_a_motion() {
     let doubted = ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated));
@@ -227,8 +227,8 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     assert_eq!(looks.man.last_end(), Some((2, doubted)));
 }
 
-/// Issue 21.4: limits that another master changes, or a shaft that is pushed, between the last word on the way up and
-/// the first of the motion: a drive that is outside then did not start there, and does not move further out.
+/// Issue 21.4: another master may change the limits, or the shaft may be pushed, just before a motion starts. If the
+/// drive is then outside its limits, it does not start and does not move further out.
 #[test]
 fn a_drive_outside_its_limits_before_moving_does_not_start() {
     for (wish, direction) in [
@@ -255,7 +255,7 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
     }
 }
 
-/// Issue 21.4: if both limits are within a degree, status bit 15 does not tell at which of them the drive is.
+/// Issue 21.4: if both limits are within a degree, status bit 15 does not reveal which limit the drive has passed.
 #[test]
 fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     let at = |position| Permit::for_range(-150, 150).outside_limits(heard(Some((0xAA37, position))).unwrap());
@@ -273,8 +273,8 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     );
 }
 
-/// Issue 21.6b: the first packets of a connection contain no position (a hub first queries all its drives), so a step
-/// from there would end at another position. It starts once positions have arrived for 250 ms.
+/// Issue 21.6b: the first packets of a connection contain no valid position, because a hub first queries all its
+/// drives. A step therefore starts only after positions have been arriving for 250 ms.
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = DeadManBench::new();
@@ -296,7 +296,7 @@ proptest! {
         let mut now = Moment::START;
         let mut intent = MotionIntent::idle(DriveNumber::FIRST, 5, now);
         let mut before = Setpoint::default();
-        // Acts up to this one have ended, by the test's own record.
+        // Number of the latest action that must have ended according to the test.
         let mut over = 5;
         let mut unmet = Duration::ZERO;
         for Tick { ms, heard: said, act, refreshed, locked, endless, meddled } in ticks {
@@ -304,14 +304,14 @@ proptest! {
             now = now + step;
             if let Some((own, wish)) = act {
                 let other = DriveNumber::new(2).unwrap();
-                // A pause and its end continue a job; any other act, and a gap in time, ends the previous one.
+                // A pause or resume continues the job. Any other action and a missed refresh end the previous one.
                 let carries = matches!(wish, MotionRequest::Pause | MotionRequest::Resume) && own && !intent.is_stale(now);
                 over = if carries { over } else { intent.number };
                 let drive = if own { DriveNumber::FIRST } else { other };
                 intent = MotionIntent { drive, request: wish, number: intent.number + 1, refreshed: now };
             }
             if let (Some(wish), None) = (meddled, act) {
-                // Of an act that has been taken; one that still waits may be another.
+                // An accepted action ends if its request changes. A waiting action may change.
                 let taken = man.action_number() == intent.number && wish != intent.request;
                 over = if taken { intent.number } else { over };
                 intent.request = wish;
@@ -340,10 +340,10 @@ proptest! {
             if let Some((ended, _)) = man.last_end() {
                 over = over.max(ended);
             }
-            // Out of speed mode: never by clearing bit 12 alone.
+            // Speed mode is never left by clearing bit 12 alone.
             let leaves = before.control.is_set(ControlBit::SpeedMode) && !word.is_set(ControlBit::SpeedMode);
             prop_assert!(!leaves || !word.is_set(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
-            // A drive that does not stop is led through the whole ladder.
+            // If a drive does not stop, all levels of the stop sequence are used.
             unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
             prop_assert!(unmet < LEVEL_TIME * 3 + Duration::from_millis(240) || man.has_exhausted_stop_levels());
             before = sent;

@@ -43,7 +43,7 @@ pub(super) struct ActionMonitor {
     waits_at: Option<i32>,
     /// Whether the user has allowed motion further outward while the button is pressed.
     freed: bool,
-    /// Whether a run started at the end of the range towards which it moves. There may be no travel left.
+    /// Whether a run started at the end of the range towards which it moves, so that there may be no travel left.
     pub(super) at_end: bool,
 }
 

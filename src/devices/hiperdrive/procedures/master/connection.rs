@@ -1,4 +1,5 @@
-//! Opening and closing the cyclic connection over explicit messages (reference 7). Its packets are in `cyclic`.
+//! Opening and closing the cyclic connection with explicit messages (reference, section 7). Its packets are handled in
+//! `cyclic`.
 //!
 //! The connection sizes and types that a device accepts are not documented (`U`). They are tried in this order: with
 //! parameter words, point to point; then multicast; then without parameter words.

@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image,
 use crate::devices::hiperdrive::profile::{Warning, plan_warnings};
 use crate::devices::hiperdrive::protocol::{ParameterRange, Variant};
 
-/// Returns the writes of a plan in order. A service is given by its code.
+/// Returns the writes of a plan in order. A service appears as a write of its code to parameter 47.
 fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
     let step = |op: &Op| match op {
         Op::Write { number, new, .. } => (number.get(), *new),
@@ -19,7 +19,7 @@ fn at(place: u8, position: i32) -> Positions {
     [(drive(place), position)].into()
 }
 
-/// Returns the state of a hub with drives HDA30A in ports 1 and 3.
+/// Returns the state of a hub with HDA30A drives in ports 1 and 3.
 fn state(image: &Image, positions: &Positions) -> DeviceState {
     let identity = identity("100", &[(1, "4711"), (3, "4712")]);
     DeviceState { identity, image: image.clone(), positions: positions.clone() }
@@ -78,8 +78,8 @@ fn a_drive_is_requested_first_and_released_last() {
     assert_eq!(plan_warnings(&plan), [Warning::NotRequested(drive(3))]);
 }
 
-/// Old limits, position, new limits; and which of them the drive accepts first. The rules (reference 4): 160 is above
-/// 158, and the drive between both, at every write.
+/// Each case lists the old limits, the position, the new limits, and the order of writes that the drive accepts. After
+/// each write, 160 is above 158, and the drive is between both (reference, section 4).
 #[test]
 fn limits_are_written_in_the_order_the_drive_accepts() {
     let cases = [
@@ -112,7 +112,7 @@ fn limits_are_written_in_the_order_the_drive_accepts() {
 }
 
 proptest::proptest! {
-    /// For any limits and any position: each write leaves the drive between limits that are in order.
+    /// For any limits and any position, each write leaves the limits in order and the drive between them.
     #[test]
     fn any_limits_are_written_in_an_accepted_order(
         old in (-100i64..100, 1i64..100),
@@ -123,7 +123,7 @@ proptest::proptest! {
         let device = image(&[1]).overlaid_with(&image_with_values(&[(158, old.0), (160, old.1)]));
         let plan = plan_edits(&device, &image_with_values(&[(158, new.0), (160, new.1)]), &at(1, position));
         let is_inside = (new.0..=new.1).contains(&i64::from(position));
-        // Without differences nothing is checked.
+        // Without differences, nothing is checked.
         proptest::prop_assert_eq!(plan.is_ok(), is_inside || old == new);
         let mut limits = old;
         for (own, value) in plan.iter().flat_map(steps) {
@@ -143,10 +143,10 @@ fn a_drive_outside_its_new_limits_is_not_changed() {
     let outside = |position, lower, upper| PlanError::PositionOutside { drive: drive(1), position, lower, upper };
     assert_eq!(refused(&[(158, 0), (160, 1000)], -1), outside(-1, 0, 1000));
     assert_eq!(refused(&[(160, 1000)], 1001), outside(1001, -33_488_896, 1000));
-    // 163840 are 2.5 turns, which are 1000 steps of 400 a turn.
+    // 163840 steps are 2.5 turns, which are 1000 steps at 400 steps per turn.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], 163_840), outside(1000, 0, 999));
     assert!(plan(&[(154, 400), (156, 256), (158, 0), (160, 1000)], 163_840).is_ok());
-    // −1 step of 65536 per turn is step −1 of 400, which reaches from −1/400 turn to 0.
+    // Position −1 at 65536 steps per turn is within step −1 at 400 steps per turn, which reaches from −1/400 turn to 0.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], -1), outside(-1, 0, 999));
     // The position of another drive has no effect.
     assert!(plan_edits(&image(&[1, 3]), &image_with_values(&[(358, 0)]), &at(1, -1)).is_ok());
@@ -188,8 +188,8 @@ fn unwritable_parameters_are_refused_with_a_reason() {
     assert_eq!(error.range, ParameterRange::Within(-33_554_432, 33_554_432));
 }
 
-/// Issue 21.10: ±512 turns of an HDA30 in steps of the planned scale: 65536 per turn are 33554432, 400 are 204800. A
-/// step of the drive's own keys is at most its travel of 1024 turns.
+/// Issue 21.10: the ±512 turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400. A step of the
+/// keys on the drive is at most the travel of 1024 turns.
 #[test]
 fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
     let jogs = |image: Image| image.overlaid_with(&image_with_values(&[(170, 4096), (176, -4096)]));
@@ -203,13 +203,13 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
         (&scaled, &[(158, -204_800), (160, 204_800)], None),
         (&scaled, &[(158, -204_801)], Some((158, 204_800))),
         (&scaled, &[(160, 204_801)], Some((160, 204_800))),
-        // With the scale of the same plan, in both directions.
+        // The scale changes in the same plan, in both directions.
         (&factory, &[(154, 400), (156, 256), (160, 204_801)], Some((160, 204_800))),
         (&scaled, &[(154, 256), (156, 1), (158, -33_554_432), (160, 33_554_432)], None),
         (&factory, &[(170, 67_108_864), (176, -67_108_864)], None),
         (&factory, &[(170, 67_108_865)], Some((170, 67_108_864))),
         (&scaled, &[(176, -409_601)], Some((176, 409_600))),
-        // Values that are not written are not checked: they move with the scale, of which the plan warns.
+        // Limits that are not written are not checked. They move with the scale, and the plan warns of this.
         (&factory, &[(154, 400), (156, 256)], None),
     ];
     for (device, wanted, refused) in cases {
@@ -226,7 +226,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
             (planned, _) => panic!("{wanted:?}: {planned:?}"),
         }
     }
-    // An unknown variant is limited by the bits only; HDA70 has 16000 turns.
+    // An unknown variant is limited by the 32 bits only. An HDA70 has 16000 turns.
     for (variant, most) in [(Variant::OTHER, i64::from(i32::MAX)), (Variant::new(13), 1_048_576_000)] {
         let mut state = state(&factory, &at(1, 0));
         state.identity.drives[0].variant = Some(variant);
@@ -235,7 +235,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
         let PlanError::OutOfRange(error) = error else { panic!("{error}") };
         assert!(matches!(error.range, ParameterRange::Within(_, high) if high == most), "{variant:?}");
     }
-    // Limits beyond the travel after a change of scale do not allow setting a position there either.
+    // Even if a change of scale moves the limits beyond the travel, no position beyond the travel can be set.
     let moved = image(&[1]).overlaid_with(&image_with_values(&[(154, 400), (156, 256)]));
     let PlanError::OutOfRange(error) = plan_set_position(&moved, drive(1), 300_000).unwrap_err() else { panic!() };
     assert_eq!((error.number, error.range), (parameter(198), ParameterRange::Within(-204_800, 204_800)));
@@ -244,7 +244,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
 #[test]
 fn a_scale_that_moves_limits_is_warned_about() {
     let warned = |wanted: &[(u16, i64)]| plan_warnings(&plan(wanted, 0).unwrap());
-    // 511 turns of 65536 steps are 33488896; of 400 steps they are 83722.24 turns.
+    // 511 turns of 65536 steps are 33488896 steps, which are 83722.24 turns of 400 steps.
     let moved = warned(&[(154, 400), (156, 256)]);
     let [Warning::LimitsMove { drive: of, now, then }] = moved.as_slice() else { panic!("{moved:?}") };
     assert_eq!((*of, *now), (drive(1), (-511.0, 511.0)));
@@ -252,7 +252,7 @@ fn a_scale_that_moves_limits_is_warned_about() {
     // 511 turns of 400 steps.
     assert_eq!(warned(&[(154, 400), (156, 256), (158, -204_400), (160, 204_400)]), []);
     assert_eq!(warned(&[(158, -204_400)]), [], "the scale is as it was");
-    // The same scale in other numbers.
+    // The same scale as a different fraction.
     assert_eq!(warned(&[(154, 512), (156, 2)]), []);
 }
 
@@ -264,7 +264,7 @@ fn side_effects_of_a_plan_are_warned_about() {
     assert_eq!(warned(&[(166, 200), (186, 100)]), []);
 }
 
-/// Rounding (reference 5): 31 → 0, 33 → 64, 100 → 128, −33 → −64.
+/// Positions are rounded as in section 5 of the reference: 31 → 0, 33 → 64, 100 → 128, −33 → −64.
 #[test]
 fn a_position_is_set_to_the_next_multiple_of_64() {
     for (position, becomes) in [(31, 0), (33, 64), (100, 128), (-33, -64), (163_840, 163_840)] {

@@ -18,7 +18,7 @@ fn millimetres(hundredths: u64) -> Length {
     Length { nanometres: hundredths * 10_000 }
 }
 
-/// Reference 9: −511 turns are −33488896 steps, FE010000h.
+/// Parameter words match section 9 of the reference: −511 turns are −33488896 steps, or FE010000h.
 #[test]
 fn published_parameter_words_match() {
     let little = ByteOrder::Little;
@@ -41,7 +41,7 @@ fn published_parameter_words_match() {
         ("9E 20 00 00 00 00 01 FE", 1, Answer::Double(0xFE01_0000)),
         ("9E 70 00 00 02 00 00 00", 1, Answer::Refused(PkwError::RANGE)),
         ("A6 10 00 00 C8 00 00 00", 2, Answer::Word(200)),
-        // "HDA3": the bytes in the order received (U).
+        // The bytes of "HDA3" are in the order received (U).
         ("79 50 00 00 48 44 41 33", 6, Answer::Double(0x3341_4448)),
         ("79 60 00 00 02 00 00 00", 7, Answer::Elements(2)),
     ];
@@ -56,7 +56,7 @@ fn published_parameter_words_match() {
     assert_eq!(hex(&big.emit(ByteOrder::Big)), "10 A6 00 00 00 00 01 5E");
 }
 
-/// A reply for another parameter or another task is not accepted as the answer.
+/// A reply to a request for another parameter or task is not accepted as the answer.
 #[test]
 fn a_reply_matches_only_its_own_request() {
     let read = Pkw::request(Task::Read, 166, 0, 0);
@@ -109,7 +109,8 @@ fn parameters_map_to_cip_attributes() {
 fn the_parameter_table_matches_the_reference() {
     assert!(PARAMETERS.is_sorted_by(|one, other| one.number < other.number));
     let numbers: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
-    // 9 read-only parameters of the device, 10 registers, 47; 101 to 129; 22 from 152 to 199.
+    // The device has 9 read-only parameters, 10 registers, and parameter 47. A drive has 101 to 129, and 22 from 152 to
+    // 199.
     let device = numbers.iter().filter(|number| **number < 100).count();
     let drive = numbers.iter().filter(|number| **number >= 100).count();
     assert_eq!((device, drive), (9 + 10 + 1, 29 + 22));
@@ -124,7 +125,7 @@ fn the_parameter_table_matches_the_reference() {
         (ParameterAccess::Write, ParameterAccess::ReadWrite, true)
     );
     assert_eq!((row(807).number, parameter(25).row().is_none(), parameter(148).row().is_none()), (107, true, true));
-    // Factory values: 511 and 16000 turns of 65536 steps.
+    // The factory limits are 511 and 16000 turns of 65536 steps.
     let factory = |own, topology, family| row(own).factory_value(topology, family);
     use Topology::{Adapter, Hub8};
     assert_eq!(factory(158, Adapter, Family::Short), Some(-33_488_896));
@@ -134,7 +135,7 @@ fn the_parameter_table_matches_the_reference() {
     assert_eq!((factory(176, Hub8, Family::Short), factory(192, Hub8, Family::Short)), (Some(-4096), None));
 }
 
-/// Reference 4: values at the limits are accepted, and values beyond the limits are not.
+/// Values at the limits are accepted, and values beyond the limits are rejected (reference, section 4).
 #[test]
 fn parameter_ranges_are_checked() {
     for (own, good, bad) in [
@@ -171,7 +172,7 @@ fn parameter_ranges_are_checked() {
     assert_eq!(message(15, 3), "parameter 15 (name) contains text and cannot be 3");
 }
 
-/// Reference 7 and 9: numbers have 1, 2 or 4 bytes, low byte first; a string may be preceded by its length.
+/// Numbers have 1, 2 or 4 bytes, low byte first. A string may be preceded by its length (reference, sections 7 and 9).
 #[test]
 fn values_have_the_length_of_their_type() {
     for (kind, text, value) in [
@@ -191,15 +192,15 @@ fn values_have_the_length_of_their_type() {
     assert!(Kind::U8.emit(&Value::Text("1".to_owned())).is_err() && Kind::Text.emit(&Value::Number(1)).is_err());
     let name = Value::Text("HIPERDRIVE HUB-4".to_owned());
     let plain = Kind::Text.emit(&name).unwrap();
-    // Sixteen characters.
+    // The string has sixteen characters.
     for data in [plain.clone(), [vec![16], plain.clone()].concat(), [plain, vec![0, 0]].concat()] {
         assert_eq!(Kind::Text.parse(&data), Ok(name.clone()));
     }
     assert_eq!(Kind::Text.parse(&[]), Ok(Value::Text(String::new())));
 }
 
-/// Manual 6.2, 126 to 129: nominal data are strings, divided by 10 if preceded by an "A". They then have one decimal,
-/// even where it is 0.
+/// The nominal data in parameters 126 to 129 are strings. A value preceded by an "A" is in tenths and has one decimal,
+/// even if this is 0 (manual 6.2).
 #[test]
 fn nominal_data_may_be_tenths() {
     for (text, number) in [
@@ -215,7 +216,7 @@ fn nominal_data_may_be_tenths() {
     }
 }
 
-/// Reference 5: conversions match the table and the manual's examples.
+/// Conversions match the table in section 5 of the reference and the examples of the manual.
 #[test]
 fn steps_convert_to_turns_and_millimetres() {
     for (numerator, denominator, steps) in [(256, 1, 65_536), (400, 256, 400), (100, 256, 100), (20, 256, 20)] {
@@ -224,7 +225,7 @@ fn steps_convert_to_turns_and_millimetres() {
         assert_eq!(scale.steps_per_turn(), f64::from(steps));
         assert_eq!(scale.to_turns(-steps), -1.0);
     }
-    // One degree is 182.04 steps at 65536 steps per turn and 1.11 at 400; 5 degrees at 400 are 5.6.
+    // One degree is 182.04 steps at 65536 steps per turn, and 1.11 at 400. 5 degrees are 5.6 steps at 400.
     for (numerator, denominator, degrees, steps) in
         [(256, 1, 1.0, 183), (400, 256, 1.0, 2), (400, 256, 5.0, 6), (20, 256, 1.0, 1), (65_535, 1, 1e12, u32::MAX)]
     {
@@ -233,13 +234,13 @@ fn steps_convert_to_turns_and_millimetres() {
     }
     let scale = |pitch, step| PositionScale::for_spindle(millimetres(pitch), millimetres(step));
     let factors = |scale: PositionScale| (scale.numerator(), scale.denominator());
-    // Pitch 4 mm, 1 mm and 2 mm; steps of 1/100, 1/100 and 1/10 mm.
+    // Pitches of 4 mm, 1 mm and 2 mm with steps of 1/100, 1/100 and 1/10 mm.
     for (pitch, step, expected) in [(400, 1, (400, 256)), (100, 1, (100, 256)), (200, 10, (20, 256))] {
         assert_eq!(scale(pitch, step).map(factors), Ok(expected));
     }
     // 1 mm / 0.03 mm = 100/3 steps = 256 · 25/192.
     assert_eq!(scale(100, 3).map(factors), Ok((25, 192)));
-    // 4 mm in steps of 1 nm are 4000000, 1/256 of which is 15625/1.
+    // 4 mm contain 4000000 steps of 1 nm. Divided by 256, this is 15625/1.
     let nanometre = Length { nanometres: 1 };
     assert_eq!(PositionScale::for_spindle(millimetres(400), nanometre).map(factors), Ok((15_625, 1)));
     assert_eq!(
@@ -250,7 +251,7 @@ fn steps_convert_to_turns_and_millimetres() {
     assert_eq!((PositionScale::new(0, 1), PositionScale::new(1, 0)), (Err(ScaleError::Zero), Err(ScaleError::Zero)));
     let four = scale(400, 1).unwrap();
     assert!((four.to_millimetres(150, millimetres(400)) - 1.5).abs() < 1e-12);
-    // Limits in steps, which change with the scale: 33488896 / 400 = 83722.24 turns.
+    // Limits in steps mean other turns under another scale: 33488896 / 400 = 83722.24 turns.
     for (turns, steps) in [(512, 33_554_432), (-511, -33_488_896), (16_000, 1_048_576_000), (127, 8_323_072)] {
         assert_eq!(PositionScale::FACTORY.steps_of_turns(turns), Some(steps));
     }
@@ -296,7 +297,8 @@ fn error_variant_led_and_switch_tables_match_the_reference() {
         BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count()
     };
     assert!(BUS_LEDS.iter().all(|row| twins(row) == 1));
-    // Manual 3.3 and 4.4: seven states for all drives of a hub and for an adapter's drive, four for one drive of a hub.
+    // The LED has seven states for all drives of a hub and for the drive of an adapter, and four for a single drive of
+    // a hub (manual 3.3 and 4.4).
     for (subject, lights) in [(LedSubject::Adapter, 7), (LedSubject::Drives, 7), (LedSubject::Drive, 4)] {
         let rows = subject.rows();
         let is_own = |row: &LedRow| rows.iter().filter(|other| other.light == row.light).count() == 1;

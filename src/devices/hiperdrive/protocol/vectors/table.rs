@@ -8,7 +8,7 @@ use super::super::*;
 
 const FILE: &str = include_str!("../../../../../tests/vectors/hiperdrive_parameters.txt");
 
-/// Row of the transcribed table: number, then range, saved, factory, access, unit, bits, answered.
+/// Row of the transcribed table.
 struct TranscribedRow<'t> {
     number: u16,
     bits: &'t str,
@@ -20,7 +20,7 @@ struct TranscribedRow<'t> {
     answered: &'t str,
 }
 
-/// Turns of a drive family: the travel (9.2) and, for each parameter number, the range and the factory value.
+/// Turns of a drive family: the travel (manual 9.2) and, for each parameter number, the range and the factory value.
 struct TurnsTable {
     way: i64,
     rows: BTreeMap<u16, (i64, i64, i64)>,
@@ -100,9 +100,9 @@ fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     };
     let between = |(low, high): (i64, i64)| (vec![low, low + 1, high - 1, high], vec![low - 1, high + 1]);
     match typed.range {
-        // If turns and scale are not known, only the bits set the limit.
+        // If turns and scale are unknown, only the number of bits limits the value.
         "*" | "turns" | "way" => between(all()),
-        // A single number: 0…0.
+        // The range 0…0 is a single number.
         "0…0" => (vec![0], vec![-1, 1]),
         range => match (range.split_once('…'), range) {
             (Some((low, rest)), _) => {
@@ -125,8 +125,8 @@ fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     }
 }
 
-/// Issue 21.10: every row matches in type, access, unit, saving, factory value and allowed values, and no row is
-/// missing or surplus.
+/// Issue 21.10: every row matches in type, access, unit, saving, factory value and allowed values. No row is missing or
+/// superfluous.
 #[test]
 fn every_row_matches_the_manual() {
     let typed = transcribed_rows();
@@ -174,7 +174,7 @@ fn every_row_matches_the_manual() {
     }
 }
 
-/// Issue 21.8: only the listed values take long to write.
+/// Issue 21.8: only the values listed in the manual take a long time to write.
 #[test]
 fn every_row_is_answered_within_the_manuals_time() {
     for typed in transcribed_rows() {
@@ -199,8 +199,8 @@ fn every_row_is_answered_within_the_manuals_time() {
     }
 }
 
-/// Issue 21.10: for each family and scale, limit ranges are turns · 256 · numerator / denominator steps, rounded
-/// towards 0 and within 32 bits.
+/// Issue 21.10: for each family and scale, limits range to turns · 256 · numerator / denominator steps in either
+/// direction, rounded towards 0 and within 32 bits.
 #[test]
 fn limit_ranges_match_the_turns_of_the_family() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];
@@ -233,13 +233,13 @@ fn limit_ranges_match_the_turns_of_the_family() {
             for topology in [Topology::Adapter, Topology::Hub8] {
                 for (own, (.., factory)) in &rows {
                     let row = ParameterNumber::new(*own).unwrap().row().unwrap();
-                    // With factory settings a turn has 65536 steps (8.4).
+                    // With factory settings, a turn has 65536 steps (manual 8.4).
                     assert_eq!(row.factory_value(topology, family), Some(factory * 65_536), "{own} of {name}");
                 }
             }
         }
     }
-    // Unknown turns or scale leave only the limit of the bits.
+    // If turns or scale are unknown, only the number of bits limits the value.
     let number = ParameterNumber::new(158).unwrap();
     let all = ParameterRange::Within(-2_147_483_648, 2_147_483_647);
     for (family, scale) in [(None, PositionScale::new(400, 256).ok()), (Some(Family::Short), None)] {

@@ -4,11 +4,11 @@
 //! - A session ends with its TCP connection. A cyclic connection ends only by its own time-out, since its packets show
 //!   that the master is alive.
 //! - Bytes that are not frames, and UnRegisterSession, end the TCP connection.
-//! - A target that lost its supply replies again after the next connection.
+//! - A target that has lost its supply replies again once a new connection is opened.
 //!
 //! | file | content |
 //! |---|---|
-//! | `plant` | state shared by all connections: time, sessions, faults |
+//! | `device` | state shared by all connections: time, sessions, faults |
 //! | `frames` | frames and their replies |
 //! | `objects` | the CIP objects for identity and parameters |
 //! | `network` | the TCP/IP and Ethernet objects |

@@ -3,7 +3,7 @@
 use super::*;
 use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};
 
-/// Returns whether an operational drive reports a fault: 2AB8, with ZSW12 and 10 unchanged.
+/// Returns whether an operational drive reports a fault. The status word is 2AB8, ignoring bits 10 and 12.
 fn is_fault(bench: &mut Bench) -> bool {
     bench.actual(FIRST).status.to_u16() & 0x2AFF == 0x2AB8
 }
@@ -33,7 +33,7 @@ fn a_blocked_drive_faults_and_recovers() {
         acknowledge(&mut bench);
         assert_eq!(bench.read(197), Value::Number(0));
         assert_eq!(bench.error(), code, "the buffer keeps it");
-        // The job is discarded; a new one away from the wall runs.
+        // The job was discarded. A new job away from the obstacle runs.
         bench.out[FIRST].target = 0;
         bench.words(&[0x0439, 0x0479]);
         bench.run(2000);
@@ -41,7 +41,7 @@ fn a_blocked_drive_faults_and_recovers() {
     }
 }
 
-/// 26 % of torque are 50, which is too little for 60.
+/// A torque of 26 % is rounded up to 50 %, which is too low for a load of 60 %.
 #[test]
 fn insufficient_torque_causes_a_following_error() {
     let mut bench = Bench::single();
@@ -58,7 +58,8 @@ fn insufficient_torque_causes_a_following_error() {
     assert_eq!(bench.position(), 65_536);
 }
 
-/// 50 °C ambient and 40 K of self-heating at full torque: above 80 °C after 60 s · ln 4 = 83 s of motion.
+/// With an ambient temperature of 50 °C and 40 K of self-heating at full torque, the drive exceeds 80 °C after 60 s ·
+/// ln 4 = 83 s of motion.
 #[test]
 fn a_hot_drive_faults() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
@@ -74,12 +75,12 @@ fn a_hot_drive_faults() {
     assert_eq!(bench.error(), ErrorCode::OVER_TEMPERATURE);
 }
 
-/// Reference 9: a target beyond the limits; the newest error is first.
+/// A target beyond the limits causes a fault, and the newest error is stored first (reference, section 9).
 #[test]
 fn a_target_beyond_the_limits_is_a_fault() {
     let mut bench = Bench::single();
     bench.enable();
-    // 512 turns, where 511 are the limit.
+    // A target of 512 turns, where the limit is 511.
     bench.out[FIRST].target = 33_554_432;
     bench.words(&[0x0439, 0x0479]);
     assert!(is_fault(&mut bench));
@@ -96,7 +97,7 @@ fn a_target_beyond_the_limits_is_a_fault() {
     assert_eq!(bench.read(115), Value::Number(0x8502));
 }
 
-/// Below operational something that goes wrong is a warning, which 197 = 0 takes away.
+/// Below the operational state, an error is only a warning, which is cleared by 197 = 0.
 #[test]
 fn a_drive_that_is_switched_off_warns() {
     let mut bench = Bench::single();
@@ -107,7 +108,7 @@ fn a_drive_that_is_switched_off_warns() {
     assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);
 }
 
-/// Reference 3: if bit 0 was cleared before the acknowledgement, the lock needs another falling edge.
+/// If bit 0 was cleared before the acknowledgement, the lock needs another falling edge (reference, section 3).
 #[test]
 fn releasing_the_lock_needs_an_edge() {
     let mut bench = Bench::single();
@@ -119,7 +120,8 @@ fn releasing_the_lock_needs_an_edge() {
     assert_eq!(bench.words(&UNLOCK.map(|step| step.word.to_u16())), 0x2A31);
 }
 
-/// Reference 7 and 3: 40 ms without a packet, and 100 ms to brake, however often the state is read.
+/// The master is lost after 40 ms without a packet. Braking takes 100 ms, regardless of how often the state is read
+/// (reference, sections 3 and 7).
 #[test]
 fn a_lost_master_stops_all_drives() {
     for looks in [&[][..], &[10, 39, 40, 41, 200]] {
@@ -138,7 +140,7 @@ fn a_lost_master_stops_all_drives() {
         assert_eq!(later.status.state(), State::Fault);
         bench.now = last + at(5000);
         assert_eq!(bench.error(), ErrorCode::CONNECTION_TIMEOUT);
-        // Data received without a connection are dropped; after the next connection an acknowledgement is needed.
+        // Data received without a connection are dropped. After the next connection, an acknowledgement is required.
         bench.run(500);
         assert!(!bench.station.is_open(bench.now));
         bench.station.open(bench.now, at(40));
@@ -149,7 +151,7 @@ fn a_lost_master_stops_all_drives() {
     }
 }
 
-/// An idle master stops the drive and is not lost; one that closes the connection is.
+/// An idle master stops the drive but is not lost. A master that closes the connection is lost.
 #[test]
 fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
     let mut bench = Bench::single();

@@ -1,12 +1,12 @@
-//! Tests of jobs, runs and steps: how they start and end (reference 3).
+//! Tests of the start and end of jobs, runs and steps (reference, section 3).
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::devices::hiperdrive::protocol::State;
 
-/// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, with 0.1 s each for acceleration
-/// and braking (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
+/// The start sequence and its status words match sections 3 and 9 of the reference. 2.5 turns at 35 rpm, with 0.1 s
+/// each for acceleration and braking (0.0583 turns together), take 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
 #[test]
 fn published_start_sequence_works() {
     let mut bench = Bench::single();
@@ -19,18 +19,18 @@ fn published_start_sequence_works() {
     let took = 30 + bench.until(0x3E37);
     assert!((4370..=4420).contains(&took), "{took} ms");
     assert_eq!((bench.position(), bench.actual(FIRST).speed), (163_840, 0));
-    // The next job: another target, and bit 6 inverted.
+    // The next job has another target and an inverted bit 6.
     bench.out[FIRST].target = -65_536;
     assert_eq!(bench.word(0x0439), 0x0A37);
     bench.until(0x2E37);
     assert_eq!(bench.position(), -65_536);
-    // The same bit again starts nothing.
+    // Bit 6 without a change starts nothing.
     bench.out[FIRST].target = 0;
     assert_eq!(bench.word(0x0439), 0x2E37);
     assert_eq!(bench.word(0x0000), 0x2A30);
 }
 
-/// The state machine advances step by step while the word is unchanged; a word with reserved bits has no effect.
+/// With an unchanged word, the state machine advances step by step. A word with reserved bits has no effect.
 #[test]
 fn a_control_word_advances_as_far_as_possible() {
     let mut bench = Bench::single();
@@ -39,14 +39,15 @@ fn a_control_word_advances_as_far_as_possible() {
     assert_eq!(bench.word(0x0400), 0x2A31);
 }
 
-/// A stop discards a job, in a tenth of a second; a pause does not. The speed is the requested one.
+/// A stop ends and discards a job within a tenth of a second, whereas a pause keeps it. The drive moves at the
+/// requested speed.
 #[test]
 fn jobs_are_stopped_and_paused() {
     let mut bench = Bench::single();
     bench.out[FIRST].speed = 50;
     bench.start(655_360);
     bench.run(500);
-    // 50 % of 35 rpm, in tenths.
+    // 50 % of 35 rpm, in tenths of rpm.
     assert_eq!(bench.actual(FIRST).speed, 175);
     bench.out[FIRST].control = 0x0459;
     bench.run(200);
@@ -60,13 +61,13 @@ fn jobs_are_stopped_and_paused() {
     bench.run(200);
     let stopped = bench.actual(FIRST);
     assert_eq!((stopped.status.to_u16(), stopped.speed), (0x3A37, 0));
-    // Bit 4 is set again: bit 6 is as it was acknowledged.
+    // Bit 4 is set again, and bit 6 has the acknowledged level.
     bench.out[FIRST].control = 0x0479;
     bench.run(500);
     assert_eq!(bench.position(), stopped.position);
 }
 
-/// Reference 3: anything that disables operation ends the motion.
+/// Any control word that disables operation ends the motion (reference, section 3).
 #[test]
 fn disabling_operation_ends_the_motion() {
     for control in [0x0401, 0x0400, 0x0000, 0x0008] {
@@ -77,13 +78,13 @@ fn disabling_operation_ends_the_motion() {
         bench.run(200);
         let actual = bench.actual(FIRST);
         assert_eq!((actual.speed, actual.status.to_u16() & 0x2004), (0, 0x2000), "{control:04X}");
-        // The way back is not a start.
+        // Enabling operation again does not start a motion.
         bench.words(&[0x0400, 0x0401, 0x0409]);
         assert_eq!(bench.position(), actual.position, "{control:04X}");
     }
 }
 
-/// Reference 3 and 9: the conditions for a start.
+/// A motion starts only with a nonzero speed and torque (reference, sections 3 and 9).
 #[test]
 fn a_start_needs_speed_and_torque() {
     for (speed, torque) in [(0, 100), (100, 0)] {
@@ -95,8 +96,8 @@ fn a_start_needs_speed_and_torque() {
     }
 }
 
-/// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it starts a job to a stale
-/// target, and 0400 avoids it.
+/// A run ends at the end of the range unless it is endless. Clearing bit 12 afterwards starts a job to a stale target,
+/// which 0400 prevents (reference, section 3).
 #[test]
 fn leaving_speed_mode_directly_starts_a_stale_job() {
     let mut bench = Bench::single();
@@ -122,14 +123,14 @@ fn leaving_speed_mode_directly_starts_a_stale_job() {
     let stopped = bench.position();
     assert_eq!(bench.words(&[0x0400, 0x0401, 0x0409, 0x0439]), 0x2A37);
     assert_eq!(bench.position(), stopped);
-    // Endless: past the end, which the status reports.
+    // An endless run continues past the end of the range, which the status reports.
     bench.words(&[0x1439, 0x1479]);
     bench.run(4000);
     let actual = bench.actual(FIRST);
     assert!(actual.position > 65_536 && actual.status.to_u16() & 0x8000 != 0, "{actual:?}");
 }
 
-/// Reference 3 and 5: 4096 steps, which bit 4 does not stop; 16 of them are a turn.
+/// A jog step of 4096 steps, which is 1/16 turn, is not stopped by bit 4 (reference, sections 3 and 5).
 #[test]
 fn a_jog_step_runs_to_completion() {
     let mut bench = Bench::single();
@@ -144,11 +145,11 @@ fn a_jog_step_runs_to_completion() {
     assert_eq!((bench.write(170, 65_536), bench.write(172, 10)), (Ok(()), Ok(())));
     bench.word(0x0509);
     bench.run(1000);
-    // 10 % of 35 rpm, whatever the process data contain.
+    // 10 % of 35 rpm, regardless of the process data.
     assert_eq!(bench.actual(FIRST).speed, 35);
 }
 
-/// Reference 4: the drives of a hub are not requested at first, and move one by one.
+/// Initially, the drives of a hub are not requested. Only a requested drive moves (reference, section 4).
 #[test]
 fn a_hub_moves_only_requested_drives() {
     let mut bench = Bench::hub();
@@ -166,7 +167,7 @@ fn a_hub_moves_only_requested_drives() {
     assert_eq!(both(&mut bench, 0x0479), [0x2A30, 0x1A37, 0]);
     bench.run(3000);
     assert_eq!([0, 1].map(|drive| bench.actual(drive).position), [0, 65_536]);
-    // S3 at a drive: nothing starts.
+    // While S3 selects a drive, nothing starts.
     bench.station.set_drive_select_switch(bench.now, 2);
     bench.out[1].target = 0;
     both(&mut bench, 0x0439);
@@ -174,7 +175,7 @@ fn a_hub_moves_only_requested_drives() {
     assert_eq!(bench.actual(1).position, 65_536);
 }
 
-/// The result does not depend on how often the state is read.
+/// The motion does not depend on how often the state is read.
 #[test]
 fn motion_is_independent_of_the_polling_interval() {
     let run = |portions: &[u64]| {
@@ -197,7 +198,7 @@ fn motion_is_independent_of_the_polling_interval() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// With arbitrary input: no panic, and no motion beyond the range except in endless runs.
+    /// Arbitrary input causes no panic, and no motion beyond the range except in endless runs.
     #[test]
     fn arbitrary_commands_stay_within_limits(
         sent in prop::collection::vec((any::<u16>(), 0u8..=120, 0u8..=120, -200_000i32..200_000, 1u64..400), 1..60)
@@ -205,7 +206,7 @@ proptest! {
         let mut bench = Bench::single();
         prop_assert_eq!((bench.write(160, 100_000), bench.write(158, -50_000)), (Ok(()), Ok(())));
         for (control, speed, torque, target, ms) in sent {
-            // Mostly words that a host might send, and never an endless run.
+            // The words are mostly ones that a host might send, and never start an endless run.
             let control = if control & 1 == 0 { control & 0x17FF } else { 0x0409 | control & 0x0270 };
             let control = if control & 0x1020 == 0x1020 { control & !0x0020 } else { control };
             bench.out[FIRST] = OutputData { control, speed, torque, target };

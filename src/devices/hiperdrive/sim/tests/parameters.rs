@@ -9,7 +9,7 @@ fn value(number: i64) -> Value {
     Value::Number(number)
 }
 
-/// Every parameter of the table can be read for a drive and for a device, and has its type.
+/// Every parameter in the table can be read from a drive or from the device, and the value has the correct type.
 #[test]
 fn every_parameter_can_be_read() {
     let mut bench = Bench::hub();
@@ -20,11 +20,11 @@ fn every_parameter_can_be_read() {
         }
     }
     let mut read = |own| bench.station.read(bench.now, number(own));
-    // The third place is empty, a fifth one does not exist.
+    // The third port is empty, and a fifth port does not exist.
     assert_eq!((read(320), read(352), read(307)), (Ok(value(0)), Ok(value(0)), Err(ParameterError::State)));
     assert_eq!((read(507), read(25)), (Err(ParameterError::Unknown), Err(ParameterError::Unknown)));
     assert_eq!((read(13), read(120)), (Ok(Value::Text("HIPERDRIVE HUB-4".to_owned())), Ok(value(13))));
-    // HDA70: 16000 turns.
+    // The limit of an HDA70 is 16000 turns.
     assert_eq!((read(160), read(152)), (Ok(value(1_048_576_000)), Ok(value(0))));
 }
 
@@ -46,7 +46,7 @@ fn refusals_have_the_matching_status() {
     assert_eq!((bench.error(), bench.read(166)), (ErrorCode::INVALID_VALUE, value(350)));
 }
 
-/// Reference 4: 160 is above 158, the position between them.
+/// The upper limit (160) must be above the lower limit (158), with the position between them (reference, section 4).
 #[test]
 fn limits_must_contain_the_position() {
     let mut bench = Bench::single();
@@ -56,8 +56,8 @@ fn limits_must_contain_the_position() {
     assert_eq!((bench.write(160, 1), bench.read(158), bench.read(160)), (Ok(()), value(0), value(1)));
 }
 
-/// Issue 21.10: ±512 turns of an HDA30, ±16000 of an HDA70, in scaled steps; a step of its keys is no longer than its
-/// travel.
+/// Issue 21.10: limits are within ±512 turns of an HDA30 or ±16000 turns of an HDA70, in scaled steps. A step of the
+/// keys on the drive is no longer than the travel.
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut bench = Bench::single();
@@ -77,7 +77,8 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     assert_eq!((hub.write(260, 1_048_576_001), hub.write(260, 1_048_575_999)), (Err(ParameterError::Value), Ok(())));
 }
 
-/// Reference 5: the nearest multiple of 64, within the limits, and only at standstill.
+/// A position is rounded to the nearest multiple of 64. It must be within the limits, and can be set only at standstill
+/// (reference, section 5).
 #[test]
 fn the_position_can_be_set() {
     let mut bench = Bench::single();
@@ -87,14 +88,14 @@ fn the_position_can_be_set() {
     }
     assert_eq!(bench.write(198, 33_554_432), Err(ParameterError::Value));
     assert_eq!(bench.write(197, 0), Ok(()));
-    // From 2.5 turns by one more.
+    // The drive moves by one turn from 2.5 turns.
     bench.start(229_376);
     assert_eq!(bench.write(198, 0), Err(ParameterError::State));
     bench.until(0x3E37);
     assert_eq!(bench.position(), 229_376);
 }
 
-/// Reference 3 and 5: with 400 steps per turn a turn is 400; the limits keep their numbers.
+/// A scale of 400 steps per turn changes the position, but not the numbers of the limits (reference, sections 3 and 5).
 #[test]
 fn scaling_keeps_the_numeric_limits() {
     let mut bench = Bench::single();
@@ -105,7 +106,7 @@ fn scaling_keeps_the_numeric_limits() {
     assert_eq!(bench.position(), 400);
     assert_eq!((bench.write(154, 256), bench.write(156, 1)), (Ok(()), Ok(())));
     assert_eq!(bench.position(), 65_536, "a turn");
-    // 100/1 instead of 10/1: hundredths of rpm.
+    // With 100/1 instead of 10/1, the speed is in hundredths of rpm.
     assert_eq!(bench.write(162, 100), Ok(()));
     bench.out[FIRST].target = 655_360;
     bench.word(0x0439);
@@ -113,7 +114,7 @@ fn scaling_keeps_the_numeric_limits() {
     assert_eq!(bench.actual(FIRST).speed, 3500);
 }
 
-/// Reference 4: 47 saves, recalls and resets; values that are never saved are lost with the supply.
+/// Parameter 47 saves, recalls and resets. Values that are never saved are lost with the supply (reference, section 4).
 #[test]
 fn saved_parameters_survive_a_power_cycle() {
     let mut bench = Bench::single();
@@ -140,8 +141,9 @@ fn saved_parameters_survive_a_power_cycle() {
     assert_eq!(bench.write(47, 2), Err(ParameterError::Value));
 }
 
-/// Issue 21.6 (d): 47 = −1 and −2 concern the parameters that the adapter or hub stores itself (manual, 47): its
-/// registers, which drives are requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
+/// Issue 21.6 (d): 47 = −1 and −2 only affect the parameters that the adapter or hub itself stores (manual, 47): its
+/// registers, the requests of drives (152), and their baud rates (190). Scale, limits and reference of a drive are
+/// unchanged.
 #[test]
 fn the_device_recalls_only_its_own_parameters() {
     let own = [24, 152, 190];
@@ -166,8 +168,8 @@ fn the_device_recalls_only_its_own_parameters() {
     }
 }
 
-/// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory state makes it that of
-/// the shaft, between 0 and 1 turn (manual, 198).
+/// Issue 21.6 (d): a reset does not affect a position that was set, whether saved or not. The factory state restores
+/// the position of the shaft, between 0 and 1 turn (manual, 198).
 #[test]
 fn a_set_position_survives_a_reset() {
     let mut bench = Bench::single();
@@ -182,12 +184,12 @@ fn a_set_position_survives_a_reset() {
     }
     bench.station.power_cycle(bench.now);
     assert_eq!((bench.read(198), bench.position()), (value(640_000), 640_000));
-    // The shaft was turned by 1.25 turns: 16 384 of 65 536 steps.
+    // The shaft was turned by 1.25 turns, so it is at step 16 384 of 65 536.
     assert_eq!(bench.write(199, 1), Ok(()));
     assert_eq!((bench.read(198), bench.position()), (value(0), 16_384));
 }
 
-/// −4: the drives restart, at most 2 s later, with unchanged positions.
+/// After 47 = −4, the drives restart within 2 s with unchanged positions.
 #[test]
 fn drives_can_be_reset() {
     let mut bench = Bench::single();
@@ -201,7 +203,8 @@ fn drives_can_be_reset() {
     assert_eq!((bench.read(47), bench.position()), (value(0), 65_536));
 }
 
-/// Reference 6 and 9: a request is repeated until its answer has arrived, and the answer stays as long as the request.
+/// A request is repeated until its answer has arrived, and the answer remains as long as the request (reference,
+/// sections 6 and 9).
 #[test]
 fn parameter_words_are_answered() {
     let mut bench = Bench::hub();
@@ -224,7 +227,7 @@ fn parameter_words_are_answered() {
         Some(Answer::Double(0xFFFF_0000))
     );
     assert_eq!(ask(read(158)), Some(Answer::Double(0xFFFF_0000)));
-    // −4096 in a double word.
+    // The value −4096 as a double word.
     assert_eq!(ask(read(176)), Some(Answer::Double(0xFFFF_F000)));
     assert_eq!(ask(Pkw::request(Task::WriteWord, 166, 0, 351)), refused(PkwError::RANGE));
     assert_eq!(ask(Pkw::request(Task::WriteWord, 158, 0, 1)), refused(PkwError::TYPE));
@@ -232,7 +235,7 @@ fn parameter_words_are_answered() {
     assert_eq!(ask(read(25)), refused(PkwError::NO_PARAMETER));
     assert_eq!(ask(read(307)), refused(PkwError::STATE), "no drive is connected");
     assert_eq!(ask(read(121)), refused(PkwError::TYPE));
-    // "HDA70": two elements, "HDA7" and "0", the first character lowest.
+    // "HDA70" has two elements, "HDA7" and "0", with the first character in the lowest byte.
     let element = |element| Pkw::request(Task::ReadElement, 121, element, 0);
     assert_eq!(ask(Pkw::request(Task::Count, 121, 0, 0)), Some(Answer::Elements(2)));
     assert_eq!(ask(element(0)), Some(Answer::Double(0x3741_4448)));

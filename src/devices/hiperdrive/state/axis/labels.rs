@@ -1,4 +1,4 @@
-//! Texts for the steps of the axis set-up: names, tasks, findings.
+//! Texts for the steps of the axis set-up: names, tasks and findings.
 
 use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, RestartEvidence, StepStatus, TestTarget};
 use crate::app::Text;
@@ -80,7 +80,7 @@ pub fn finding_text(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Te
             Some(text.with_number("steps", per_turn, decimals))
         }
         AxisStep::Confirm | AxisStep::Upper => {
-            // Confirmed limits remain displayed, even after others were taught.
+            // Confirmed limits remain displayed, even after other limits were taught.
             let confirmed = axis.confirmed.filter(|_| step == AxisStep::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
             Some(TEXTS.text("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))

@@ -5,9 +5,9 @@ use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// Origin of positions. It is identified by the position set last (198), the number of times this program has set a
-/// position, and the number of jumps at standstill. Only a jump reveals that the reference was set to the same number
-/// again.
+/// Identifies the zero point to which positions refer. A change in any field means that the zero point may have moved:
+/// the reference (parameter 198), the number of times this program has set the position, or the number of jumps at
+/// standstill. Only a jump reveals that the same reference was set again at another location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PositionOrigin {
     set: Option<i64>,

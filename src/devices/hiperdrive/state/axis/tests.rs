@@ -1,4 +1,4 @@
-//! Tests of the set-up with reports of a simulated drive, step by step.
+//! Tests of the set-up, step by step, with reports of a simulated drive.
 
 mod facts;
 mod standstill;
@@ -18,7 +18,7 @@ fn fresh() -> DriveFacts {
         connected: true,
         actual: Some(ActualValues { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
         position: Some(0),
-        // The factory setting of 182 is 1000, of 198 it is 0.
+        // The factory setting is 1000 for parameter 182, and 0 for parameter 198.
         values: BTreeMap::from([(152, 0), (182, 1000), (198, 0)]),
         requested: Some(false),
         scale: Some(PositionScale::FACTORY),
@@ -97,7 +97,7 @@ fn go_on(axis: &mut Axis, seen: &DriveFacts) {
     axis.next_step(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
 }
 
-/// Enters the spindle: 4 mm per turn, a step of 0.01 mm.
+/// Enters a spindle with a pitch of 4 mm and a step of 0.01 mm.
 fn enter_spindle(axis: &mut Axis) {
     axis.set_entries(LengthEntries { pitch: "4".to_owned(), ..axis.entries().clone() });
 }
@@ -123,7 +123,7 @@ fn a_step_is_shown_for_a_minimum_time() {
     assert!(!axis.can_go_back(&seen), "nothing is before the first step");
 }
 
-/// A proposed step has the same decimal sign as the numbers beside it, and is accepted in either language.
+/// A proposed value has the decimal sign of the language, and is accepted in either language.
 #[test]
 fn proposed_values_use_the_decimal_sign_of_the_language() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
@@ -134,7 +134,7 @@ fn proposed_values_use_the_decimal_sign_of_the_language() {
     }
 }
 
-/// A limit that was written twice is reported once, with its present value.
+/// A limit that was written twice is reported once, with its current value.
 #[test]
 fn rewritten_parameters_are_reported_once() {
     let mut axis = run();
@@ -144,13 +144,13 @@ fn rewritten_parameters_are_reported_once() {
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
-/// Runs the set-up up to the slow jog, with 4 mm per turn and a step of 0.01 mm.
+/// Runs the set-up up to the slow jog, with a pitch of 4 mm and a step of 0.01 mm.
 fn at_jog_step() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(152, 1)]));
     next(&mut axis, &seen, AxisStep::Scale);
     enter_spindle(&mut axis);
-    // Reference 5: 400/256; 511 · 400 = 204400.
+    // The scale is 400/256 (reference, section 5), and the limits are 511 · 400 = 204400.
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(values));
     confirm_spindle(&mut axis, &mut seen);
@@ -181,7 +181,7 @@ fn at_test_step() -> (Axis, DriveFacts) {
     assert_eq!(axis.travel().clockwise_is_up, Some(true));
     next(&mut axis, &seen, AxisStep::Reference);
     axis.set_entries(LengthEntries { reference: "1,00".to_owned(), ..axis.entries().clone() });
-    // 100 steps become 128: the nearest multiple of 64.
+    // 100 steps become 128, the nearest multiple of 64.
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::SetPosition(128));
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
@@ -227,7 +227,7 @@ fn at_power_cycle_step() -> (Axis, DriveFacts) {
 fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_power");
-    // Reading without switching off does not prove anything.
+    // A reading without a power cycle proves nothing.
     axis.on_survey(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
     // Worked out by hand: the factory setting of 182 is 1000.
@@ -237,7 +237,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     axis.update(&seen);
     seen.connected = true;
     seen.values.insert(182, 1000);
-    // 5° of 400 steps are 5.6: six.
+    // 5° at 400 steps per turn is 5.6 steps, rounded up to six.
     at(&mut seen, 2002 - 6);
     axis.on_survey(&seen, false);
     let Some(Power::Back { kept, moved, allowed, restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
@@ -297,7 +297,7 @@ fn impossible_steps_are_refused_with_a_reason() {
     assert_eq!(why(&axis, &seen, AxisButton::PowerCycle), "hd_axis.not_virtual");
     seen.is_virtual = true;
     assert_eq!(why(&axis, &seen, AxisButton::PowerCycle), "hd_axis.give_first");
-    // During a write nothing else is done.
+    // During a write, nothing else is possible.
     axis.begin_request(DriveRequest::Save, &seen);
     assert_eq!(why(&axis, &seen, AxisButton::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
@@ -333,7 +333,7 @@ fn limits_must_enclose_the_axis_position() {
 #[test]
 fn a_test_that_misses_its_target_does_not_count() {
     let (mut axis, mut seen) = at_test_step();
-    // 1° of 400 steps are 1.1: two.
+    // 1° at 400 steps per turn is 1.1 steps, rounded up to two.
     go(&mut axis, &mut seen, TestTarget::Middle, 503);
     assert!(!axis.outcome_of(TestTarget::Middle).unwrap().is_good());
     go(&mut axis, &mut seen, TestTarget::Middle, 498);
@@ -342,7 +342,7 @@ fn a_test_that_misses_its_target_does_not_count() {
         panic!("no move")
     };
     axis.record_test_move_start(TestTarget::Upper, target, 9);
-    // An earlier act does not count for this one.
+    // The end of an earlier action does not count for this one.
     axis.update(&seen);
     assert_eq!((axis.running_test_target(), axis.outcome_of(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, ActionEnd::Stopped));
@@ -361,7 +361,7 @@ fn cancelling_reports_written_and_unsaved_values() {
     assert_eq!(axis.request(AxisButton::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Recall), DriveRequest::Restore(vec![(152, 0)]));
-    // The place has the position that was set.
+    // The current location has the position that was set.
     assert_eq!(axis.changes(), [AxisChange::Position(128)]);
     let told = |axis: &Axis| write_outcome_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
     assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved", "hd_axis.place_left"]);
@@ -369,7 +369,7 @@ fn cancelling_reports_written_and_unsaved_values() {
     axis.cancel(&seen, "");
     assert_eq!(told(&axis), ["hd_axis.nothing_written"]);
     assert!(axis.changes().is_empty());
-    // A write that did not begin has changed nothing; an interrupted one may have.
+    // A write that did not begin has changed nothing. An interrupted write may have changed values.
     for (begun, changes) in [(false, 0), (true, 1)] {
         let mut axis = run();
         axis.begin_request(DriveRequest::Try(vec![(152, 1)]), &fresh());
@@ -404,10 +404,10 @@ fn pitch_and_step_are_previewed_before_writing() {
     let own = preview("4", "0,01", Family::Short).unwrap();
     assert_eq!((own.scale.numerator(), own.scale.denominator()), (400, 256));
     assert_eq!((own.lower, own.upper, own.ruler.scale.steps_per_turn()), (-204_400, 204_400, 400.0));
-    // 33488896 steps of 0.01 mm.
+    // The limits are 33488896 steps of 0.01 mm.
     let (low, high) = own.unchanged.unwrap();
     assert!((low + 334_888.96).abs() < 1e-6 && (high - 334_888.96).abs() < 1e-6);
-    // 2 mm in tenths: 20 steps per turn; 16000 turns of them.
+    // A pitch of 2 mm in steps of 0.1 mm gives 20 steps per turn, for 16000 turns.
     let own = preview("2", "0.1", Family::Long).unwrap();
     assert_eq!((own.scale.numerator(), own.upper), (20, 320_000));
     for (pitch, resolution, id) in [

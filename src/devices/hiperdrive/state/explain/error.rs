@@ -1,4 +1,4 @@
-//! Messages for errors of an adapter, a hub or a drive: what happened and what to do.
+//! Messages for errors of an adapter, a hub or a drive, which state what happened and what to do.
 
 use super::names::parameter_name_text;
 use super::status;

@@ -1,4 +1,4 @@
-//! Tests of the texts about HIPERDRIVE drives: what happened and what to do, in both languages.
+//! Tests of the messages about HIPERDRIVE drives in both languages, which state what happened and what to do.
 
 use std::time::Duration;
 
@@ -116,7 +116,7 @@ fn errors_name_cause_and_remedy() {
             wrong_length(&length).to_string_in(language)
         );
     }
-    // If more time may help, the command line tells how to set it, and the window does not mention a link.
+    // If a longer time limit may help, the command line explains how to set it, and the window does not mention a link.
     for late in [None, Some(late)] {
         let text = device_error_text(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
         assert!(text.terminal_text().contains("timeout=2000 in the link"), "{}", text.terminal_text());

@@ -50,7 +50,7 @@ fn invalid_edits_are_refused_with_a_reason() {
         Err(EditError::OutOfRange(error)) => (error.value, error.range),
         other => panic!("{other:?}"),
     };
-    // Reference 4: 5 to 350, and 1 to 100 or 255.
+    // The ranges are 5 to 350, and 1 to 100 or 255 (reference, section 4).
     assert_eq!(out(&mut staged, 166, 351), (351, ParameterRange::Within(5, 350)));
     assert_eq!(out(&mut staged, 186, 101), (101, ParameterRange::WithinOrEqual(1, 100, 255)));
     assert_eq!(staged.apply_edit(&Edit::Set(number(107), 0)), Err(EditError::NotAValue(number(107))), "it is read");
@@ -72,8 +72,8 @@ fn invalid_edits_are_refused_with_a_reason() {
     assert!(!staged.is_dirty());
 }
 
-/// Issue 21.10: a value beyond a drive's travel is rejected when entered, and marked if a scale or a profile causes it:
-/// ±512 turns of an HDA30 are 33554432 steps of 65536 per turn, and 204800 of 400.
+/// Issue 21.10: a value beyond a drive's travel is rejected when entered, and marked if it results from a scale or a
+/// profile. ±512 turns of an HDA30 are 33554432 steps at 65536 per turn, and 204800 at 400.
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut staged = staged();
@@ -150,7 +150,7 @@ fn a_new_scale_converts_or_moves_the_limits() {
     along.apply_edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
     // 511 turns of 400 steps.
     assert_eq!(along.changed_values(), image(&[(154, 400), (156, 256), (158, -204_400), (160, 204_400)]));
-    // 600 turns of 65536 steps, scaled to 400 are 240 000: no longer inside.
+    // 600 turns are 240 000 steps at 400 steps per turn, which is outside the new limits.
     assert!(along.findings(|_| Some(0)).is_empty());
     let outside = along.findings(|_| Some(600 * 65536));
     let expected = EditFinding::Outside { drive: ONE, position: 240_000, lower: -204_400, upper: 204_400 };
@@ -159,7 +159,7 @@ fn a_new_scale_converts_or_moves_the_limits() {
     let mut moved = staged();
     moved.apply_edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     let [EditFinding::LimitsMove { lower, upper, .. }] = moved.findings(|_| Some(0))[..] else { panic!() };
-    // 33 488 896 steps of 400 a turn.
+    // 33 488 896 steps at 400 steps per turn.
     assert_eq!((lower, upper), ((-511.0, -83_722.24), (511.0, 83_722.24)));
     assert!(moved.undo() && !moved.is_dirty(), "one step");
 }

@@ -53,7 +53,7 @@ proptest! {
         answers(&mut host);
     }
 
-    /// Every one is counted once.
+    /// Every datagram is counted exactly once.
     #[test]
     fn the_target_survives_any_datagram(
         packets in proptest::collection::vec(

@@ -2,18 +2,18 @@
 
 use super::*;
 
-/// Reference 9: ForwardOpen, packets both ways, ForwardClose.
+/// ForwardOpen, packets in both directions and ForwardClose match section 9 of the reference.
 #[test]
 fn published_connection_matches() {
     let mut host = Host::new("position=163840");
-    // The socket: family 2, port 2222, no address.
+    // The socket item contains family 2, port 2222 and no address.
     host.is_asking(OPEN, &format!("{OPENED} 00 80 10 00 00 02 08 AE 00 00 00 00 00 00 00 00 00 00 00 00"));
     let ours = bytes(
         "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 00 00 00 00 00 00",
     );
     let theirs =
         "02 00 02 80 08 00 01 00 01 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 00 00 00 00 00 00 00 00";
-    // The reply took a while; the first packet is sent an interval after the opening.
+    // The first packet is sent one interval after the connection was opened.
     host.wait(4);
     assert_eq!(host.datagrams(), []);
     host.wait(1);
@@ -26,7 +26,7 @@ fn published_connection_matches() {
     host.target.on_datagram(host.now, FROM, &packet);
     host.wait(10);
     let (_, last) = host.datagrams().pop().unwrap();
-    // The fourteenth: 13 · 10 ms after the first.
+    // The fourteenth packet, 13 · 10 ms after the first.
     assert_eq!(
         last,
         theirs
@@ -89,7 +89,8 @@ fn supported_connections_are_accepted() {
         ("5 ms", "", &[("10 27 00 00 16 48", "88 13 00 00 16 48")][..]),
         ("100 ms", "", &[("10 27 00 00 16 48", "A0 86 01 00 16 48"), ("10 27 00 00 12 48", "A0 86 01 00 12 48")]),
         ("without parameter words", "", &[("16 48", "0E 48"), ("12 48", "0A 48")]),
-        // 8 · 5 + 6 = 46, + 2 = 42; 8 · 9 + 6 = 78, + 2 = 74; without words 8 less.
+        // With parameter words, the lengths are 8 · 5 + 6 = 46 and 8 · 5 + 2 = 42 for a hub of four, and 8 · 9 + 6 = 78
+        // and 8 · 9 + 2 = 74 for a hub of eight. Without them, they are 8 less.
         ("a hub of four", "hub=4", &[("16 48", "2E 48"), ("12 48", "2A 48")]),
         ("a hub of eight", "hub=8", &[("16 48", "4E 48"), ("12 48", "4A 48")]),
         ("that without words", "hub=8", &[("16 48", "46 48"), ("12 48", "42 48")]),
@@ -112,7 +113,7 @@ fn a_second_master_is_refused() {
     second.register();
     assert_eq!(second.open(&other), "D4 00 01 01 06 01 01 00 34 12 CE AB 00 00 00 00");
     second.is_asking(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
-    // After 80 ms without a packet the first one has ended.
+    // After 80 ms without a packet, the first connection has ended.
     second.wait(80);
     assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
 }
@@ -140,11 +141,12 @@ fn only_packets_in_sequence_count() {
     let mut host = Host::opened("");
     let next = host.words(1, &[0x0400]);
     assert_eq!(host.status(), Some(0x2A31));
-    // A repeated one, an older one, and one before the first.
+    // A repeated packet, an older packet, and a packet from before the first one.
     for sequence in [next - 1, next - 2, 0] {
         host.word(sequence, 0x0401);
     }
-    // Another connection; too short and too long; not a packet; cut off anywhere.
+    // Packets that belong to another connection, are too short or too long, are not packets, or are truncated at any
+    // length.
     host.packet_of(0x0002_0002, next, 1, &[0; 16]);
     host.packet(next, 1, &[1; 15]);
     host.packet(next, 1, &[1; 17]);
@@ -158,13 +160,13 @@ fn only_packets_in_sequence_count() {
     assert_eq!(host.status(), Some(0x2A31));
     let figures = host.target.traffic_counters();
     assert_eq!((figures.packets, figures.stale, figures.foreign, figures.malformed), (3, 3, 1, 42));
-    // A missing packet does no harm.
+    // A missing packet has no effect.
     host.word(next + 5, 0x0401);
     host.wait(10);
     assert_eq!(host.status(), Some(0x2A33));
 }
 
-/// An idle header has the effect of control words of 0.
+/// Packets with an idle header act like control words of 0.
 #[test]
 fn idle_data_act_as_zero_control_words() {
     let mut host = Host::opened("");
@@ -175,14 +177,15 @@ fn idle_data_act_as_zero_control_words() {
     assert_eq!(host.status(), Some(0x2A30));
 }
 
-/// Reference 7: four intervals times two. The drive fails and stops; another connection finds it in this state.
+/// The master is lost after 4 · 2 intervals (reference, section 7). The drive stops with a fault, which the next
+/// connection still reports.
 #[test]
 fn a_silent_master_is_lost_after_its_timeout() {
     let mut host = Host::opened("");
     host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
     host.wait(60);
     assert_eq!(host.status().map(|status| status & 0x2000), Some(0), "it moves");
-    // 80 ms after the last packet, which was sent 70 ms ago.
+    // The time-out is 80 ms after the last packet, which was sent 70 ms ago.
     host.wait(9);
     assert!(!host.datagrams().is_empty());
     host.wait(1);
@@ -191,13 +194,13 @@ fn a_silent_master_is_lost_after_its_timeout() {
     assert_eq!(host.datagrams(), []);
     host.wait(1000);
     host.is_asking("0E 03 20 65 24 01 30 6B", &stopped);
-    // Not at its target, with fault 8601.
+    // The drive has not reached its target, and its fault is 8601.
     assert_ne!(stopped, "8E 00 00 00 00 80 02 00");
     host.is_asking("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 86");
     assert_eq!(host.open(OPEN), OPENED.replace("01 00 02 00 01", "02 00 02 00 01"));
 }
 
-/// The end of a TCP connection ends its session, and leaves the cyclic connection to its time-out.
+/// Closing a TCP connection ends its session. The cyclic connection ends later by its own time-out.
 #[test]
 fn a_cyclic_connection_outlives_its_tcp_connection() {
     let mut host = Host::opened("");
@@ -212,7 +215,7 @@ fn a_cyclic_connection_outlives_its_tcp_connection() {
     host.is_asking(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
 }
 
-/// Reference 2: 2.5 turns, the high byte of every number first.
+/// 2.5 turns with the high byte of every number first (reference, section 2).
 #[test]
 fn the_byte_order_is_the_requested_one() {
     let mut host = Host::opened("order=big&position=163840");
@@ -222,7 +225,7 @@ fn the_byte_order_is_the_requested_one() {
     assert!(packet.ends_with("2A 31 00 00 00 02 80 00 00 00 00 00 00 00 00 00"), "{packet}");
 }
 
-/// Reference 9: read 166.
+/// The reading of parameter 166 matches section 9 of the reference.
 #[test]
 fn parameter_words_are_answered_with_process_data() {
     let mut host = Host::opened("");

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Reference 9: RegisterSession and its reply, get 107 in that session.
+/// RegisterSession and a read of parameter 107 in that session match section 9 of the reference.
 #[test]
 fn published_frames_match() {
     let mut host = Host::bare("position=163840");
@@ -14,19 +14,19 @@ fn published_frames_match() {
     let get = "6F 00 18 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 02 00 00 00 00 00 B2 00 \
                08 00 0E 03 20 65 24 01 30 6B";
     let mut request = bytes(get);
-    // Not the session of this connection.
+    // The session number does not belong to this connection.
     assert_eq!(host.bytes(&request)[8..12], [0x64, 0, 0, 0]);
     request[4..8].copy_from_slice(&session);
     let mut expected = bytes(&get.replace("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 80 02 00"));
     expected[4..8].copy_from_slice(&session);
     assert_eq!(hex(&host.bytes(&request)), hex(&expected));
-    // In pieces, and two at once.
+    // A request may arrive in pieces, or together with another one.
     let (first, second) = request.split_at(30);
     assert_eq!(host.bytes(first), [0; 0]);
     assert_eq!(host.bytes(&[second, &request].concat()), [&expected[..], &expected].concat());
 }
 
-/// Reference 9, CIP.
+/// CIP requests and replies match section 9 of the reference.
 #[test]
 fn published_requests_match() {
     let mut host = Host::new("position=163840");
@@ -34,7 +34,7 @@ fn published_requests_match() {
     host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     host.is_asking("10 03 20 65 24 01 30 9E 00 00 01 FE", "90 00 00 00");
     host.is_asking("0E 03 20 65 24 01 30 9E", "8E 00 00 00 00 00 01 FE");
-    // 158 above the position; the drive stores error 8501.
+    // A lower limit (158) above the position is rejected, and the drive stores error 8501.
     host.is_asking("10 03 20 65 24 01 30 9E FF FF FF 7F", "90 00 09 00");
     host.is_asking("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 85");
     host.is_asking("10 03 20 65 24 01 30 65 00 04", "90 00 00 00");
@@ -42,15 +42,15 @@ fn published_requests_match() {
     host.is_asking("10 03 20 65 24 01 30 98 01", "90 00 00 00");
     host.is_asking("10 03 20 64 24 01 30 2F 01 00", "90 00 00 00");
     host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
-    // During a save nothing is written; then 47 is 0 again.
+    // During a save, writes are rejected. Afterwards, parameter 47 is 0 again.
     host.is_asking("10 03 20 65 24 01 30 98 01", "90 00 0C 00");
     host.wait(200);
     host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
-/// Issue 21.8: a reset of drives is answered after it, as in the manual; other requests meanwhile are answered without
-/// delay.
+/// Issue 21.8: according to the manual, a reset of drives is answered on completion. Other requests are answered
+/// without delay in the meantime.
 #[test]
 fn a_reset_is_answered_on_completion() {
     for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -66,7 +66,7 @@ fn a_reset_is_answered_on_completion() {
         assert_eq!(hex(&reply[reply.len() - 4..]), "90 00 00 00", "{query}");
         host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     }
-    // The same for a reset of one drive: 152 from 0 to 1, and 199.
+    // The same applies to a reset of one drive through parameter 152 (from 0 to 1) or 199.
     let mut host = Host::new("requested=0");
     for (set, is_slow) in [("98 01", true), ("98 01", false), ("C7 00", true)] {
         let set = frame(0x6F, host.session, &unconnected(&bytes(&format!("10 03 20 65 24 01 30 {set}"))));
@@ -105,7 +105,7 @@ fn impossible_requests_are_refused_with_a_status() {
     }
 }
 
-/// The class of drive n is n above the device's (reference 7).
+/// The class of drive n is n above the class of the device (reference, section 7).
 #[test]
 fn drives_of_a_hub_have_consecutive_classes() {
     let mut host = Host::new("hub=8&drives=1,0,1,1,1,1,1,1&position=65536&variant=HDA70&requested=1");
@@ -126,8 +126,8 @@ fn drives_of_a_hub_have_consecutive_classes() {
     four.is_asking("0E 03 20 64 24 01 30 0D", "8E 00 00 00 10 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 34");
 }
 
-/// Worked out by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial 4711 = 1267, "HIPERDRIVE SINGLE"
-/// has 17 characters.
+/// Identity, composed by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial number 4711 = 1267h, and
+/// the 17 characters of "HIPERDRIVE SINGLE".
 const IDENTITY: &str =
     "F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 11 48 49 50 45 52 44 52 49 56 45 20 53 49 4E 47 4C 45";
 
@@ -140,9 +140,9 @@ fn identity_is_reported_over_tcp_udp_and_cip() {
     host.is_asking("0E 03 20 01 24 01 30 08", "8E 00 14 00");
     host.is_asking("10 03 20 01 24 01 30 01 00 00", "90 00 0E 00");
     let item = format!("01 00 00 02 AF 12 C0 A8 01 11 00 00 00 00 00 00 00 00 {IDENTITY} 03");
-    // 2 + 16 + 32 + 1 bytes.
+    // The item has 2 + 16 + 32 + 1 bytes.
     let expected = format!("01 00 0C 00 33 00 {item}");
-    // Without a session.
+    // This request needs no session.
     host.session = 0;
     assert_eq!(host.frame(0x63, &[]).map(|(status, data)| (status, hex(&data))), Some((0, expected.clone())));
     let mut request = frame(0x63, 0, &[]);
@@ -156,7 +156,7 @@ fn identity_is_reported_over_tcp_udp_and_cip() {
 #[test]
 fn other_commands_get_a_status_or_no_reply() {
     let mut host = Host::new("");
-    // ListServices: 0100h, version 1, capability 0120h.
+    // The reply to ListServices: item 0100h, version 1, capability 0120h.
     let services = "01 00 00 01 14 00 01 00 20 01 43 6F 6D 6D 75 6E 69 63 61 74 69 6F 6E 73 00 00";
     assert_eq!(host.frame(0x04, &[]).map(|(_, data)| hex(&data)), Some(services.to_owned()));
     assert_eq!(host.frame(0x64, &[]), Some((0, vec![0, 0])));
@@ -164,15 +164,15 @@ fn other_commands_get_a_status_or_no_reply() {
     assert_eq!(host.frame(0x72, &[]), Some((0x01, vec![])));
     assert_eq!(host.frame(0x6F, &bytes("00 00 00 00")), Some((0x03, vec![])));
     assert_eq!(host.frame(0x6F, &unconnected(&[])), Some((0x03, vec![])));
-    // A second session of one connection, and another version of the protocol.
+    // A request for a second session on the same connection, and one with another protocol version.
     let again = host.bytes(&bytes(REGISTER));
     assert_eq!(again[4..12], [&host.session.to_le_bytes()[..], &[1, 0, 0, 0]].concat());
     let mut other = Host { target: host.target.clone(), now: host.now, session: 0 };
     assert_eq!(other.frame(0x65, &bytes("02 00 00 00")), Some((0x69, vec![])));
-    // A session belongs to its connection.
+    // A session is only valid on its own connection.
     other.session = host.session;
     assert_eq!(other.frame(0x6F, &unconnected(&bytes("0E 03 20 65 24 01 30 6B"))).map(|(s, _)| s), Some(0x64));
-    // Options make a frame void.
+    // A frame with options is invalid.
     let mut void = frame(0x63, 0, &[]);
     void[20] = 1;
     assert_eq!(host.bytes(&void), [0; 0]);
@@ -185,12 +185,12 @@ fn other_commands_get_a_status_or_no_reply() {
     host.is_asking("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 00 00");
 }
 
-/// By ODVA: attribute 5 can be set only after attribute 3 is stored addresses.
+/// According to ODVA, attribute 5 can only be set while attribute 3 selects stored addresses.
 #[test]
 fn network_settings_can_be_written() {
     let mut host = Host::new("switch=17");
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
-    // 192.168.1.17, 255.255.255.0 and nothing else, low byte first; an empty name.
+    // 192.168.1.17 and 255.255.255.0 with the low byte first, no further addresses, and an empty name.
     let fixed = "11 01 A8 C0 00 FF FF FF 00 00 00 00 00 00 00 00 00 00 00 00 00 00";
     host.is_asking("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {fixed}"));
     // 10.0.0.5, 255.0.0.0, 10.0.0.1, no servers, "plant".
@@ -208,7 +208,7 @@ fn network_settings_can_be_written() {
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
-/// Unconnected_Send and a connection of class 3, as clients of controllers use them.
+/// Unconnected_Send and class 3 connections, which controllers use, are supported.
 #[test]
 fn wrapped_and_connected_messages_are_answered() {
     let mut host = Host::new("position=163840");

@@ -24,13 +24,13 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
     host.target.power_cycle();
     host.register();
     host.is_asking(get, "8E 00 00 00 C8 00");
-    // −1 and −2 concern the adapter's own parameters; 166 belongs to the drive.
+    // The values −1 and −2 concern parameters of the adapter itself. Parameter 166 belongs to the drive.
     for recall in ["10 03 20 64 24 01 30 2F FF FF", "10 03 20 64 24 01 30 2F FE FF"] {
         host.is_asking(recall, "90 00 00 00");
         host.wait(200);
         host.is_asking(get, "8E 00 00 00 C8 00");
     }
-    // −3 saves as well.
+    // The value −3 also saves.
     host.is_asking("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
     host.wait(200);
     host.target.power_cycle();
@@ -39,7 +39,8 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
     assert_eq!(host.target.with_station(|station| station.save_count()), 2);
 }
 
-/// Half of the values, in the order of their numbers, are saved when the supply returns: 152, but not 186.
+/// After a loss of supply during a save, only the first half of the values in numerical order is saved: 152, but not
+/// 186.
 #[test]
 fn power_can_fail_during_a_save() {
     let mut host = Host::new("fault=die-in-store:2");
@@ -57,7 +58,7 @@ fn power_can_fail_during_a_save() {
     host.target.on_datagram(host.now, FROM, &frame(0x63, 0, &[]));
     host.wait(1000);
     assert_eq!((host.datagrams(), get(&mut host)), (vec![], None));
-    // It returns with the next connection.
+    // The target replies again after the next connection.
     host.target.connect(host.now);
     assert_eq!(get(&mut host).map(|(status, _)| status), Some(0x64));
     host.register();
@@ -68,7 +69,8 @@ fn power_can_fail_during_a_save() {
     host.is_asking(GET_107, "8E 00 00 00 00 00 00 00");
 }
 
-/// After this number of frames and packets it neither answers nor receives: its drives lose their master.
+/// After the given number of frames and packets, the target neither replies nor receives, and its drives lose their
+/// master.
 #[test]
 fn a_silent_target_also_ignores_requests() {
     // RegisterSession, ForwardOpen and the fifteen packets that start the motion.
@@ -111,8 +113,8 @@ fn replies_and_packets_can_be_lost_or_damaged() {
     }
 }
 
-/// A fifth of the packets is lost in both directions: the connection survives, since eight in a row would have to be
-/// lost.
+/// A connection survives the loss of a fifth of the packets in both directions, because it only ends after eight lost
+/// packets in a row.
 #[test]
 fn a_lossy_line_does_not_lose_the_master() {
     let mut host = Host::opened("seed=3");

@@ -25,7 +25,7 @@ struct Host {
 const PEER: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 7);
 const FROM: SocketAddrV4 = SocketAddrV4::new(PEER, 40000);
 const REGISTER: &str = "65 00 04 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
-/// Reference 9: 10 ms, with parameter words.
+/// ForwardOpen of the reference, section 9: 10 ms, with parameter words.
 const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 01 00 01 00 01 00 34 12 CD AB 00 00 01 00 00 00 10 27 00 00 16 48 \
                     10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
 const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
@@ -39,20 +39,20 @@ fn config(query: &str) -> Config {
     Config::from_pairs(&query_pairs(query)).unwrap()
 }
 
-/// Builds a frame whose status, context and options are 0.
+/// Builds a frame with a status, context and options of 0.
 fn frame(command: u16, session: u32, data: &[u8]) -> Vec<u8> {
     let length = u16::try_from(data.len()).unwrap();
     [&command.to_le_bytes()[..], &length.to_le_bytes(), &session.to_le_bytes(), &[0; 16], data].concat()
 }
 
-/// Builds the data of SendRRData: interface, time-out, two items.
+/// Builds the data of a SendRRData frame: interface, time-out, and two items.
 fn unconnected(message: &[u8]) -> Vec<u8> {
     let length = u16::try_from(message.len()).unwrap();
     [&bytes("00 00 00 00 00 00 02 00 00 00 00 00 B2 00")[..], &length.to_le_bytes(), message].concat()
 }
 
 impl Host {
-    /// Creates a bare connection.
+    /// Creates a host with an open TCP connection but no session.
     fn bare(query: &str) -> Self {
         let target = Target::new(&config(query)).connect_from(PEER);
         Host { target, now: Moment::START, session: 0 }
@@ -112,7 +112,7 @@ impl Host {
         host
     }
 
-    /// Returns a packet of the connection 00020001.
+    /// Sends a packet over connection 00020001.
     fn packet(&mut self, sequence: u32, header: u32, data: &[u8]) {
         self.packet_of(0x0002_0001, sequence, header, data);
     }
@@ -139,7 +139,7 @@ impl Host {
         self.packet(sequence, 1, &[low, high, 100, 100, 0, 0x80, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     }
 
-    /// Sends each word in three packets and returns the next number.
+    /// Sends each word in three packets and returns the next sequence number.
     fn words(&mut self, mut sequence: u32, words: &[u16]) -> u32 {
         for word in words {
             for _ in 0..3 {

@@ -1,8 +1,8 @@
-//! Tests of the last step if its write is rejected or interrupted.
+//! Tests of the last step with a rejected or interrupted write.
 
 use super::*;
 
-/// Issue 21.6 (e): the mark is never saved, so a failed write of it leaves everything else as saved.
+/// Issue 21.6 (e): the restart marker is never saved, so a failed write of it leaves all other values as saved.
 #[test]
 fn a_failed_mark_keeps_saved_values() {
     for begun in [false, true] {
@@ -15,7 +15,8 @@ fn a_failed_mark_keeps_saved_values() {
     }
 }
 
-/// Issue 21.6 (e): the connection is lost during the write of the mark. The mark has arrived, or it has not.
+/// Issue 21.6 (e): if the connection is lost during the write of the restart marker, a reading determines whether the
+/// marker has arrived.
 #[test]
 fn an_interrupted_write_of_the_mark_is_read_back() {
     let cut_off = |value: i64| {
@@ -36,12 +37,12 @@ fn an_interrupted_write_of_the_mark_is_read_back() {
         let Some(Power::Back { restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
         (restart, axis.has_survived(), axis.is_saved())
     };
-    // It has arrived: the drive was not off, whatever the user states, and a restart can be read.
+    // The marker has arrived. The drive was not off, whatever the user states, and a restart can be detected.
     let (mut axis, mut seen) = cut_off(1001);
     assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis.request(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
     assert_eq!(off_and_on(&mut axis, &mut seen), (RestartEvidence::Read, true, true));
-    // It has not arrived: the check can be prepared once more, without leaving the step.
+    // The marker has not arrived. The check can be prepared again without leaving the step.
     let (mut axis, mut seen) = cut_off(1000);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(182, 1001)]));
